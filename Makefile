@@ -1,0 +1,57 @@
+# Every target sets up its own environment in .venv; only make and a Python of 3.11 or later are needed.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+STAMP  := $(VENV)/.installed
+DEMO   := demo
+
+.DELETE_ON_ERROR:
+.PHONY: help demo test test-all lint types bench clean
+
+help:
+	@echo "make demo      solve the bare system and draw its stresses into $(DEMO)/"
+	@echo "make test      the tests, without the slow ones"
+	@echo "make test-all  all tests"
+	@echo "make lint      style and format"
+	@echo "make types     static types"
+	@echo "make bench     seconds of a run against the number of modes"
+	@echo "make clean     remove the environment, caches and the demonstration"
+
+$(STAMP): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
+	  { echo "error: $(PYTHON) is older than Python 3.11 or not installed; name another one: make PYTHON=python3.12" >&2; exit 1; }
+	@echo "setting up $(VENV) (once, about half a minute)"
+	@$(PYTHON) -m venv $(VENV) || \
+	  { echo "error: $(PYTHON) cannot make virtual environments; on Debian: apt-get install python3-venv" >&2; exit 1; }
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev]'
+	@touch $@
+
+demo: $(STAMP)
+	@mkdir -p $(DEMO)
+	@$(BIN)/coaxshell run bare --output $(DEMO)/bare.nc
+	@$(BIN)/coaxshell figure 3 --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
+
+test: $(STAMP)
+	@$(BIN)/python -m pytest -q -n 2 -m "not slow"
+
+test-all: $(STAMP)
+	@$(BIN)/python -m pytest -q -n 2
+
+lint: $(STAMP)
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check --quiet . || { echo "error: some files are not formatted: $(BIN)/ruff format ." >&2; exit 1; }
+
+types: $(STAMP)
+	@$(BIN)/mypy
+
+bench: $(STAMP)
+	@for modes in 75 150 300; do \
+	  echo "bare system, modes = $$modes"; \
+	  $(BIN)/python -m timeit -n 1 -r 3 -s "import coaxshell as cx; system = cx.presets.load('bare')" \
+	    "cx.simulate(system, modes=$$modes)"; \
+	done
+
+clean:
+	@rm -rf $(VENV) $(DEMO) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +

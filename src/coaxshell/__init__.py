@@ -1,0 +1,113 @@
+"""How concentric cylindrical shells in fluids answer an acoustic shock.
+
+Describe a :class:`System` (or load one of ``presets``), :func:`simulate` it, and read the :class:`Response`::
+
+    import coaxshell as cx
+
+    response = cx.simulate(cx.presets.load("bare"))
+    response.stress("inner", angle=[0, 180])
+
+Names are imported when they are first used, so that importing the package costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from coaxshell._version import __version__
+from coaxshell.errors import InputError, PhysicsWarning
+
+if TYPE_CHECKING:
+    from coaxshell.model import (
+        EXPLOSIVES,
+        VACUUM,
+        Absorber,
+        AbsorberRing,
+        Elastic,
+        Explosive,
+        Exponential,
+        Fluid,
+        Gaussian,
+        Layer,
+        LineShock,
+        LineWave,
+        PDControl,
+        Piezoelectric,
+        PlaneShock,
+        PlaneWave,
+        RigidShell,
+        Sampled,
+        Shell,
+        SphericalShock,
+        SphericalWave,
+        Step,
+        System,
+        UnderwaterExplosion,
+        Vacuum,
+        absorber_ring,
+        fluids,
+        materials,
+        presets,
+    )
+    from coaxshell.response import Response, load_response, simulate
+
+_ROOMS = {
+    "coaxshell.model": (
+        "EXPLOSIVES VACUUM Absorber AbsorberRing Elastic Explosive Exponential Fluid Gaussian Layer LineShock LineWave PDControl "
+        "Piezoelectric PlaneShock PlaneWave RigidShell Sampled Shell SphericalShock SphericalWave Step System UnderwaterExplosion "
+        "Vacuum absorber_ring fluids materials presets"
+    ),
+    "coaxshell.response": "Response load_response simulate",
+}
+_HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
+
+__all__ = [
+    "EXPLOSIVES",
+    "VACUUM",
+    "Absorber",
+    "AbsorberRing",
+    "Elastic",
+    "Explosive",
+    "Exponential",
+    "Fluid",
+    "Gaussian",
+    "InputError",
+    "Layer",
+    "LineShock",
+    "LineWave",
+    "PDControl",
+    "PhysicsWarning",
+    "Piezoelectric",
+    "PlaneShock",
+    "PlaneWave",
+    "Response",
+    "RigidShell",
+    "Sampled",
+    "Shell",
+    "SphericalShock",
+    "SphericalWave",
+    "Step",
+    "System",
+    "UnderwaterExplosion",
+    "Vacuum",
+    "__version__",
+    "absorber_ring",
+    "fluids",
+    "load_response",
+    "materials",
+    "presets",
+    "simulate",
+]
+
+
+def __getattr__(name: str) -> Any:
+    home = _HOME.get(name)
+    if home is None:
+        raise AttributeError(f"module 'coaxshell' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(home), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,66 @@
+"""Every module and every public name tells what it is for; the version stands in one place."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+import tomllib
+
+import pytest
+
+import coaxshell
+from house import PACKAGE, PROJECT, modules, tree
+
+DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+
+
+def undocumented(body, prefix=""):
+    """Yield public functions, classes and methods without a docstring."""
+    for node in body:
+        if not isinstance(node, DEFINITIONS) or node.name.startswith("_"):
+            continue
+        decorators = {ast.unparse(decorator) for decorator in node.decorator_list}
+        if ast.get_docstring(node) is None and not any("overload" in d or d.endswith(".setter") for d in decorators):
+            yield prefix + node.name
+        if isinstance(node, ast.ClassDef):
+            yield from undocumented(node.body, f"{prefix}{node.name}.")
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: "/".join(path.parts[-2:]))
+def test_public_names_are_documented(path):
+    assert ast.get_docstring(tree(path)), "the module has no docstring"
+    assert list(undocumented(tree(path).body)) == []
+
+
+def test_every_exported_name_exists():
+    for name in coaxshell.__all__:
+        assert getattr(coaxshell, name) is not None
+    assert set(coaxshell.__all__) <= set(dir(coaxshell))
+
+
+def test_lazy_names_and_their_static_imports_agree():
+    guarded = next(node for node in tree(PACKAGE / "__init__.py").body if isinstance(node, ast.If))
+    static = {(node.module, alias.name) for node in guarded.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    assert static == {(home, name) for name, home in coaxshell._HOME.items()}
+    assert set(coaxshell.__all__) == {name for _, name in static} | {"InputError", "PhysicsWarning", "__version__"}
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'shell_of_an_egg'"):
+        _ = coaxshell.shell_of_an_egg
+
+
+def test_the_version_stands_in_one_place():
+    project = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert "version" not in project["project"]
+    assert project["project"]["dynamic"] == ["version"]
+    assert PROJECT / project["tool"]["hatch"]["version"]["path"] == PACKAGE / "_version.py"
+    version = importlib.import_module("coaxshell._version").__version__
+    assert re.fullmatch(r"\d+\.\d+\.\d+([a-z.]+\d+)?", version)
+    holders = [path for path in modules() if version in path.read_text(encoding="utf-8")]
+    assert holders == [PACKAGE / "_version.py"]
+
+
+def test_the_package_is_marked_as_typed():
+    assert (PACKAGE / "py.typed").is_file()

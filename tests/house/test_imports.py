@@ -1,0 +1,73 @@
+"""Each floor of the house imports only from the floors above it."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from house import PACKAGE, modules, tree
+
+FLOORS = ("model", "structure", "acoustics", "solver", "response", "studies", "plotting", "paper", "studio", "cli")
+FREE_FOR_ALL = {"errors", "_version"}
+
+
+def imported(module: ast.Module) -> Iterator[tuple[str, int]]:
+    """Yield (name of the module, line) of every import, those inside functions and under TYPE_CHECKING too."""
+    for node in ast.walk(module):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, node.lineno) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module, node.lineno
+            if node.module == PACKAGE.name:
+                yield from ((f"{node.module}.{alias.name}", node.lineno) for alias in node.names)
+
+
+def room_of(name: str) -> str | None:
+    parts = name.split(".")
+    return parts[1] if parts[0] == PACKAGE.name and len(parts) > 1 else None
+
+
+@pytest.mark.parametrize("path", modules(inside_rooms=True), ids=str)
+def test_no_import_runs_down_the_house(path):
+    own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+    assert own in FLOORS, f"{own} is not a floor of the house"
+    for name, line in imported(tree(path)):
+        room = room_of(name)
+        if name == PACKAGE.name:
+            continue  # names are checked one by one
+        if room is None or room in FREE_FOR_ALL:
+            continue
+        assert room in FLOORS, f"{path}:{line} imports {name}: inside the package, import from the room itself"
+        assert FLOORS.index(room) <= FLOORS.index(own), f"{path}:{line} imports {name}, which lies below {own}"
+
+
+def test_the_check_sees_an_arrow_that_runs_the_wrong_way():
+    source = ast.parse(
+        "def f():\n    from coaxshell.cli import main\n    import coaxshell.response.summary\n    from coaxshell import plotting"
+    )
+    assert {room_of(name) for name, _ in imported(source)} >= {"cli", "response", "plotting"}
+
+
+# pydantic is left out: typer itself imports it to show the help of a command.
+HEAVY = ("xarray", "matplotlib", "scipy", "numpy", "pandas", "pint", "h5py", "finufft", "numba")
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--version"], ["run", "--help"], ["figure", "--help"]], ids=" ".join)
+def test_help_imports_nothing_heavy(arguments):
+    code = (
+        "import sys\nfrom coaxshell.cli import main\n"
+        f"assert main({arguments!r}) == 0\n"
+        f"print('HEAVY', sorted(set(sys.modules) & {set(HEAVY)!r}))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "HEAVY []"
+
+
+def test_importing_the_package_imports_nothing_heavy():
+    code = f"import sys, coaxshell\nprint(sorted(set(sys.modules) & {set(HEAVY)!r}))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
