@@ -1,0 +1,63 @@
+"""What a user describes: frozen, validated, in SI, written to TOML and back without loss."""
+
+from __future__ import annotations
+
+from coaxshell.model import fluids, materials, presets
+from coaxshell.model.absorbers import Absorber, AbsorberRing, absorber_ring
+from coaxshell.model.base import Described
+from coaxshell.model.control import PDControl
+from coaxshell.model.elastic import Elastic
+from coaxshell.model.explosives import EXPLOSIVES, Explosive
+from coaxshell.model.fluids import VACUUM, Fluid, Vacuum
+from coaxshell.model.layers import Layer
+from coaxshell.model.piezoelectric import Piezoelectric
+from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
+from coaxshell.model.shells import RigidShell, Shell
+from coaxshell.model.sources import (
+    LineShock,
+    LineWave,
+    PlaneShock,
+    PlaneWave,
+    Source,
+    SphericalShock,
+    SphericalWave,
+    UnderwaterExplosion,
+    source_distance,
+)
+from coaxshell.model.system import System
+
+__all__ = [
+    "EXPLOSIVES",
+    "VACUUM",
+    "Absorber",
+    "AbsorberRing",
+    "Described",
+    "Elastic",
+    "Explosive",
+    "Exponential",
+    "Fluid",
+    "Gaussian",
+    "Layer",
+    "LineShock",
+    "LineWave",
+    "PDControl",
+    "Piezoelectric",
+    "PlaneShock",
+    "PlaneWave",
+    "Pulse",
+    "RigidShell",
+    "Sampled",
+    "Shell",
+    "Source",
+    "SphericalShock",
+    "SphericalWave",
+    "Step",
+    "System",
+    "UnderwaterExplosion",
+    "Vacuum",
+    "absorber_ring",
+    "fluids",
+    "materials",
+    "presets",
+    "source_distance",
+]

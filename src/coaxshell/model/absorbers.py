@@ -1,0 +1,80 @@
+"""Vibration absorbers between neighbouring shells (paper's Eqs. 6 and 7), one by one or as a ring of equal ones."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+from pydantic import model_validator
+
+from coaxshell.errors import InputError
+from coaxshell.model.base import Described
+from coaxshell.model.units import Angle, Count, quantity
+
+LineMass = Annotated[float, quantity("line mass", least=0)]
+LineDamping = Annotated[float, quantity("line damping", least=0)]
+LineStiffness = Annotated[float, quantity("line stiffness", least=0)]
+LineCubicStiffness = Annotated[float, quantity("line cubic stiffness", least=0)]
+
+
+class _Link(Described):
+    """Hold the law of one absorber: f = c dD/dt + k_l D + k_nl D^3 on each side, D the stretch; all per metre of length."""
+
+    mass: LineMass
+    """Moving mass (kg per metre of length); 0 leaves two links in series."""
+    damping: LineDamping = 0.0
+    """Viscous damping c of each link (N s/m per metre of length)."""
+    linear_stiffness: LineStiffness = 0.0
+    """Linear stiffness k_l of each link (N/m per metre of length)."""
+    cubic_stiffness: LineCubicStiffness = 0.0
+    """Cubic stiffness k_nl of each link (N/m^3 per metre of length)."""
+    inner_shell: Count = 0
+    """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
+
+    @model_validator(mode="after")
+    def _determined(self) -> Self:
+        if self.mass == 0 and not (self.damping or self.linear_stiffness or self.cubic_stiffness):
+            raise InputError(
+                "mass",
+                "0.0 kg/m with neither damping nor stiffness leaves the absorber undetermined",
+                "must be greater than 0, or give it a stiffness",
+            )
+        return self
+
+
+class Absorber(_Link):
+    """Describe one absorber at an angle."""
+
+    angle: Angle = 0.0
+    """Where it sits, from the direction theta = 0 (degrees)."""
+
+
+class AbsorberRing(_Link):
+    """Describe *count* equal absorbers at equal spacing: angle_k = offset + 360 k / count."""
+
+    count: Count
+    """How many; 0 is an empty ring."""
+    offset: Angle = 0.0
+    """Angle of the first one (degrees)."""
+
+    @property
+    def absorbers(self) -> tuple[Absorber, ...]:
+        """The single absorbers of the ring."""
+        shared = {name: getattr(self, name) for name in _Link.model_fields}
+        return tuple(Absorber(angle=angle, **shared) for angle in self.angles)
+
+    @property
+    def angles(self) -> tuple[float, ...]:
+        """Their angles (degrees), kept below 360."""
+        raw = (self.offset + 360.0 * k / self.count for k in range(self.count))
+        return tuple(angle - 360.0 if angle >= 360.0 else angle for angle in raw)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __bool__(self) -> bool:
+        return True  # an empty ring is still a ring, whose count a study may change
+
+
+def absorber_ring(count: int, **properties: Any) -> AbsorberRing:
+    """Return a ring of *count* equal absorbers; properties as those of :class:`AbsorberRing`."""
+    return AbsorberRing(count=count, **properties)

@@ -1,0 +1,116 @@
+"""The common base of every description: frozen, strict about keys, and with errors of one line in the user's terms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Self
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from coaxshell.errors import InputError
+from coaxshell.model.naming import suggestion
+
+
+def dotted(location: Sequence[str | int]) -> str:
+    """Write a location such as ``("shells", 0, "radius")`` as ``shells[0].radius``."""
+    text = ""
+    for part in location:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def joined(outer: str, inner: str) -> str:
+    """Join two dotted paths; an empty one, or an inner one starting with an index, adds no dot."""
+    return outer + inner if not outer or not inner or inner.startswith("[") else f"{outer}.{inner}"
+
+
+def within(outer: str, error: InputError) -> InputError:
+    """Return *error* with its path continued outwards by *outer*."""
+    return InputError(joined(outer, error.where), error.problem, error.remedy)
+
+
+def shown(value: object) -> str:
+    """Show a value as the user wrote it, cut to a length that fits on one line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+WORDS = {
+    "a valid tuple": "a list",
+    "a valid integer": "a whole number",
+    "a valid string": "text",
+    "a valid boolean": "true or false",
+    "a valid dictionary": "a table",
+}
+"""pydantic's words, and those of a user who knows neither Python nor pydantic."""
+
+UNSTATED: Any = object()
+"""Default of an argument that is required, so that its absence is told like every other problem."""
+
+
+def stated(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments that were given."""
+    return {name: value for name, value in arguments.items() if value is not UNSTATED}
+
+
+class Described(BaseModel):
+    """A part of a description: immutable, unknown keys refused, every problem told as one :class:`InputError`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise _told(error, type(self)) from None
+
+    @classmethod
+    def model_validate(cls, obj: Any, **options: Any) -> Self:
+        """Build from a mapping or an instance; InputError with the full path when something is wrong."""
+        try:
+            return super().model_validate(obj, **options)
+        except ValidationError as error:
+            raise _told(error, cls) from None
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a copy with the given fields changed, checked as a whole again; derived defaults follow the change."""
+        kept = {name: getattr(self, name) for name in type(self).model_fields if name in self.model_fields_set}
+        return type(self)(**{**kept, **changes})
+
+    if not TYPE_CHECKING:  # hidden from mypy, which would otherwise accept any assignment
+
+        def __setattr__(self, name: str, value: object) -> None:
+            raise InputError(name, f"a {type(self).__name__} cannot be changed in place", f"use .replace({name}=...) to get a changed copy")
+
+
+def _told(error: ValidationError, cls: type[BaseModel]) -> InputError:
+    """Translate pydantic's report into the first problem, in the user's terms."""
+    # A default that depends on a bad field is a consequence, not a problem of its own.
+    problems = [p for p in error.errors(include_url=False) if p["type"] != "default_factory_not_called"]
+    first = problems[0]
+    where = dotted(first["loc"])
+    value = first["input"]
+    context: Mapping[str, Any] = first.get("ctx") or {}
+    cause = context.get("error")
+    if isinstance(cause, InputError):
+        return within(where, cause)
+    match first["type"]:
+        case "missing":
+            return InputError(where, "is missing", f"{cls.__name__} needs it")
+        case "extra_forbidden":
+            return InputError(where, f"is not an entry of {cls.__name__}", suggestion(str(first["loc"][-1]), _entries(cls)))
+        case "literal_error":
+            return InputError(where, f"{shown(value)} is not allowed", f"must be {context['expected']}")
+        case "value_error":
+            return InputError(where, f"{shown(value)} is not allowed", str(cause))
+        case "too_short":
+            return InputError(where, f"{len(value)} given", f"must be at least {context['min_length']}")
+        case _:
+            text = first["msg"].removeprefix("Input should be ")
+            for theirs, ours in WORDS.items():
+                text = text.replace(theirs, ours)
+            return InputError(where, f"{shown(value)} is not allowed", f"must be {text[:1].lower()}{text[1:]}")
+
+
+def _entries(cls: type[BaseModel]) -> list[str]:
+    return list(cls.model_fields)

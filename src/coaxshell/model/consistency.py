@@ -1,0 +1,129 @@
+"""What must hold of a system as a whole, one check a function; every message names the numbers that clash."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from coaxshell.errors import InputError
+from coaxshell.model.fluids import Vacuum
+from coaxshell.model.shells import RigidShell
+from coaxshell.model.sources import UnderwaterExplosion
+
+if TYPE_CHECKING:
+    from coaxshell.model.absorbers import Absorber, AbsorberRing
+    from coaxshell.model.system import System
+
+
+def check(system: System) -> None:
+    """Check the whole; InputError on the first thing that does not fit."""
+    _shells(system)
+    _fluids(system)
+    _sources(system)
+    _absorbers(system)
+    _control(system)
+
+
+def index_of(shell: int | str, count: int) -> int:
+    """Return the number of a shell among *count*, from a number, digits, "inner" or "outer"; InputError otherwise."""
+    if shell == "inner":
+        return 0
+    if shell == "outer":
+        return count - 1
+    number = int(shell) if isinstance(shell, str) and shell.isdigit() else shell
+    if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < count:
+        return number
+    numbers = "0" if count == 1 else f"0 to {count - 1}"
+    raise InputError("shell", f"{shell!r} is not a shell of this system", f"must be {numbers} (from the inside), 'inner' or 'outer'")
+
+
+def _shells(system: System) -> None:
+    if not system.shells:
+        raise InputError("shells", "the list is empty", "give at least 1 shell")
+    for number, (inner, outer) in enumerate(pairwise(system.shells)):
+        if inner.outer_radius >= outer.inner_radius:
+            raise InputError(
+                f"shells[{number + 1}].radius",
+                f"its inner face at {outer.inner_radius:g} m is not outside the outer face of shells[{number}] at {inner.outer_radius:g} m",
+                "list the shells from the inside out, without overlap",
+            )
+
+
+def _fluids(system: System) -> None:
+    wanted = len(system.shells) + 1
+    if len(system.fluids) != wanted:
+        raise InputError(
+            "fluids",
+            f"the list has {len(system.fluids)} for {len(system.shells)} shell(s)",
+            f"must be {wanted}, from the innermost to the exterior",
+        )
+    if isinstance(system.fluids[-1], Vacuum):
+        raise InputError(f"fluids[{wanted - 1}]", "'vacuum' is not allowed for the exterior", "must be a fluid, since it carries the shock")
+
+
+def _sources(system: System) -> None:
+    if not system.sources:
+        raise InputError("source", "the list is empty", "give at least 1 source")
+    radius = system.shells[-1].outer_radius
+    several = isinstance(system.source, tuple)
+    for number, (source, distance) in enumerate(zip(system.sources, system.source_distances, strict=True)):
+        where = f"source[{number}]" if several else "source"
+        if isinstance(source, UnderwaterExplosion):
+            thickness = system.shells[-1].thickness / 2
+            if source.stand_off <= thickness:
+                raise InputError(
+                    f"{where}.stand_off", f"{source.stand_off!r} m is within the wall", f"must be greater than {thickness:g} m"
+                )
+        elif distance is not None and distance <= radius:
+            raise InputError(
+                f"{where}.distance",
+                f"{distance!r} m is not outside the outermost shell",
+                f"must be greater than its outer radius {radius:g} m",
+            )
+
+
+def _absorbers(system: System) -> None:
+    single = isinstance(system.absorbers, tuple)
+    listed: tuple[Absorber | AbsorberRing, ...] = system.absorbers if isinstance(system.absorbers, tuple) else (system.absorbers,)
+    if len(system.shells) < 2 and not system.absorber_list:
+        return  # an empty ring fits any system
+    for number, absorber in enumerate(listed):
+        where = f"absorbers[{number}]" if single else "absorbers"
+        if len(system.shells) < 2:
+            raise InputError(where, "an absorber links two shells, and this system has 1", "add a shell or leave the absorbers out")
+        inner = absorber.inner_shell
+        if inner > len(system.shells) - 2:
+            raise InputError(
+                f"{where}.inner_shell",
+                f"{inner} has no shell outside it",
+                f"must be at most {len(system.shells) - 2} in a system of {len(system.shells)} shells",
+            )
+        for end in (inner, inner + 1):
+            if isinstance(system.shells[end], RigidShell):
+                raise InputError(f"{where}.inner_shell", f"{inner} links shells[{end}], which is rigid", "must link two elastic shells")
+
+
+def _control(system: System) -> None:
+    if system.control is None:
+        return
+    for shell in () if system.control.shells == "all" else system.control.shells:
+        try:
+            system.shell_index(shell)
+        except InputError as error:
+            raise InputError("control.shells", error.problem, error.remedy) from None
+    numbers = system.controlled_shells
+    if len(set(numbers)) < len(numbers):
+        raise InputError("control.shells", f"{list(system.control.shells)!r} names a shell twice", "must name each shell once")
+    for number in numbers:
+        shell_ = system.shells[number]
+        if isinstance(shell_, RigidShell):
+            raise InputError(
+                "control.shells", f"shells[{number}] is rigid and cannot be controlled", "name the shells to control, e.g. shells = [1]"
+            )
+        for role in ("sensor", "actuator"):
+            if getattr(shell_, role) is None:
+                raise InputError(
+                    "control.shells",
+                    f"shells[{number}] has no {role} layer",
+                    "give it one, or name only the shells that have both, e.g. shells = ['outer']",
+                )

@@ -1,0 +1,38 @@
+"""Underwater-explosion similitude: constants of the shock's peak pressure and decay time, explosive by explosive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Explosive:
+    """Hold the similitude constants of an explosive.
+
+    p = peak_factor (W^(1/3)/S)^peak_exponent and theta = decay_factor W^(1/3) (W^(1/3)/S)^decay_exponent, with the
+    charge mass W in kg and the stand-off S in m; *lowest* and *highest* bound the peak pressures (Pa) that the fit covers.
+    """
+
+    name: str
+    peak_factor: float
+    peak_exponent: float
+    decay_factor: float
+    decay_exponent: float
+    lowest: float
+    highest: float
+    reference: str
+
+
+_SWISDAK = "Swisdak, Explosion Effects and Properties, Part II: Explosion Effects in Water, NSWC/WOL TR 76-116 (1978)"
+# Cole's fit is in pounds, feet and psi: 21600 psi (W^(1/3)/S)^1.13 and 0.058 ms W^(1/3) (W^(1/3)/S)^-0.22; below, in kg, m, Pa and s.
+_COLE = "Cole, Underwater Explosions, Princeton University Press (1948), ch. 7, converted from lb, ft and psi"
+
+EXPLOSIVES: dict[str, Explosive] = {
+    explosive.name: explosive
+    for explosive in (
+        Explosive("TNT", 52.4e6, 1.13, 0.084e-3, -0.23, 3.4e6, 138e6, _SWISDAK),
+        Explosive("pentolite", 56.5e6, 1.14, 0.084e-3, -0.23, 3.4e6, 138e6, _SWISDAK),
+        Explosive("HBX-1", 56.7e6, 1.15, 0.083e-3, -0.29, 3.4e6, 60e6, _SWISDAK),
+        Explosive("TNT-Cole", 52.4e6, 1.13, 0.0925e-3, -0.22, 3.4e6, 138e6, _COLE),
+    )
+}

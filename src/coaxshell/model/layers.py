@@ -1,0 +1,118 @@
+"""The layers of a wall, and the shell that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from coaxshell.errors import InputError
+from coaxshell.model.base import UNSTATED, Described, stated
+from coaxshell.model.elastic import Elastic
+from coaxshell.model.materials import AnyMaterial, Material
+from coaxshell.model.piezoelectric import Piezoelectric
+from coaxshell.model.units import Length
+
+Role = Literal["core", "sensor", "actuator", "passive"]
+
+
+class Layer(Described):
+    """Describe a layer: material, thickness, and its role ("core" for elastic ones unless said otherwise)."""
+
+    material: AnyMaterial
+    """A material, or the name of one in the library."""
+    thickness: Length
+    """Thickness (m)."""
+    role: Role = Field(default_factory=lambda data: "core" if isinstance(data["material"], Elastic) else "passive")
+    """"core" bears the load, "sensor" and "actuator" are piezoelectric and wired to the controller, "passive" is neither."""
+
+    def __init__(
+        self,
+        material: Material | str | Mapping[str, Any] = UNSTATED,
+        thickness: float | str = UNSTATED,
+        role: Role | None = None,
+        **unknown: Any,
+    ) -> None:
+        given = {"material": material, "thickness": thickness, "role": UNSTATED if role is None else role}
+        super().__init__(**stated(given), **unknown)
+
+    @model_validator(mode="after")
+    def _role_fits(self) -> Self:
+        if isinstance(self.material, Piezoelectric):
+            if "role" not in self.model_fields_set:
+                raise InputError(
+                    "role", f"is missing for the piezoelectric {self.material.name!r}", "must be 'sensor', 'actuator' or 'passive'"
+                )
+            if self.role == "core":
+                raise InputError(
+                    "role",
+                    f"'core' is not allowed for the piezoelectric {self.material.name!r}",
+                    "must be 'sensor', 'actuator' or 'passive'",
+                )
+        elif self.role in ("sensor", "actuator"):
+            raise InputError(
+                "role",
+                f"{self.role!r} is not allowed for the elastic {self.material.name!r}",
+                "must be 'core' or 'passive', or the material piezoelectric",
+            )
+        return self
+
+
+class Shell(Described):
+    """Describe a thin circular cylindrical shell by its mid-surface radius and its layers, from the inside out."""
+
+    radius: Length
+    """Radius of the mid-surface (m)."""
+    layers: Annotated[tuple[Layer, ...], Field(min_length=1)]
+    """The layers, innermost (z < 0) first."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.thickness >= self.radius:
+            raise InputError(
+                "layers",
+                f"total thickness {self.thickness:g} m is not thin against the radius {self.radius:g} m",
+                f"must be less than the radius {self.radius:g} m",
+            )
+        for role in ("sensor", "actuator"):
+            found = [i for i, layer in enumerate(self.layers) if layer.role == role]
+            if len(found) > 1:
+                raise InputError(
+                    f"layers[{found[1]}].role", f"{role!r} is already the role of layers[{found[0]}]", f"a shell has at most one {role}"
+                )
+        return self
+
+    @property
+    def thickness(self) -> float:
+        """Total thickness of the wall (m)."""
+        return sum(layer.thickness for layer in self.layers)
+
+    @property
+    def inner_radius(self) -> float:
+        """Radius of the inner face, radius - thickness/2 (m)."""
+        return self.radius - self.thickness / 2
+
+    @property
+    def outer_radius(self) -> float:
+        """Radius of the outer face, radius + thickness/2 (m)."""
+        return self.radius + self.thickness / 2
+
+    @property
+    def core(self) -> Layer:
+        """The layer whose stress is reported: the first core, else the thickest elastic layer, else the thickest layer."""
+        for layer in self.layers:
+            if layer.role == "core":
+                return layer
+        elastic = [layer for layer in self.layers if isinstance(layer.material, Elastic)]
+        return max(elastic or self.layers, key=lambda layer: layer.thickness)
+
+    @property
+    def sensor(self) -> Layer | None:
+        """The sensor layer, if there is one."""
+        return next((layer for layer in self.layers if layer.role == "sensor"), None)
+
+    @property
+    def actuator(self) -> Layer | None:
+        """The actuator layer, if there is one."""
+        return next((layer for layer in self.layers if layer.role == "actuator"), None)

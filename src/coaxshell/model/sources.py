@@ -1,0 +1,181 @@
+"""Where the shock comes from: its geometry, its direction, and its pressure history.
+
+In every geometry the pulse is the free-field pressure at the head point, the point of the outermost shell nearest to
+the source, and its clock starts when the front gets there (plus *delay*). Distances are measured from the shells' axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator
+
+from coaxshell.errors import InputError
+from coaxshell.model.base import Described, shown
+from coaxshell.model.explosives import EXPLOSIVES, Explosive
+from coaxshell.model.naming import lookup
+from coaxshell.model.pulses import AnyPulse, Exponential
+from coaxshell.model.units import Angle, Delay, Length, Mass, Pressure, Time
+
+Geometry = Literal["spherical", "plane", "line"]
+
+
+class _Directed(Described):
+    """Hold what all sources share: direction and delay."""
+
+    angle: Angle = 0.0
+    """Direction of the source seen from the axis (degrees)."""
+    delay: Delay = 0.0
+    """Time by which its front reaches the head point later than t = 0 (s)."""
+
+
+class _Shock(_Directed):
+    peak_pressure: Pressure
+    """Free-field pressure of the front at the head point (Pa)."""
+    decay_time: Time
+    """Time to fall by a factor e (s)."""
+
+    @property
+    def pulse(self) -> Exponential:
+        """The exponential history at the head point."""
+        return Exponential(peak_pressure=self.peak_pressure, decay_time=self.decay_time)
+
+
+class SphericalShock(_Shock):
+    """Describe the paper's source (Eq. 2): a spherical front with an exponential tail and its afterflow."""
+
+    geometry: ClassVar[Geometry] = "spherical"
+    type: Literal["spherical-shock"] = "spherical-shock"
+    distance: Length
+    """Distance of the source from the axis (m)."""
+
+
+class PlaneShock(_Shock):
+    """Describe a plane front with an exponential tail: a spherical shock from infinitely far away."""
+
+    geometry: ClassVar[Geometry] = "plane"
+    distance: ClassVar[None] = None
+    type: Literal["plane-shock"] = "plane-shock"
+
+
+class LineShock(_Shock):
+    """Describe a true two-dimensional line source, parallel to the axis, with an exponential history at the head point."""
+
+    geometry: ClassVar[Geometry] = "line"
+    type: Literal["line-shock"] = "line-shock"
+    distance: Length
+    """Distance of the line from the axis (m)."""
+
+
+class SphericalWave(_Directed):
+    """Describe a spherical wave of any history."""
+
+    geometry: ClassVar[Geometry] = "spherical"
+    type: Literal["spherical-wave"] = "spherical-wave"
+    distance: Length
+    """Distance of the source from the axis (m)."""
+    pulse: AnyPulse
+    """Free-field pressure at the head point."""
+
+
+class PlaneWave(_Directed):
+    """Describe a plane wave of any history."""
+
+    geometry: ClassVar[Geometry] = "plane"
+    distance: ClassVar[None] = None
+    type: Literal["plane-wave"] = "plane-wave"
+    pulse: AnyPulse
+    """Free-field pressure at the head point."""
+
+
+class LineWave(_Directed):
+    """Describe a two-dimensional line source of any history."""
+
+    geometry: ClassVar[Geometry] = "line"
+    type: Literal["line-wave"] = "line-wave"
+    distance: Length
+    """Distance of the line from the axis (m)."""
+    pulse: AnyPulse
+    """Free-field pressure at the head point."""
+
+
+def as_explosive(name: Any) -> str:
+    """Return the listed name of an explosive; InputError with the names otherwise."""
+    return lookup(EXPLOSIVES, str(name), "explosive").name
+
+
+class UnderwaterExplosion(_Directed):
+    """Describe the shock of an underwater charge by similitude: p = K1 (W^(1/3)/S)^A1, theta = K2 W^(1/3) (W^(1/3)/S)^A2.
+
+    W is *charge_mass* (kg) and S *stand_off* (m). The distance from the axis needs the outermost radius: ask
+    :func:`source_distance` or ``System.source_distances``.
+    """
+
+    geometry: ClassVar[Geometry] = "spherical"
+    distance: ClassVar[None] = None
+    type: Literal["underwater-explosion"] = "underwater-explosion"
+    charge_mass: Mass
+    """Mass of the charge (kg)."""
+    stand_off: Length
+    """Distance of the charge from the head point of the outermost shell (m)."""
+    explosive: Annotated[str, BeforeValidator(as_explosive)] = "TNT"
+    """Name of the explosive."""
+
+    @property
+    def constants(self) -> Explosive:
+        """The similitude constants of the explosive, with their source."""
+        return EXPLOSIVES[self.explosive]
+
+    @property
+    def peak_pressure(self) -> float:
+        """Peak free-field pressure at the head point (Pa)."""
+        return float(self.constants.peak_factor * (self._scale / self.stand_off) ** self.constants.peak_exponent)
+
+    @property
+    def decay_time(self) -> float:
+        """Decay time at the head point (s)."""
+        return float(self.constants.decay_factor * self._scale * (self._scale / self.stand_off) ** self.constants.decay_exponent)
+
+    @property
+    def pulse(self) -> Exponential:
+        """The exponential history at the head point; the similitude holds for about one decay time."""
+        return Exponential(peak_pressure=self.peak_pressure, decay_time=self.decay_time)
+
+    @property
+    def within_fit(self) -> bool:
+        """Whether the peak pressure lies in the range that the constants were fitted to."""
+        return self.constants.lowest <= self.peak_pressure <= self.constants.highest
+
+    @property
+    def _scale(self) -> float:
+        return float(self.charge_mass ** (1 / 3))
+
+
+Source = SphericalShock | PlaneShock | LineShock | SphericalWave | PlaneWave | LineWave | UnderwaterExplosion
+SOURCES: dict[str, type[Source]] = {
+    "spherical-shock": SphericalShock,
+    "plane-shock": PlaneShock,
+    "line-shock": LineShock,
+    "spherical-wave": SphericalWave,
+    "plane-wave": PlaneWave,
+    "line-wave": LineWave,
+    "underwater-explosion": UnderwaterExplosion,
+}
+
+
+def source_distance(source: Source, outer_radius: float) -> float | None:
+    """Return the distance of the source from the axis (m), given the outermost radius (m); None for a plane wave."""
+    return source.stand_off + outer_radius if isinstance(source, UnderwaterExplosion) else source.distance
+
+
+def as_source(value: Any) -> Source:
+    """Return a source from an instance or a mapping whose ``type`` names it."""
+    if isinstance(value, Source):
+        return value
+    if isinstance(value, Mapping):
+        if "type" not in value:
+            raise InputError("type", "is missing", "must be one of " + ", ".join(SOURCES))
+        kind = lookup(SOURCES, str(value["type"]), "kind of source", "type")
+        return kind.model_validate({**value, "type": kind.model_fields["type"].default})
+    raise InputError("", f"{shown(value)} is not a source", "give one of " + ", ".join(kind.__name__ for kind in SOURCES.values()))

@@ -1,0 +1,177 @@
+"""The whole system: shells, fluids, sources, absorbers and control, validated together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import BeforeValidator, model_validator
+
+from coaxshell.errors import InputError
+from coaxshell.model import consistency, overrides, toml
+from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.base import UNSTATED, Described, shown, stated, within
+from coaxshell.model.control import PDControl
+from coaxshell.model.fluids import AnyFluid, Fluid, Vacuum
+from coaxshell.model.shells import AnyShell, RigidShell, Shell
+from coaxshell.model.sources import Source, as_source, source_distance
+
+
+def _several(value: Any, build: Any) -> Any:
+    """Build each item of a sequence, naming the index of the one that fails."""
+    built = []
+    for index, item in enumerate(value):
+        try:
+            built.append(build(item))
+        except InputError as error:
+            raise within(f"[{index}]", error) from None
+    return tuple(built)
+
+
+def _as_sources(value: Any) -> Any:
+    return _several(value, as_source) if isinstance(value, list | tuple) else as_source(value)
+
+
+def _as_absorber(value: Any) -> Absorber | AbsorberRing:
+    if isinstance(value, Absorber | AbsorberRing):
+        return value
+    if isinstance(value, Mapping) and "count" in value:
+        return AbsorberRing.model_validate(dict(value))
+    if isinstance(value, Mapping):
+        return Absorber.model_validate(dict(value))
+    raise InputError("", f"{shown(value)} is not an absorber", "give an Absorber, a list of them, or an AbsorberRing")
+
+
+def _as_absorbers(value: Any) -> Any:
+    if value is None or value == "none":
+        return ()
+    if not isinstance(value, list | tuple):
+        single = _as_absorber(value)
+        return single if isinstance(single, AbsorberRing) else (single,)
+    # Several rings, for instance one in each gap, are written out.
+    items: tuple[Absorber | AbsorberRing, ...] = _several(value, _as_absorber)
+    return tuple(one for item in items for one in (item.absorbers if isinstance(item, AbsorberRing) else (item,)))
+
+
+def _as_control(value: Any) -> Any:
+    return None if value == "none" else value
+
+
+class System(Described):
+    """Describe concentric shells in fluids, what strikes them, and what is fitted to protect them.
+
+    Shells and fluids are listed from the inside out: fluid, shell, fluid, shell, ..., exterior fluid.
+    """
+
+    name: str = ""
+    """What the system is called."""
+    shells: tuple[AnyShell, ...]
+    """The shells, innermost first."""
+    fluids: tuple[AnyFluid, ...]
+    """The fluids, innermost first: one more than shells."""
+    source: Annotated[Source | tuple[Source, ...], BeforeValidator(_as_sources)]
+    """The source, or several."""
+    absorbers: Annotated[AbsorberRing | tuple[Absorber, ...], BeforeValidator(_as_absorbers)] = ()
+    """A ring of equal absorbers, or single ones."""
+    control: Annotated[PDControl | None, BeforeValidator(_as_control)] = None
+    """The controller, if there is one."""
+
+    def __init__(
+        self,
+        *,
+        shells: Sequence[Shell | RigidShell | Mapping[str, Any]] = UNSTATED,
+        fluids: Sequence[Fluid | Vacuum | str | Mapping[str, Any]] = UNSTATED,
+        source: Source | Sequence[Source] | Mapping[str, Any] = UNSTATED,
+        absorbers: AbsorberRing | Absorber | Sequence[Absorber] | Mapping[str, Any] | None = (),
+        control: PDControl | Mapping[str, Any] | None = None,
+        name: str = "",
+        **unknown: Any,
+    ) -> None:
+        given = {"name": name, "shells": shells, "fluids": fluids, "source": source, "absorbers": absorbers, "control": control}
+        super().__init__(**stated(given), **unknown)
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        consistency.check(self)
+        return self
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """The sources, always as a tuple."""
+        return self.source if isinstance(self.source, tuple) else (self.source,)
+
+    @property
+    def absorber_list(self) -> tuple[Absorber, ...]:
+        """The single absorbers, those of a ring written out."""
+        return self.absorbers.absorbers if isinstance(self.absorbers, AbsorberRing) else self.absorbers
+
+    @property
+    def reference_radius(self) -> float:
+        """Mid-surface radius a of the outermost shell (m), the unit of length of the dimensionless problem."""
+        return self.shells[-1].radius
+
+    @property
+    def exterior(self) -> Fluid:
+        """The fluid outside, whose sound speed and density scale the problem."""
+        fluid = self.fluids[-1]
+        assert isinstance(fluid, Fluid)  # the whole was checked on construction
+        return fluid
+
+    @property
+    def source_distances(self) -> tuple[float | None, ...]:
+        """Distance of each source from the axis (m); None for a plane wave. Stand-offs start at the reference radius."""
+        return tuple(self.source_distance(source) for source in self.sources)
+
+    def source_distance(self, source: Source) -> float | None:
+        """Return the distance of a source from the axis (m); None for a plane wave."""
+        return source_distance(source, self.reference_radius)
+
+    @property
+    def controlled_shells(self) -> tuple[int, ...]:
+        """Numbers of the shells under control, in order; empty without control."""
+        if self.control is None:
+            return ()
+        if self.control.shells == "all":
+            return tuple(range(len(self.shells)))
+        return tuple(sorted(self.shell_index(shell) for shell in self.control.shells))
+
+    def shell_index(self, shell: int | str) -> int:
+        """Return the number of a shell given as a number, a text of digits, "inner" or "outer"; InputError otherwise."""
+        return consistency.index_of(shell, len(self.shells))
+
+    def with_overrides(self, changes: Mapping[str, Any]) -> Self:
+        """Return a copy with fields changed by dotted path, all at once: ``{"source.peak_pressure": "30 kPa"}``.
+
+        ``shells[0].radius``, ``shells.0.radius``, ``shells.inner.radius``, ``absorbers.count`` and
+        ``materials.aluminium.density`` (every layer of that material) are such paths. InputError lists what is allowed.
+        """
+        return overrides.apply(self, changes)
+
+    def replace_path(self, path: str, value: Any) -> Self:
+        """Return a copy with the one field at *path* changed."""
+        return self.with_overrides({path: value})
+
+    def canonical(self) -> dict[str, Any]:
+        """Return the physics as plain data, numbers in SI and without names or references: what a hash should cover."""
+        return toml.canonical(self)
+
+    def to_toml_string(self) -> str:
+        """Return the system as TOML text; :meth:`from_toml_string` gives back an equal system."""
+        return toml.dumps(self)
+
+    def to_toml(self, path: str | Path) -> Path:
+        """Write the system to a TOML file and return its path."""
+        target = Path(path)
+        target.write_text(self.to_toml_string(), encoding="utf-8")
+        return target
+
+    @classmethod
+    def from_toml_string(cls, text: str, folder: str | Path | None = None) -> Self:
+        """Read a system from TOML text; file names in it are relative to *folder*. InputError gives the full path."""
+        return cls.model_validate(toml.loads(text, None if folder is None else Path(folder)))
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Self:
+        """Read a system from a TOML file; InputError gives the full path of what is wrong."""
+        return cls.from_toml_string(toml.read(Path(path)), Path(path).parent)

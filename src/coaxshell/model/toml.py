@@ -1,0 +1,123 @@
+"""Systems as TOML: materials in tables of their own, everything else where a person would look for it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coaxshell.errors import InputError
+from coaxshell.model.base import within
+from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_material, get, names
+from coaxshell.model.naming import slug, suggestion
+
+if TYPE_CHECKING:
+    from coaxshell.model.system import System
+
+
+def read(path: Path) -> str:
+    """Return the text of a file; InputError when it cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(str(path), f"cannot be read ({error.strerror})", "give the path of a TOML file") from None
+    except UnicodeError:
+        raise InputError(str(path), "is not text in UTF-8", "give the path of a TOML file") from None
+
+
+def loads(text: str, folder: Path | None = None) -> dict[str, Any]:
+    """Parse TOML text into the fields of a system, with the names of materials and files resolved."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError("TOML", str(error), "the text must be valid TOML") from None
+    known = _materials(data.pop("materials", {}))
+    shells = data.get("shells")
+    for i, shell in enumerate(shells if isinstance(shells, list) else []):
+        layers = shell.get("layers") if isinstance(shell, dict) else None
+        for j, layer in enumerate(layers if isinstance(layers, list) else []):
+            if isinstance(layer, dict) and isinstance(layer.get("material"), str):
+                layer["material"] = _found(layer["material"], known, f"shells[{i}].layers[{j}].material")
+    if folder is not None:
+        source = data.get("source")
+        for item in source if isinstance(source, list) else [source]:
+            pulse = item.get("pulse") if isinstance(item, dict) else None
+            if isinstance(pulse, dict) and isinstance(pulse.get("file"), str):
+                pulse["file"] = str(folder / pulse["file"])
+    return data
+
+
+def dumps(system: System) -> str:
+    """Return TOML text from which an equal system can be read; numbers are plain SI, floats exact."""
+    import tomli_w
+
+    data = _plain(system)
+    keys: dict[str, Material] = {}
+    for shell, written in zip(system.shells, data["shells"], strict=True):
+        for layer, entry in zip(getattr(shell, "layers", ()), written.get("layers", ()), strict=True):
+            entry["material"] = _key(layer.material, keys)
+    ordered: dict[str, Any] = {"name": data.pop("name", ""), "fluids": data.pop("fluids")}
+    if keys:
+        ordered["materials"] = {key: _plain(material) for key, material in keys.items()}
+    return tomli_w.dumps({**ordered, **data})
+
+
+def canonical(system: System) -> dict[str, Any]:
+    """Return the physics of a system as plain data: no names, no references, a ring written out as its absorbers."""
+    data = _plain(system)
+    data["source"] = [_plain(source) for source in system.sources]
+    data["absorbers"] = [_plain(absorber) for absorber in system.absorber_list]
+    if system.control is not None:
+        data["control"]["shells"] = list(system.controlled_shells)
+    return _nameless(data)  # type: ignore[no-any-return]
+
+
+def _plain(model: System | Material | Any) -> dict[str, Any]:
+    """Return a model as plain data without what is unset or empty; ``type`` stays, since it tells the kind."""
+    return _pruned(model.model_dump(mode="json"))  # type: ignore[no-any-return]
+
+
+def _pruned(value: Any) -> Any:
+    if isinstance(value, dict):
+        kept = {key: _pruned(item) for key, item in value.items() if item is not None and not (key == "absorbers" and item == [])}
+        return {"type": kept["type"], **kept} if "type" in kept else kept  # the kind reads best in front
+    return [_pruned(item) for item in value] if isinstance(value, list) else value
+
+
+def _nameless(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _nameless(item) for key, item in value.items() if key not in ("name", "reference")}
+    return [_nameless(item) for item in value] if isinstance(value, list) else value
+
+
+def _key(material: Material, keys: dict[str, Material]) -> str:
+    """Return the table key of a material, adding it under a new one when the name is already another material's."""
+    base = slug(material.name) or "material"
+    key, number = base, 1
+    while key in keys and keys[key] != material:
+        number += 1
+        key = f"{base}-{number}"
+    keys[key] = material
+    return key
+
+
+def _materials(tables: Any) -> dict[str, Material]:
+    if not isinstance(tables, Mapping):
+        raise InputError("materials", f"{tables!r} is not a table", "write [materials.NAME] tables")
+    known: dict[str, Material] = {}
+    for key, table in tables.items():
+        try:
+            known[key] = as_material({"name": key, **table} if isinstance(table, Mapping) else table)
+        except InputError as error:
+            raise within(f"materials.{key}", error) from None
+    return known
+
+
+def _found(name: str, known: dict[str, Material], where: str) -> Elastic | Piezoelectric:
+    if name in known:
+        return known[name]
+    try:
+        return get(name)
+    except InputError as error:
+        raise InputError(where, error.problem, suggestion(name, [*known, *names()])) from None

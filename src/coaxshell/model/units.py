@@ -1,0 +1,214 @@
+"""Numbers with units: every quantity is a float in SI, and is also accepted as text such as ``"6 mm"``.
+
+pint is imported only when a text with a unit is met, so that describing a system in plain SI stays fast.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import lru_cache
+from numbers import Integral, Real
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import core_schema
+
+from coaxshell.errors import InputError
+
+NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A kind of quantity: its article and name, SI unit, an example of a text, and units of other kinds also accepted."""
+
+    name: str
+    unit: str
+    example: str
+    also: tuple[str, ...] = ()
+
+
+DIMENSIONS: dict[str, Dimension] = {
+    "length": Dimension("a length", "m", "6 mm"),
+    "time": Dimension("a time", "s", "0.13 ms"),
+    "mass": Dimension("a mass", "kg", "250 g"),
+    "density": Dimension("a density", "kg/m^3", "7.8 g/cm^3"),
+    "speed": Dimension("a speed", "m/s", "1.4 km/s"),
+    "pressure": Dimension("a pressure", "Pa", "25 kPa"),
+    "stress": Dimension("a stress or modulus", "Pa", "70 GPa"),
+    "charge density": Dimension("a charge per area", "C/m^2", "14.1 C/m^2"),
+    "permittivity": Dimension("a permittivity", "F/m", "5.841 nF/m"),
+    "electric field": Dimension("an electric field", "V/m", "590 V/mm"),
+    "angle": Dimension("an angle", "deg", "45 deg"),
+    # The problem is plane: a kilogram of absorber is a kilogram per metre of length, and the paper writes the former.
+    "line mass": Dimension("a mass per metre of length", "kg/m", "10 kg/m", ("kg",)),
+    "line damping": Dimension("a damping per metre of length", "N*s/m^2", "1e6 N*s/m^2", ("N*s/m",)),
+    "line stiffness": Dimension("a stiffness per metre of length", "N/m^2", "1 GN/m^2", ("N/m",)),
+    "line cubic stiffness": Dimension("a cubic stiffness per metre of length", "N/m^4", "1e20 N/m^4", ("N/m^3",)),
+    "number": Dimension("a plain number", "", "0.3"),
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A field of one dimension with limits: the marker in ``Annotated[float, quantity(...)]``."""
+
+    dimension: Dimension
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+    nonzero: bool = False
+
+    def validate(self, value: object) -> float:
+        """Return *value* as a finite float in SI within the limits; InputError otherwise."""
+        number = to_si(value, self.dimension)
+        allowed = [
+            (self.above is None or number > self.above, f"greater than {self.above:g}" if self.above is not None else ""),
+            (self.least is None or number >= self.least, f"at least {self.least:g}" if self.least is not None else ""),
+            (self.below is None or number < self.below, f"less than {self.below:g}" if self.below is not None else ""),
+            (self.most is None or number <= self.most, f"at most {self.most:g}" if self.most is not None else ""),
+            (not self.nonzero or number != 0, "different from 0" if self.nonzero else ""),
+        ]
+        if not all(ok for ok, _ in allowed):
+            raise InputError(
+                "", f"{_with_unit(number, self.dimension)} is not allowed", "must be " + " and ".join(text for _, text in allowed if text)
+            )
+        return number
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        inner = core_schema.float_schema(allow_inf_nan=False, gt=self.above, ge=self.least, lt=self.below, le=self.most)
+        return core_schema.no_info_before_validator_function(self.validate, inner)
+
+    def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        # Forms are generated from this schema: they need the unit and an example beside the limits.
+        return {**handler(schema), "unit": self.dimension.unit, "examples": [self.dimension.example]}
+
+
+def quantity(
+    dimension: str,
+    *,
+    above: float | None = None,
+    least: float | None = None,
+    below: float | None = None,
+    most: float | None = None,
+    nonzero: bool = False,
+) -> Quantity:
+    """Mark a float field as a quantity of one of :data:`DIMENSIONS` with the given limits (SI)."""
+    return Quantity(DIMENSIONS[dimension], above, least, below, most, nonzero)
+
+
+def to_si(value: object, dimension: Dimension | str) -> float:
+    """Convert a number (already SI) or a text such as ``"6 mm"`` to a finite SI float; InputError says what was expected."""
+    kind = DIMENSIONS[dimension] if isinstance(dimension, str) else dimension
+    if isinstance(value, bool):  # Python counts it among the numbers; a user does not
+        raise InputError("", f"{_shown(value)} is not {kind.name}", _remedy(kind))
+    if isinstance(value, str):
+        number = _from_text(value, kind)
+    elif isinstance(value, Real):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+    else:
+        raise InputError("", f"{_shown(value)} is not {kind.name}", _remedy(kind))
+    if not math.isfinite(number):
+        raise InputError("", f"{_shown(value)} is not finite", _remedy(kind))
+    return number
+
+
+def whole(value: object) -> object:
+    """Pass whole numbers of any type on as int and refuse booleans, which Python counts as numbers."""
+    if isinstance(value, bool):
+        raise InputError("", f"{value!r} is not a count", "give a whole number")
+    return int(value) if isinstance(value, Integral) else value
+
+
+def _from_text(text: str, kind: Dimension) -> float:
+    match = NUMBER.fullmatch(text)
+    if match is None:
+        if text.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
+            return math.nan
+        raise InputError("", f"{_shown(text)} is not {kind.name}", _remedy(kind))
+    number, unit = match.groups()
+    if not unit:
+        return float(number)
+    for target in (kind.unit, *kind.also):
+        factor = _factor(unit, target)
+        if factor is not None:
+            # In decimal, so that "9.3 mm" is exactly the float 0.0093; the range of float still rules.
+            return float(Decimal(number) * Decimal(repr(factor)))
+    known = _known(unit)
+    problem = f"{_shown(text)} is not {kind.name}" if known else f"{_shown(text)} has an unknown unit {unit!r}"
+    raise InputError("", problem, _remedy(kind))
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+def _tidied(unit: str) -> str:
+    plain = unit.replace("·", "*").replace("°", "degree").replace("^", "**")
+    return re.sub(r"(?<=[A-Za-z])(-?\d)", r"**\1", plain)  # "m2" and "m-2" are powers; pint wants them spelt out
+
+
+def _parsed(unit: str) -> Any | None:
+    try:
+        return _registry().parse_units(_tidied(unit), as_delta=True)
+    except Exception:  # noqa: BLE001 - pint raises many kinds, down to the tokenizer's own; all mean "not a unit"
+        return None
+
+
+def _known(unit: str) -> bool:
+    return _parsed(unit) is not None
+
+
+@lru_cache(maxsize=512)
+def _factor(unit: str, target: str) -> float | None:
+    found = _parsed(unit)
+    wanted = _registry().parse_units(target) if target else _registry().dimensionless
+    # Radians are dimensionless to pint: without this "3 deg" would pass as a plain number, and "3 m/m" as an angle.
+    if found is None or not found.is_compatible_with(wanted) or (target == "deg") != _is_angle(found):
+        return None
+    factor = float(_registry().Quantity(1.0, found).to(wanted).magnitude)
+    rounded = float(f"{factor:.12g}")  # pint makes g/cm^3 999.9999999999999 kg/m^3
+    return rounded if abs(rounded - factor) <= 1e-15 * abs(factor) else factor
+
+
+def _is_angle(unit: Any) -> bool:
+    return bool(unit.dimensionless) and any(name in str(unit) for name in ("degree", "radian", "turn", "arc", "grad"))
+
+
+def _with_unit(number: float, kind: Dimension) -> str:
+    return f"{number!r} {kind.unit}".strip()
+
+
+def _remedy(kind: Dimension) -> str:
+    unit = f" in {kind.unit}" if kind.unit else ""
+    example = f" or as text such as {kind.example!r}" if kind.unit else f" such as {kind.example}"
+    return f"give {kind.name} as a finite number{unit}{example}"
+
+
+def _shown(value: object) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+Count = Annotated[int, Field(ge=0), BeforeValidator(whole)]
+Number = Annotated[float, quantity("number")]
+Length = Annotated[float, quantity("length", above=0)]
+Time = Annotated[float, quantity("time", above=0)]
+Delay = Annotated[float, quantity("time", least=0)]
+Mass = Annotated[float, quantity("mass", above=0)]
+Density = Annotated[float, quantity("density", above=0)]
+Speed = Annotated[float, quantity("speed", above=0)]
+Pressure = Annotated[float, quantity("pressure", nonzero=True)]
+AnyPressure = Annotated[float, quantity("pressure")]
+Modulus = Annotated[float, quantity("stress", above=0)]
+Angle = Annotated[float, quantity("angle", least=-360, most=360)]
