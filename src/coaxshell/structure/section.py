@@ -1,0 +1,138 @@
+"""Section integrals of a layered ring (paper's Eq. A.11) and what its piezoelectric layers add.
+
+The through-thickness coordinate z runs outward from the mid-surface; strain is positive in tension:
+
+    strain(z) = (dv/dtheta - w)/R + z (d2w/dtheta2 + dv/dtheta)/R^2,      w positive inward.
+
+(With z counted inward the second sign is minus. Only layups that are not symmetric about the mid-surface can tell.)
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from coaxshell.model.layers import Layer, Shell
+from coaxshell.model.materials import Elastic, Piezoelectric
+
+
+@dataclass(frozen=True)
+class PiezoelectricLayer:
+    """Electromechanical constants of one piezoelectric layer (Eq. A.11), SI.
+
+    Attributes
+    ----------
+    role : str
+        "sensor", "actuator" or "passive".
+    thickness, centre : float
+        t_j and the z of the layer's middle, m.
+    coupling : float
+        E_32 = e32~ 2 t/pi, C/m: potential per curvature.
+    zeta33, zeta22 : float
+        mu33~ pi^2/(2 t), F/m^2, and mu22 t/2, F (the factor 1/R^2 is applied once, where it is used).
+    reduced_coupling : float
+        e32~ = e32 - c23 e33/c33, C/m^2.
+    actuator_coupling : float
+        The e32 that multiplies the control voltage, C/m^2: e32 as printed, or e32~ (plane stress).
+    field_limit : float
+        Largest field strength, V/m.
+    """
+
+    role: str
+    thickness: float
+    centre: float
+    coupling: float
+    zeta33: float
+    zeta22: float
+    reduced_coupling: float
+    actuator_coupling: float
+    field_limit: float
+
+
+@dataclass(frozen=True)
+class Section:
+    """Section integrals of one shell (Eq. A.11), SI, per unit axial length.
+
+    Attributes
+    ----------
+    radius : float
+        Mid-surface radius R, m.
+    mass : float
+        I = integral of rho dz, kg/m^2.
+    membrane, cross, bending : float
+        (a22, b22, d22) = integrals of Q (1, z, z^2) dz in N/m, N, N m; b22 vanishes for a layup symmetric about the mid-surface.
+    core_modulus : float
+        E_h/(1 - nu^2) of the core, Pa: the modulus of the design stress (Eq. 22).
+    layers : tuple of (float, float, float)
+        Bottom z, top z (m) and plane-strain modulus (Pa) of every layer, from the inside out.
+    piezoelectric : tuple of PiezoelectricLayer
+    """
+
+    radius: float
+    mass: float
+    membrane: float
+    cross: float
+    bending: float
+    core_modulus: float
+    layers: tuple[tuple[float, float, float], ...]
+    piezoelectric: tuple[PiezoelectricLayer, ...]
+
+    def layer(self, role: str) -> PiezoelectricLayer | None:
+        """Return the piezoelectric layer of the given role, or None."""
+        return next((layer for layer in self.piezoelectric if layer.role == role), None)
+
+
+def plane_modulus(material: Elastic | Piezoelectric) -> float:
+    """Return the plane-strain modulus Q, Pa: E/(1 - nu^2), or c22 - c23^2/c33 for a piezoelectric layer (Eq. A.11)."""
+    if isinstance(material, Elastic):
+        return material.youngs_modulus / (1.0 - material.poisson_ratio**2)
+    return material.c22 - material.c23**2 / material.c33
+
+
+def reduced_permittivity(material: Piezoelectric) -> float:
+    """Return mu33~, F/m: mu33 + e33^2/c33 (plane stress) or mu33 - e33^2/c33 (as printed in Eq. A.11)."""
+    sign = 1.0 if material.permittivity_reduction == "standard" else -1.0
+    return material.permittivity_33 + sign * material.e33**2 / material.c33
+
+
+def reduced_coupling(material: Piezoelectric) -> float:
+    """Return e32~ = e32 - c23 e33/c33, C/m^2 (Eq. A.11)."""
+    return material.e32 - material.c23 * material.e33 / material.c33
+
+
+def piezoelectric_layer(layer: Layer, material: Piezoelectric, centre: float) -> PiezoelectricLayer:
+    """Return the electromechanical constants of a layer whose potential varies as a half cosine through its thickness (Eq. A.7)."""
+    reduced = reduced_coupling(material)
+    return PiezoelectricLayer(
+        role=layer.role or "passive",
+        thickness=layer.thickness,
+        centre=centre,
+        coupling=reduced * 2.0 * layer.thickness / math.pi,
+        zeta33=reduced_permittivity(material) * math.pi**2 / (2.0 * layer.thickness),
+        zeta22=material.permittivity_22 * layer.thickness / 2.0,
+        reduced_coupling=reduced,
+        actuator_coupling=material.e32 if material.actuator_coupling == "printed" else reduced,
+        field_limit=material.field_limit,
+    )
+
+
+def section(shell: Shell) -> Section:
+    """Return the section integrals of a shell's layup (Eq. A.11)."""
+    bottom = -shell.thickness / 2.0
+    mass = membrane = cross = bending = 0.0
+    layers: list[tuple[float, float, float]] = []
+    piezoelectric: list[PiezoelectricLayer] = []
+    for layer in shell.layers:
+        top = bottom + layer.thickness
+        modulus = plane_modulus(layer.material)
+        mass += layer.material.density * layer.thickness
+        membrane += modulus * layer.thickness
+        cross += modulus * (top**2 - bottom**2) / 2.0
+        bending += modulus * (top**3 - bottom**3) / 3.0
+        layers.append((bottom, top, modulus))
+        if isinstance(layer.material, Piezoelectric):
+            piezoelectric.append(piezoelectric_layer(layer, layer.material, (bottom + top) / 2.0))
+        bottom = top
+    if abs(cross) < 1e-12 * membrane * shell.thickness:
+        cross = 0.0  # a symmetric layup, up to rounding of the layer boundaries
+    return Section(shell.radius, mass, membrane, cross, bending, plane_modulus(shell.core.material), tuple(layers), tuple(piezoelectric))

@@ -1,0 +1,122 @@
+"""Hoop stress of a layered ring per unit modal displacement: the design stress (Eq. 22) and the stress at any depth (Eqs. A.4, A.5).
+
+z runs outward from the mid-surface and w is positive inward, so a straight normal moves tangentially by v + (z/R)(v + dw/dtheta) and
+
+    strain(z) = (dv/dtheta - w)/R + z (d2w/dtheta2 + dv/dtheta)/R^2.
+
+With this sign Eqs. A.5, A.7 and 20 agree with each other: the moment of the stress below is (d22 + sum_j kappa_j) times the curvature.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.structure.ring import potential_gain
+from coaxshell.structure.section import PiezoelectricLayer, Section
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class StressGain(NamedTuple):
+    """Hoop stress per unit amplitude V and W, Pa/m, each of the shape of m."""
+
+    v: FloatArray
+    w: FloatArray
+
+
+class Place(NamedTuple):
+    """A point of the wall: its z (m, outward), the plane-strain modulus there (Pa), and the piezoelectric layer it lies in, if any."""
+
+    z: float
+    modulus: float
+    piezoelectric: PiezoelectricLayer | None
+
+
+def design_stress_gain(section: Section, m: npt.ArrayLike) -> StressGain:
+    """Return the mid-surface hoop stress of the core per unit (V, W): E_h/(1 - nu^2) (m, -1)/R (Eq. 22).
+
+    Parameters
+    ----------
+    section : Section
+        Section integrals, SI.
+    m : array_like
+        Circumferential orders.
+
+    Returns
+    -------
+    StressGain
+        Pa per metre of displacement.
+    """
+    m = np.asarray(m, dtype=np.float64)
+    scale = section.core_modulus / section.radius
+    return StressGain(scale * m, np.full_like(m, -scale))
+
+
+def strain_gain(m: npt.ArrayLike, radius: float, z: float) -> tuple[FloatArray, FloatArray]:
+    """Return the hoop strain at z (m, outward) per unit (V, W), 1/m: (m, -1)/R + z (m, -m^2)/R^2."""
+    m = np.asarray(m, dtype=np.float64)
+    return m / radius + z * m / radius**2, -1.0 / radius - z * m**2 / radius**2
+
+
+def place(section: Section, z: float) -> Place:
+    """Return what the wall is made of at z (m, positive outward); on the boundary of two layers the outer one is meant.
+
+    Raises
+    ------
+    InputError
+        If z lies outside the wall; the message names the range.
+    """
+    inner, outer = section.layers[0][0], section.layers[-1][1]
+    slack = 1e-9 * (outer - inner)  # forgives the rounding of sums of thicknesses
+    if not inner - slack <= z <= outer + slack:
+        raise InputError(
+            "depth", f"{z:g} m is outside the wall", f'give z from {inner:g} to {outer:g} m (positive outward), "inner" or "outer"'
+        )
+    z = min(max(z, inner), outer)
+    bottom, top, modulus = next((layer for layer in section.layers if z < layer[1] - slack), section.layers[-1])
+    middle = (bottom + top) / 2.0
+    piezoelectric = next((layer for layer in section.piezoelectric if abs(layer.centre - middle) <= slack), None)
+    return Place(z, modulus, piezoelectric)
+
+
+def stress_gain(section: Section, m: npt.ArrayLike, where: Place) -> StressGain:
+    """Return the hoop stress at a point of the wall per unit (V, W), bending and open-circuit potential included (Eqs. A.4, A.5).
+
+    sigma = Q strain(z) - e32~ E_z, E_z = -dPhi/dz with Phi = -cos(pi (z - z_c)/t) phi_j (Eq. A.7) and phi_j of Eq. 20. The voltage
+    that a controller puts on an actuator is not in it.
+
+    Parameters
+    ----------
+    section : Section
+        Section integrals, SI.
+    m : array_like
+        Circumferential orders.
+    where : Place
+        From :func:`place`.
+
+    Returns
+    -------
+    StressGain
+        Pa per metre of displacement.
+    """
+    strain_v, strain_w = strain_gain(m, section.radius, where.z)
+    gain_v, gain_w = where.modulus * strain_v, where.modulus * strain_w
+    layer = where.piezoelectric
+    if layer is not None:
+        per_volt = layer.reduced_coupling * math.pi / layer.thickness * math.sin(math.pi * (where.z - layer.centre) / layer.thickness)
+        phi_v, phi_w = potential_gain(layer, m, section.radius)
+        gain_v, gain_w = gain_v + per_volt * phi_v, gain_w + per_volt * phi_w
+    return StressGain(gain_v, gain_w)
+
+
+def control_stress(where: Place) -> float:
+    """Return the hoop stress per volt of control at a point of the wall, Pa/V: -e32/t in the actuator (Eqs. 4, A.10), 0 elsewhere."""
+    layer = where.piezoelectric
+    if layer is None or layer.role != "actuator":
+        return 0.0
+    return -layer.actuator_coupling / layer.thickness
