@@ -1,0 +1,137 @@
+"""Ratios of modified Bessel functions for all orders 0..M at once, without overflow at any order or argument (Re z > 0).
+
+I_m and K_m alone overflow or underflow long before the acoustics becomes extreme (K_150(0.5) > 1e308), while every
+quantity of the radial problem is a ratio of them. Two families suffice:
+
+    R_m(z) = I_{m+1}(z) / I_m(z)     downward recurrence  R_{m-1} = 1 / (2m/z + R_m)       (DLMF 10.29.1)
+    S_m(z) = K_{m+1}(z) / K_m(z)     upward recurrence    S_m = 2m/z + 1/S_{m-1}           (DLMF 10.29.1)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import ive, kve
+
+ComplexArray = npt.NDArray[np.complex128]
+
+# Below this |z|/m the asymptotic ratio is forgotten quickly enough by the downward recurrence (each step shrinks its
+# error by |R|^2 <= 0.21 here) and I_m itself would begin to underflow; above it, ive gives the start exactly.
+_ASYMPTOTIC_LIMIT = 0.75
+_FORGETTING_STEPS = 24
+
+
+def _as_complex(z: npt.ArrayLike) -> ComplexArray:
+    argument = np.atleast_1d(np.asarray(z, dtype=np.complex128))
+    if argument.ndim != 1:
+        raise ValueError(f"z: an array of shape {argument.shape}; a scalar or one-dimensional array is allowed")
+    if not np.all(argument.real > 0):
+        raise ValueError("z: the recurrences are stable only for Re z > 0; shift the Laplace contour to the right")
+    return argument
+
+
+def _starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
+    """Return R_order(z), the start of the downward recurrence.
+
+    Near the imaginary axis with |z| > m the recurrence does not forget its start, so the start must be exact there.
+    """
+    ratio = np.empty_like(z)
+    far = np.abs(z) > _ASYMPTOTIC_LIMIT * order
+    ratio[far] = ive(order + 1, z[far]) / ive(order, z[far])
+    near = z[~far]
+    top = order + _FORGETTING_STEPS
+    r = near / (top + 0.5 + np.sqrt((top + 1.5) ** 2 + near**2))  # DLMF 10.41 leading ratio (Amos's bound)
+    for m in range(top, order, -1):
+        r = 1.0 / (2 * m / near + r)
+    ratio[~far] = r
+    return ratio
+
+
+def i_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
+    """Return R_m = I_{m+1}/I_m for m = 0..max_order.
+
+    Parameters
+    ----------
+    max_order : int
+        Highest order M.
+    z : array_like, shape (n,)
+        Complex arguments with Re z > 0.
+
+    Returns
+    -------
+    ndarray, shape (M + 1, n)
+
+    Raises
+    ------
+    ValueError
+        If any Re z <= 0.
+    """
+    z = _as_complex(z)
+    ratios = np.empty((max_order + 1, z.size), dtype=np.complex128)
+    ratios[max_order] = _starting_ratio(max_order, z)
+    two_over_z = 2.0 / z
+    work = np.empty_like(z)
+    for m in range(max_order, 0, -1):
+        np.multiply(two_over_z, m, out=work)
+        np.add(work, ratios[m], out=work)
+        np.reciprocal(work, out=ratios[m - 1])
+    return ratios
+
+
+def k_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
+    """Return S_m = K_{m+1}/K_m for m = 0..max_order.
+
+    Parameters
+    ----------
+    max_order : int
+        Highest order M.
+    z : array_like, shape (n,)
+        Complex arguments with Re z > 0.
+
+    Returns
+    -------
+    ndarray, shape (M + 1, n)
+
+    Raises
+    ------
+    ValueError
+        If any Re z <= 0.
+    """
+    z = _as_complex(z)
+    ratios = np.empty((max_order + 1, z.size), dtype=np.complex128)
+    ratios[0] = kve(1, z) / kve(0, z)
+    two_over_z = 2.0 / z
+    work = np.empty_like(z)
+    for m in range(1, max_order + 1):
+        np.reciprocal(ratios[m - 1], out=ratios[m])
+        np.multiply(two_over_z, m, out=work)
+        np.add(ratios[m], work, out=ratios[m])
+    return ratios
+
+
+def running_product(first: Any, factors: ComplexArray) -> ComplexArray:
+    """Return first * prod_{j<m} factors_j for m = 0..M: a quantity of order m from its order 0 and ratios between orders.
+
+    The last row of ``factors`` is not used. Underflow to zero is the right limit of every product formed here.
+    """
+    product = np.empty_like(factors)
+    product[0] = first
+    for m in range(1, factors.shape[0]):
+        np.multiply(product[m - 1], factors[m - 1], out=product[m])
+    return product
+
+
+def i_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike) -> ComplexArray:
+    """Return I_m(za)/I_m(zb) for m = 0..M, with |za| < |zb| on one ray, from the ratios R_m at both arguments."""
+    za, zb = _as_complex(za), _as_complex(zb)
+    order_zero = ive(0, za) / ive(0, zb) * np.exp(za.real - zb.real)
+    return running_product(order_zero, ratios_a / ratios_b)
+
+
+def k_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike) -> ComplexArray:
+    """Return K_m(zb)/K_m(za) for m = 0..M, with |za| < |zb| on one ray, from the ratios S_m at both arguments."""
+    za, zb = _as_complex(za), _as_complex(zb)
+    order_zero = kve(0, zb) / kve(0, za) * np.exp(za - zb)
+    return running_product(order_zero, ratios_b / ratios_a)

@@ -1,0 +1,111 @@
+"""The Laplace contour s = sigma + i omega on a uniform grid, and the transforms between it and uniform time samples.
+
+A function x(t) is recovered over [0, T] from its transform on the contour by one real FFT with an exponential window,
+
+    x(t) ~ e^{sigma t} irfft(X(sigma + i omega_k)) / dt,    omega_k = 2 pi k / P,    P >= 2 T.
+
+What x does after P returns to [0, T] damped by e^{-sigma P} = WRAP_AROUND; what lies above the Nyquist frequency pi/dt is lost.
+A sharp cut there would leave an error that oscillates at the Nyquist frequency, spreads from every front over all times
+and is amplified by e^{sigma t}; a smooth roll-off over the top fifth of the band keeps it at the fronts (measured on the
+paper's bare case: outer head displacement 1.0e-5 with the sharp cut, 8e-8 with the roll-off).
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy import fft
+
+WRAP_AROUND = 1e-10
+"""e^{-sigma P}: damping of what wraps around the period; rounding is amplified by at most its inverse square root."""
+
+ROLL_OFF = 0.2
+"""Fraction of the band, at its top, over which spectra are brought smoothly to zero."""
+
+WORKERS = min(os.cpu_count() or 1, 8)
+"""Threads for FFTs and for blocks of Laplace nodes."""
+
+
+@dataclass(frozen=True)
+class LaplaceGrid:
+    """Uniform nodes of the Laplace contour matched to a uniform time axis.
+
+    Attributes
+    ----------
+    time_step : float
+        dt, dimensionless.
+    steps : int
+        The time axis is 0, dt, ..., steps * dt.
+    wrap_around : float
+        e^{-sigma P}.
+    """
+
+    time_step: float
+    steps: int
+    wrap_around: float = WRAP_AROUND
+
+    @cached_property
+    def samples(self) -> int:
+        """Number of time samples in one period P, at least twice those asked for."""
+        return int(fft.next_fast_len(2 * (self.steps + 1), real=True))
+
+    @property
+    def period(self) -> float:
+        """P = samples * dt."""
+        return self.samples * self.time_step
+
+    @property
+    def shift(self) -> float:
+        """sigma = -ln(wrap_around)/P, the distance of the contour from the imaginary axis."""
+        return -float(np.log(self.wrap_around)) / self.period
+
+    @property
+    def frequency_step(self) -> float:
+        """2 pi/P."""
+        return 2 * np.pi / self.period
+
+    @property
+    def nyquist(self) -> float:
+        """pi/dt, the highest angular frequency on the grid."""
+        return np.pi / self.time_step
+
+    @cached_property
+    def nodes(self) -> npt.NDArray[np.complex128]:
+        """s_k = sigma + i omega_k for k = 0..samples//2."""
+        return np.asarray(self.shift + 1j * self.frequency_step * np.arange(self.samples // 2 + 1), dtype=np.complex128)
+
+    @cached_property
+    def time(self) -> npt.NDArray[np.float64]:
+        """0, dt, ..., steps * dt."""
+        return np.asarray(self.time_step * np.arange(self.steps + 1), dtype=np.float64)
+
+    def taper(self, roll_off: float = ROLL_OFF) -> npt.NDArray[np.float64]:
+        """Return 1 over the band and a cos^2 descent to 0 over its top fraction ``roll_off``, at ``nodes``."""
+        position = np.linspace(0.0, 1.0, self.nodes.size)
+        descent: npt.NDArray[np.float64] = np.cos(0.5 * np.pi * np.maximum(0.0, position - (1.0 - roll_off)) / roll_off) ** 2
+        return descent
+
+    def lanczos(self) -> npt.NDArray[np.float64]:
+        """Return sinc(omega/omega_max) at ``nodes``: for spectra that decay slowly (pressures, accelerations)."""
+        window: npt.NDArray[np.float64] = np.sinc(np.linspace(0.0, 1.0, self.nodes.size))
+        return window
+
+    def invert(self, spectrum: npt.NDArray[np.complex128], window: npt.NDArray[np.float64] | None = None) -> npt.NDArray[np.float64]:
+        """Return time histories on ``time`` from their transforms at ``nodes`` (last axis).
+
+        ``window`` weights the spectrum; by default ``taper()``. A stronger one costs accuracy in smooth quantities.
+        """
+        weighted = spectrum * (self.taper() if window is None else window)
+        histories = fft.irfft(weighted, self.samples, axis=-1, workers=WORKERS, overwrite_x=True)[..., : self.steps + 1]
+        result: npt.NDArray[np.float64] = histories * (np.exp(self.shift * self.time) / self.time_step)
+        return result
+
+    def transform(self, histories: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+        """Return dt * sum_n x(t_n) e^{-s t_n} at ``nodes`` (last axis): the transform of samples, the partner of ``invert``."""
+        damped = histories * (np.exp(-self.shift * self.time) * self.time_step)
+        spectrum: npt.NDArray[np.complex128] = fft.rfft(damped, self.samples, axis=-1, workers=WORKERS)
+        return spectrum

@@ -1,0 +1,138 @@
+"""Radial operators of the three kinds of fluid region: pressure per unit normal acceleration of its walls.
+
+Every operator depends on the radial wavenumber kappa alone. For the plane problem kappa = alpha s, alpha = c_e/c; a field
+with axial wavenumber k_z would use kappa^2 = alpha^2 s^2 + k_z^2 and nothing here would change.
+
+Kinematics on a wall moving with displacement w, positive inward (theory manual, section "Fluids"):
+
+    dp/dr = (rho/rho_e) s^2 w.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics import bessel_ratios as br
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def all_orders(max_order: int) -> FloatArray:
+    """Return 0, 1, ..., max_order."""
+    return np.arange(max_order + 1, dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class RadialFunctions:
+    """Modified Bessel functions at the arguments kappa * radius, as ratios, computed when first asked for.
+
+    Parameters
+    ----------
+    kappa : ndarray, shape (n,)
+        Radial wavenumbers, Re kappa > 0.
+    radius : float
+        Radius in units of the reference radius.
+    orders : ndarray, shape (M,)
+        Ascending circumferential orders to be kept, all or a sample; the recurrences run through all of them.
+    """
+
+    kappa: ComplexArray
+    radius: float
+    orders: FloatArray
+
+    @cached_property
+    def argument(self) -> ComplexArray:
+        """kappa * radius."""
+        return self.kappa * self.radius
+
+    @property
+    def max_order(self) -> int:
+        """The highest order."""
+        return int(self.orders[-1])
+
+    def keep(self, rows: ComplexArray) -> ComplexArray:
+        """Return the rows of the orders to be kept, from rows of all orders."""
+        return rows if self.orders.size == rows.shape[0] else rows[self.orders.astype(int)]
+
+    @cached_property
+    def i_ratios(self) -> ComplexArray:
+        """I_{m+1}/I_m for all orders 0..max_order, shape (max_order + 1, n)."""
+        return br.i_ratios(self.max_order, self.argument)
+
+    @cached_property
+    def k_ratios(self) -> ComplexArray:
+        """K_{m+1}/K_m for all orders 0..max_order, shape (max_order + 1, n)."""
+        return br.k_ratios(self.max_order, self.argument)
+
+    @cached_property
+    def disc(self) -> ComplexArray:
+        """I_m(kr)/(k I_m'(kr)) = r/(m + kr R_m) (DLMF 10.29.2), shape (M, n).
+
+        Wall pressure per unit wall acceleration of a disc of radius r.
+        """
+        derivative = self.argument * self.keep(self.i_ratios)
+        derivative += self.orders[:, None]
+        return np.divide(self.radius, derivative, out=derivative)
+
+    @cached_property
+    def exterior(self) -> ComplexArray:
+        """K_m(kr)/(k K_m'(kr)) = r/(m - kr S_m) (DLMF 10.29.2), shape (M, n).
+
+        Wall pressure per unit wall acceleration of the unbounded fluid outside radius r.
+        """
+        derivative = self.argument * self.keep(self.k_ratios)
+        np.subtract(self.orders[:, None], derivative, out=derivative)
+        return np.divide(self.radius, derivative, out=derivative)
+
+
+class AnnulusOperator(NamedTuple):
+    """Wall pressures of an annulus per unit acceleration of its inner (a) and outer (b) wall: p_a = aa w_a'' + ab w_b'', etc."""
+
+    aa: ComplexArray
+    ab: ComplexArray
+    ba: ComplexArray
+    bb: ComplexArray
+
+
+class AnnulusAmplitudes(NamedTuple):
+    """The bounded factors from which both the wall operator and the field inside the annulus are built."""
+
+    epsilon_i: ComplexArray
+    epsilon_k: ComplexArray
+    determinant: ComplexArray
+
+
+def annulus_amplitudes(inner: RadialFunctions, outer: RadialFunctions) -> AnnulusAmplitudes:
+    """Return eps_I = I'(k ra)/I'(k rb), eps_K = K'(k rb)/K'(k ra) and 1 - eps_I eps_K.
+
+    All three stay bounded at every order and argument. With the field written
+    p = A I_m(kr)/(k I_m'(k rb)) + B K_m(kr)/(k K_m'(k ra)) the walls' accelerations g_a, g_b give
+    A = (g_b - eps_K g_a)/(1 - eps_I eps_K), B = (g_a - eps_I g_b)/(1 - eps_I eps_K).
+    """
+    i_across = inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, inner.argument, outer.argument))
+    k_across = inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, inner.argument, outer.argument))
+    # I'(ka)/I'(kb) = [I(ka)/I(kb)] * [I'(ka)/I(ka)] / [I'(kb)/I(kb)], and disc = I/(k I').
+    epsilon_i = i_across * outer.disc / inner.disc
+    epsilon_k = k_across * inner.exterior / outer.exterior
+    return AnnulusAmplitudes(epsilon_i, epsilon_k, 1.0 - epsilon_i * epsilon_k)
+
+
+def annulus(inner: RadialFunctions, outer: RadialFunctions) -> AnnulusOperator:
+    """Return the wall operator of the annulus between two radii.
+
+    Reciprocity, r_a * ab = -r_b * ba, follows from the Wronskian and is kept to rounding.
+    """
+    eps_i, eps_k, determinant = annulus_amplitudes(inner, outer)
+    both = eps_i * eps_k
+    return AnnulusOperator(
+        aa=(inner.exterior - both * inner.disc) / determinant,
+        ab=eps_i * (inner.disc - inner.exterior) / determinant,
+        ba=eps_k * (outer.exterior - outer.disc) / determinant,
+        bb=(outer.disc - both * outer.exterior) / determinant,
+    )

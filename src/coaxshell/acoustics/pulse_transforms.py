@@ -1,0 +1,71 @@
+"""Laplace transforms of the pressure histories that a source can have, in dimensionless time and pressure."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.special import erfcx
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
+
+
+def pulse_transform(pulse: Pulse, s: ComplexArray, time_scale: float, pressure_scale: float) -> ComplexArray:
+    """Return the transform of a pulse at dimensionless Laplace nodes.
+
+    Parameters
+    ----------
+    pulse : Pulse
+        Description in SI.
+    s : ndarray
+        Laplace variable of dimensionless time.
+    time_scale, pressure_scale : float
+        a/c_e in s and rho_e c_e^2 in Pa.
+    """
+    match pulse:
+        case Exponential():
+            return pulse.peak_pressure / pressure_scale / (s + time_scale / pulse.decay_time)
+        case Step():
+            return pulse.pressure / pressure_scale * _ramp(s, pulse.rise_time / time_scale)
+        case Gaussian():
+            width, centre = pulse.width / time_scale, pulse.centre / time_scale
+            return pulse.peak_pressure / pressure_scale * _gaussian(s, width, centre)
+        case Sampled():
+            times = np.asarray(pulse.time) / time_scale
+            return _piecewise_linear(s, times, np.asarray(pulse.pressure) / pressure_scale)
+    raise TypeError(f"no transform for a pulse of type {type(pulse).__name__}")
+
+
+def _ramp(s: ComplexArray, rise: float) -> ComplexArray:
+    """Unit step reached linearly within ``rise``: (1 - e^{-s rise})/(s^2 rise), or 1/s."""
+    if rise == 0.0:
+        return 1.0 / s
+    return -np.expm1(-s * rise) / (s**2 * rise)
+
+
+def _gaussian(s: ComplexArray, width: float, centre: float) -> ComplexArray:
+    """exp(-(t - centre)^2/(2 width^2)) for t > 0, by the scaled complementary error function (DLMF 7.2)."""
+    argument = (s * width**2 - centre) / (math.sqrt(2.0) * width)
+    scale = width * math.sqrt(math.pi / 2.0)
+    left = argument.real < 0  # erfc(-x) = 2 - erfc(x): keeps erfcx bounded
+    value = np.empty_like(s)
+    front = math.exp(-(centre**2) / (2.0 * width**2))
+    value[~left] = front * erfcx(argument[~left])
+    value[left] = 2.0 * np.exp(argument[left] ** 2 - centre**2 / (2.0 * width**2)) - front * erfcx(-argument[left])
+    return scale * value
+
+
+def _piecewise_linear(s: ComplexArray, times: np.ndarray, values: np.ndarray) -> ComplexArray:
+    """Linear between samples, zero before the first and after the last: sums of jumps e^{-s t}/s and kinks e^{-s t}/s^2."""
+    slopes = np.diff(values) / np.diff(times)
+    kinks = np.diff(np.concatenate([[0.0], slopes, [0.0]]))
+    jumps = np.zeros_like(values)
+    jumps[0], jumps[-1] = values[0], -values[-1]
+    result = np.empty_like(s)
+    block = max(1, 2_000_000 // times.size)
+    for start in range(0, s.size, block):
+        nodes = s[start : start + block]
+        waves = np.exp(-np.outer(times, nodes))
+        result[start : start + block] = (kinks @ waves / nodes + jumps @ waves) / nodes
+    return result
