@@ -1,0 +1,89 @@
+"""Physics warnings: runs that are well formed but outside the range of the model or of the resolution.
+
+Each is one sentence with both numbers and the remedy.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.settings import MAX_MODES
+from coaxshell.solver.solution import Estimates
+
+THIN_SHELL_LIMIT = 0.1
+TRUNCATION_LIMIT = 1e-2
+WINDOW_LIMIT = 1e-4
+LINEAR_ACOUSTICS_LIMIT = 1e-2
+
+
+def shell_label(index: int, count: int) -> str:
+    """Return the name by which users call a shell: "inner shell", "outer shell", "shell 1"; "shell" if there is one only."""
+    if count == 1:
+        return "shell"
+    return {0: "inner shell", count - 1: "outer shell"}.get(index, f"shell {index}")
+
+
+def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
+    """Return the warnings that need no solution."""
+    return _thin_shells(problem) + _resolved_membrane(problem, grid, max_order) + _linear_acoustics(problem)
+
+
+def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
+    """Return the warnings about the error estimates."""
+    warnings = []
+    for i, error in enumerate(estimates.modal_stress):
+        if error > TRUNCATION_LIMIT:
+            more = min(2 * max_order, MAX_MODES)
+            warnings.append(
+                f"{shell_label(i, len(problem.shells))}: orders above {max_order} would change the stress by {error:.2g} (relative RMS), "
+                f'more than {TRUNCATION_LIMIT:g}; use modes={more} or modes="auto"'
+            )
+    if estimates.time_window > WINDOW_LIMIT:
+        warnings.append(
+            f"the time step leaves an error of {estimates.time_window:.2g} of the largest displacement at the fronts, more than "
+            f"{WINDOW_LIMIT:g}; halve time_step"
+        )
+    return warnings
+
+
+def _thin_shells(problem: Problem) -> list[str]:
+    warnings = []
+    for i, shell in enumerate(problem.shells):
+        if shell.section is None:
+            continue
+        ratio = (shell.section.layers[-1][1] - shell.section.layers[0][0]) / shell.section.radius
+        if ratio > THIN_SHELL_LIMIT:
+            warnings.append(
+                f"{shell_label(i, len(problem.shells))}: thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell "
+                "theory loses accuracy; use a thinner shell or compare with a solid model"
+            )
+    return warnings
+
+
+def _resolved_membrane(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
+    warnings = []
+    for i, shell in enumerate(problem.shells):
+        if shell.section is None:
+            continue
+        stiffness = problem.stiffness(i, np.array([float(max_order)]))
+        highest = float(np.sqrt(stiffness.vv[0] / shell.mass))
+        if highest > grid.nyquist:
+            warnings.append(
+                f"{shell_label(i, len(problem.shells))}: the membrane frequency of order {max_order} is {highest:.4g} per transit, above "
+                f"the {grid.nyquist:.4g} that time_step = {grid.time_step:g} resolves; use time_step = {np.pi / highest:.2g} or fewer modes"
+            )
+    return warnings
+
+
+def _linear_acoustics(problem: Problem) -> list[str]:
+    warnings = []
+    for source in problem.system.sources:
+        ratio = abs(source.pulse.peak) / problem.scales.pressure
+        if ratio > LINEAR_ACOUSTICS_LIMIT:
+            warnings.append(
+                f"source: peak pressure/(density sound_speed^2) = {ratio:.2g} is above {LINEAR_ACOUSTICS_LIMIT:g}, where the pressure "
+                "wave is no longer linear; use a lower peak or a greater stand-off"
+            )
+    return warnings

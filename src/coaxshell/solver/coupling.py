@@ -1,0 +1,142 @@
+"""The coupled modal system: shells and fluids at each order m and Laplace node s (theory manual, section "Coupled modal system").
+
+Per shell, with the tangential equation eliminated, Z_i W_i = p_out - p_in + F_i; per fluid, wall pressures per wall
+acceleration. Together an n x n tridiagonal system for the normal displacements of all shells,
+
+    lower_i W_{i-1} + diagonal_i W_i + upper_i W_{i+1} = load_i,
+
+whose inverse is the modal compliance C_m(s).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.operators import FloatArray, RadialFunctions, annulus
+from coaxshell.solver.scaling import Problem
+
+
+@dataclass
+class ShellOperator:
+    """One shell at all orders and nodes: dynamic stiffness Z (load per W) and V per unit W."""
+
+    impedance: ComplexArray
+    tangential: ComplexArray
+
+
+def shell_operator(problem: Problem, index: int, s: ComplexArray, orders: FloatArray) -> ShellOperator:
+    """Return Z = M s^2 + K_ww + c_w - (K_vw + c_v) K_vw/(M s^2 + K_vv) and V/W = -K_vw/(M s^2 + K_vv).
+
+    c_v, c_w are the feedback's contribution, minus actuator pressure per volt times (k_p + k_d s) times the sensor's gain
+    (Eqs. 4, 17, 20).
+    """
+    m = orders[:, None]
+    stiffness = problem.stiffness(index, m)
+    inertia = problem.shells[index].mass * s * s
+    tangential = -stiffness.vw / (inertia + np.where(m == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
+    impedance = inertia + stiffness.ww + stiffness.vw * tangential
+    gains = problem.shells[index].gains
+    if gains is not None:
+        sensor_v, sensor_w = problem.sensor_gain(index, m)
+        volts = sensor_v * tangential + sensor_w
+        impedance -= problem.actuator_pressure(index) * (gains.proportional + gains.derivative * s) * volts
+    return ShellOperator(impedance, tangential)
+
+
+class ModalSystem:
+    """The factored tridiagonal system of all shells at some orders and a block of Laplace nodes.
+
+    Parameters
+    ----------
+    problem : Problem
+    s : ndarray, shape (nodes,)
+    orders : ndarray, shape (M,)
+        Ascending circumferential orders.
+
+    Attributes
+    ----------
+    surface : RadialFunctions
+        Exterior fluid at r = 1, reused by the incident wave.
+    shells : list of ShellOperator or None
+        None for a rigid shell.
+    """
+
+    def __init__(self, problem: Problem, s: ComplexArray, orders: FloatArray) -> None:
+        self.problem, self.s, self.orders = problem, s, orders
+        self._radial: dict[tuple[float, float], RadialFunctions] = {}
+        self.surface = self.radial(1.0, 1.0)
+        self.shells = [
+            shell_operator(problem, i, s, orders) if shell.section is not None else None for i, shell in enumerate(problem.shells)
+        ]
+        self._assemble()
+        self._factor()
+
+    def radial(self, slowness: float, radius: float) -> RadialFunctions:
+        """Return the Bessel ratios at slowness * s * radius, evaluated once per pair."""
+        key = (slowness, radius)
+        if key not in self._radial:
+            self._radial[key] = RadialFunctions(slowness * self.s, radius, self.orders)
+        return self._radial[key]
+
+    def _assemble(self) -> None:
+        problem, s2 = self.problem, self.s * self.s
+        count = len(problem.shells)
+        self._diagonal = [op.impedance.copy() if op is not None else np.ones_like(self.surface.exterior) for op in self.shells]
+        self._upper: list[ComplexArray | float] = [0.0] * count
+        self._lower: list[ComplexArray | float] = [0.0] * count
+        exterior = problem.fluids[-1]
+        assert exterior is not None
+        self._add_wall(count - 1, -s2 * self.surface.exterior)
+        interior = problem.fluids[0]
+        if interior is not None:
+            self._add_wall(0, interior.density * s2 * self.radial(interior.slowness, problem.shells[0].radius).disc)
+        for i, gap in enumerate(problem.fluids[1:-1]):
+            if gap is None:
+                continue
+            walls = [self.radial(gap.slowness, problem.shells[j].radius) for j in (i, i + 1)]
+            operator = annulus(*walls)
+            factor = gap.density * s2
+            self._add_wall(i, -factor * operator.aa)
+            self._add_wall(i + 1, factor * operator.bb)
+            if self.shells[i] is not None and self.shells[i + 1] is not None:
+                self._upper[i] = -factor * operator.ab
+                self._lower[i + 1] = factor * operator.ba
+
+    def _add_wall(self, index: int, stiffness: ComplexArray) -> None:
+        if self.shells[index] is not None:
+            self._diagonal[index] += stiffness
+
+    def _factor(self) -> None:
+        """Eliminate from the inside out; keep 1/pivot, and what passes inward and outward."""
+        self._inverse_pivot: list[ComplexArray] = []
+        self._inward: list[ComplexArray | float] = []  # W_i gains -inward_i W_{i+1}
+        self._outward: list[ComplexArray | float] = [0.0]  # load_i gains -outward_i load_{i-1}
+        for i, diagonal in enumerate(self._diagonal):
+            if i > 0:
+                diagonal = diagonal - self._lower[i] * self._inward[i - 1]
+                self._outward.append(self._lower[i] * self._inverse_pivot[i - 1])
+            self._inverse_pivot.append(np.reciprocal(diagonal))
+            self._inward.append(self._upper[i] * self._inverse_pivot[i])
+
+    def solve(self, index: int, load: ComplexArray | float) -> list[ComplexArray]:
+        """Return W of every shell under a normal load (positive inward) on shell ``index`` alone."""
+        if self.shells[index] is None:
+            return [np.zeros_like(self.surface.exterior) for _ in self.shells]
+        count = len(self.shells)
+        loads: list[ComplexArray | float] = [0.0] * count
+        loads[index] = load
+        for i in range(index + 1, count):
+            loads[i] = -self._outward[i] * loads[i - 1]
+        answer: list[ComplexArray] = [np.zeros(0, np.complex128)] * count
+        for i in reversed(range(count)):
+            answer[i] = loads[i] * self._inverse_pivot[i]
+            if i + 1 < count:
+                answer[i] = answer[i] - self._inward[i] * answer[i + 1]
+        return answer
+
+    def tangential(self, normal: list[ComplexArray]) -> list[ComplexArray]:
+        """Return V of every shell from W of every shell (no tangential load)."""
+        return [op.tangential * w if op is not None else w for op, w in zip(self.shells, normal, strict=True)]

@@ -1,0 +1,73 @@
+"""The sources of a system as dimensionless loads on the outermost shell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.incident import IncidentWave, LineGeometry, PlaneGeometry, SphericalGeometry
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import FloatArray, RadialFunctions
+from coaxshell.acoustics.pulse_transforms import pulse_transform
+from coaxshell.model.sources import Source
+from coaxshell.solver.scaling import Problem
+
+
+def incident_wave(problem: Problem, source: Source) -> IncidentWave:
+    """Return the geometry of a source in units of the reference radius."""
+    distance = problem.system.source_distance(source)
+    if distance is None:
+        return PlaneGeometry()
+    geometry = LineGeometry if source.geometry == "line" else SphericalGeometry
+    return geometry(distance / problem.scales.length)
+
+
+def source_spectrum(problem: Problem, source: Source, s: ComplexArray) -> ComplexArray:
+    """Return the transform of the source's pulse, delayed by its delay, at the head in free field."""
+    scales = problem.scales
+    spectrum = pulse_transform(source.pulse, s, scales.time, scales.pressure)
+    return spectrum * np.exp(-s * (source.delay / scales.time)) if source.delay else spectrum
+
+
+def needs_sine_half(sources: Iterable[Source]) -> bool:
+    """Return whether any source lies off the axis theta = 0, 180 degrees."""
+    return any(source.angle % 180.0 != 0.0 for source in sources)
+
+
+class SurfaceLoads:
+    """The modal loads of all sources on the outermost shell, prepared for some orders on a Laplace grid.
+
+    A source at angle theta_s loads cos(m theta) with cos(m theta_s) and sin(m theta) with sin(m theta_s) of its own series.
+    Sources that share a geometry share its modal load.
+    """
+
+    def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> None:
+        self.halves = 2 if needs_sine_half(problem.system.sources) else 1
+        groups: dict[IncidentWave, list[Source]] = {}
+        for source in problem.system.sources:
+            groups.setdefault(incident_wave(problem, source), []).append(source)
+        self._problem, self._orders = problem, orders
+        self._groups = [(wave.prepare(grid, orders), sources) for wave, sources in groups.items()]
+
+    def __call__(self, surface: RadialFunctions, nodes: slice) -> list[ComplexArray]:
+        """Return the load of the cosine half, and of the sine half if any source needs it, at a slice of the grid's nodes."""
+        totals: list[ComplexArray | float] = [0.0] * self.halves
+        for wave_load, sources in self._groups:
+            load = wave_load(surface, nodes)
+            spectra = [source_spectrum(self._problem, source, surface.kappa) for source in sources]
+            for half in range(self.halves):
+                weights = sum(_projection(self._orders, source.angle, half) * x for source, x in zip(sources, spectra, strict=True))
+                totals[half] = totals[half] + load * weights
+        return [np.asarray(total, dtype=np.complex128) for total in totals]
+
+
+def _projection(orders: FloatArray, angle: float, half: int) -> FloatArray:
+    """Return cos(m angle) or sin(m angle) as a column, exact at multiples of 90 degrees: symmetric systems stay symmetric."""
+    turns = np.mod(orders * angle, 360.0)[:, None]
+    exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+    value = np.cos(np.radians(turns)) if half == 0 else np.sin(np.radians(turns))
+    for multiple, pair in exact.items():
+        value = np.where(turns == multiple, pair[half], value)
+    return value
