@@ -1,0 +1,99 @@
+"""Largest magnitude and root mean square of a quantity over a shell and over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.response.synthesis import angle_basis, at_angles, circle_angles, mean_square, on_circle, time_blocks
+
+FloatArray = npt.NDArray[np.float64]
+
+Amplitudes = Callable[[slice], FloatArray]
+"""Gives the modal amplitudes (halves, M + 1, T) of a quantity at a slice of time indices."""
+
+FINE = 40
+"""Steps into which the search grid is cut around the largest value found on it."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The largest magnitude of a quantity.
+
+    Attributes
+    ----------
+    value : float
+        Its magnitude, SI.
+    time : float
+        When, in transits.
+    angle : float
+        Where, degrees from the source direction, above -180 up to 180.
+    """
+
+    value: float
+    time: float
+    angle: float
+
+
+def folded(angle: float) -> float:
+    """Return an angle in degrees as one above -180 up to 180."""
+    return 180.0 - (180.0 - angle) % 360.0
+
+
+def peak_at(amplitudes: Amplitudes, time: FloatArray, window: slice, angles: list[float]) -> list[Peak]:
+    """Return the largest magnitude over a window of time at each of some angles (degrees)."""
+    modal = amplitudes(window)
+    values = np.abs(at_angles(modal, angle_basis(angles, modal.shape[1], modal.shape[0])))
+    when = values.argmax(axis=0)
+    return [Peak(float(values[k, i]), float(time[window][k]), folded(angles[i])) for i, k in enumerate(when)]
+
+
+def peak_anywhere(amplitudes: Amplitudes, time: FloatArray, window: slice, width: int) -> Peak:
+    """Return the largest magnitude over a window of time and the whole circle.
+
+    The circle is searched in steps of 1 degree or finer at every instant (blocks of time keep the memory small), then in steps
+    FINE times finer around the largest value found, at its instant and the two beside it.
+
+    Parameters
+    ----------
+    amplitudes : callable
+    time : ndarray, shape (T,)
+        Transits.
+    window : slice
+    width : int
+        Angles of the search, ``len(circle_angles(...))``: sets the size of a block.
+    """
+    best = (-1.0, window.start, 0)
+    for block in time_blocks(window, width):
+        field = on_circle(amplitudes(block))
+        np.abs(field, out=field)
+        place, instant = np.unravel_index(int(field.argmax()), field.shape)
+        if field[place, instant] > best[0]:
+            best = (float(field[place, instant]), block.start + int(instant), int(place))
+    return _refined(amplitudes, time, window, best[1], best[2])
+
+
+def _refined(amplitudes: Amplitudes, time: FloatArray, window: slice, instant: int, place: int) -> Peak:
+    near = slice(max(window.start, instant - 1), min(window.stop, instant + 2))
+    modal = amplitudes(near)
+    grid = circle_angles(modal.shape[1], modal.shape[0])
+    angles = grid[place] + (grid[1] - grid[0]) / FINE * np.arange(-FINE, FINE + 1)
+    values = np.abs(at_angles(modal, angle_basis(angles, modal.shape[1], modal.shape[0])))
+    k, i = np.unravel_index(int(values.argmax()), values.shape)
+    angle = folded(float(angles[i]))
+    return Peak(float(values[k, i]), float(time[near.start + k]), abs(angle) if modal.shape[0] == 1 else angle)
+
+
+def root_mean_square(amplitudes: Amplitudes, time: FloatArray, window: slice, width: int) -> float:
+    """Return the RMS over the circle and the window, exact in angle (Parseval) and by the trapezoidal rule in time.
+
+    sqrt((1/(t_2 - t_1)) int (1/(2 pi)) oint q^2 dtheta dt); for a window of one instant, the RMS over the circle.
+    """
+    squares = np.concatenate([mean_square(amplitudes(block)) for block in time_blocks(window, width)])
+    span = time[window]
+    if len(span) == 1:
+        return float(np.sqrt(squares[0]))
+    return float(np.sqrt(np.trapezoid(squares, span) / (span[-1] - span[0])))

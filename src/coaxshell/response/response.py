@@ -1,0 +1,150 @@
+"""The answer of a system, with names, units and coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from coaxshell.model.system import System
+from coaxshell.response import absorbers, histories, storage, voltages
+from coaxshell.response.summary import Summary, summarise
+from coaxshell.solver.settings import Settings
+from coaxshell.solver.solution import Estimates, ModalSolution
+
+FloatArray = npt.NDArray[np.float64]
+
+HEAD_AND_TAIL = (0.0, 180.0)
+
+
+class Response:
+    """Hold the modal solution of a run and read it in SI.
+
+    Angles are in degrees from the source direction. A shell is "inner", "outer" or its number from the inside, counted from 0; what
+    depends on a shell or an angle raises InputError for one that is not there or not allowed.
+
+    Parameters
+    ----------
+    solution : ModalSolution
+        What the solver returned.
+    """
+
+    def __init__(self, solution: ModalSolution) -> None:
+        self.solution = solution
+
+    @property
+    def system(self) -> System:
+        """The system that was solved."""
+        return self.solution.problem.system
+
+    @property
+    def settings(self) -> Settings:
+        """Resolution of the run."""
+        return self.solution.settings
+
+    @property
+    def engine(self) -> str:
+        """Name of the engine."""
+        return self.solution.settings.engine
+
+    @property
+    def modes(self) -> int:
+        """Highest circumferential order M."""
+        return int(self.solution.normal.shape[2]) - 1
+
+    @property
+    def shells(self) -> int:
+        """Number of shells."""
+        return len(self.solution.problem.shells)
+
+    @property
+    def time(self) -> FloatArray:
+        """Instants in transits a/c_e, shape (T,)."""
+        return self.solution.time
+
+    @property
+    def time_seconds(self) -> FloatArray:
+        """Instants in seconds, shape (T,)."""
+        return self.solution.time * self.solution.problem.scales.time
+
+    @property
+    def estimates(self) -> Estimates:
+        """Relative errors estimated by the engine."""
+        return self.solution.estimates
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Physics warnings of the run, one sentence each."""
+        return self.solution.warnings
+
+    @property
+    def timings(self) -> dict[str, float]:
+        """Seconds by stage."""
+        return self.solution.timings
+
+    def displacement(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal") -> xr.DataArray:
+        """Return the displacement of the mid-surface, m, dims (time, angle): "normal" (positive inward) or "tangential".
+
+        See :func:`coaxshell.response.histories.displacement`.
+        """
+        return histories.displacement(self.solution, self._index(shell), angle, component)
+
+    def stress(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, depth: float | str | None = None) -> xr.DataArray:
+        """Return the hoop stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
+
+        See :func:`coaxshell.response.histories.stress`.
+        """
+        return histories.stress(self.solution, self._index(shell), angle, depth)
+
+    def modal(self, shell: int | str, quantity: str = "displacement") -> xr.DataArray:
+        """Return modal amplitudes of "displacement", "tangential", "stress" or "sensor_voltage" in SI, dims (half, mode, time).
+
+        See :func:`coaxshell.response.histories.modal`.
+        """
+        return histories.modal(self.solution, self._index(shell), quantity)
+
+    def sensor_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL) -> xr.DataArray:
+        """Return the open-circuit voltage of the sensor, V, dims (time, angle) (Eq. 20).
+
+        See :func:`coaxshell.response.voltages.sensor_voltage`.
+        """
+        return voltages.sensor_voltage(self.solution, self._index(shell), angle)
+
+    def actuator_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL) -> xr.DataArray:
+        """Return the control voltage on the actuator, V, dims (time, angle) (Eq. 17).
+
+        See :func:`coaxshell.response.voltages.actuator_voltage`.
+        """
+        return voltages.actuator_voltage(self.solution, self._index(shell), angle)
+
+    def absorber_displacement(self) -> xr.DataArray:
+        """Return the displacement of the absorbers' masses, m, positive inward, dims (absorber, time)."""
+        return absorbers.absorber_displacement(self.solution)
+
+    def absorber_force(self) -> xr.DataArray:
+        """Return the forces of the absorbers on their shells, N/m, positive inward, dims (absorber, side, time)."""
+        return absorbers.absorber_force(self.solution)
+
+    def summary(self, window: Sequence[float] | None = None) -> Summary:
+        """Return peaks, RMS, error estimates and warnings within a window (start, end) in transits; print it for a table.
+
+        See :func:`coaxshell.response.summary.summarise`.
+        """
+        return summarise(self.solution, window)
+
+    def save(self, path: str | Path, *, compression: bool = False) -> Path:
+        """Write everything to one self-describing NetCDF file, whole or not at all, and return its path.
+
+        See :func:`coaxshell.response.storage.save`.
+        """
+        return storage.save(self.solution, path, compression=compression)
+
+    def _index(self, shell: int | str) -> int:
+        return self.system.shell_index(shell)
+
+    def __repr__(self) -> str:
+        name = f"{self.system.name!r}, " if self.system.name else ""
+        return f"<Response: {name}{self.shells} shell{'s' * (self.shells != 1)}, {self.modes} modes, t = 0 to {self.time[-1]:g} transits>"

@@ -1,0 +1,130 @@
+"""Write a response to one NetCDF file, whole or not at all, and read it back."""
+
+from __future__ import annotations
+
+import json
+import os
+import uuid
+from contextlib import suppress
+from pathlib import Path
+
+import xarray as xr
+
+from coaxshell.errors import InputError
+from coaxshell.response.dataset import ARRAYS, format_problem, from_dataset, to_dataset
+from coaxshell.solver.solution import ModalSolution
+
+UNREADABLE = (OSError, ValueError, KeyError, TypeError, RuntimeError)
+"""What HDF5 and xarray raise on files that are cut short, damaged, or something else altogether."""
+
+
+def save(solution: ModalSolution, path: str | Path, *, compression: bool = False) -> Path:
+    """Write a solution to a NetCDF file and return its path; an older file there is replaced only by a complete new one.
+
+    The file holds the dimensionless modal amplitudes bit by bit, the scenario as TOML, settings, estimates, warnings, timings and versions.
+
+    Parameters
+    ----------
+    solution : ModalSolution
+    path : str or Path
+    compression : bool
+        Compress without loss (smaller, slower).
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written there.
+    """
+    target = Path(path)
+    if not target.parent.is_dir():
+        raise InputError(str(path), f"cannot be written: there is no directory {str(target.parent)!r}", "create it first")
+    if target.is_dir():
+        raise InputError(str(path), "cannot be written: it is a directory", "give the name of a file, such as run.nc")
+    dataset = to_dataset(solution)
+    packed = {"zlib": True, "complevel": 4, "shuffle": True} if compression else {}
+    encoding = {name: {"_FillValue": None, **packed} for name in ARRAYS if name in dataset and dataset[name].size}
+    # In the same directory, so that the rename is one step of the file system; hidden, and unique to this writer.
+    temporary = target.with_name(f".{target.name}.{uuid.uuid4().hex}.tmp")
+    try:
+        dataset.to_netcdf(temporary, engine="h5netcdf", encoding=encoding)
+        os.replace(temporary, target)
+    except OSError as error:
+        raise InputError(str(path), f"cannot be written ({_reason(error)})", "choose another place or make room") from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+    return target
+
+
+def _reason(error: OSError) -> str:
+    # h5py keeps the number of the cause but buries its text in a long report of its own.
+    return os.strerror(error.errno) if error.errno else str(error)
+
+
+def _opened(path: str | Path) -> xr.Dataset:
+    """Open one of our files without reading its arrays and without decoding anything; InputError if that is not possible."""
+    source = Path(path)
+    if not source.is_file():
+        raise InputError(str(path), "is a directory" if source.is_dir() else "does not exist", "give a file written by Response.save")
+    try:
+        dataset = xr.open_dataset(source, engine="h5netcdf", decode_times=False, mask_and_scale=False, decode_timedelta=False, cache=False)
+    except PermissionError:
+        raise InputError(str(path), "cannot be read (permission denied)", "choose another file") from None
+    except UNREADABLE as error:
+        raise InputError(str(path), "is not a NetCDF file, or is cut short or damaged", "give a file written by Response.save") from error
+    problem = format_problem(dataset.attrs)
+    if problem is not None:
+        dataset.close()
+        raise InputError(str(path), problem.problem, problem.remedy)
+    return dataset
+
+
+def load_solution(path: str | Path) -> ModalSolution:
+    """Return the solution of a file written by :func:`save`.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not ours, cut short, damaged, or of a newer format.
+    """
+    with _opened(path) as dataset:
+        try:
+            return from_dataset(dataset.load())
+        except InputError as error:
+            raise InputError(str(path), f"holds a scenario that this version does not accept: {error}") from error
+        except UNREADABLE as error:
+            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
+
+
+def info(path: str | Path) -> str:
+    """Return in words what a file holds, without reading its arrays.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_solution`.
+    """
+    with _opened(path) as dataset:
+        try:
+            return _described(dataset)
+        except UNREADABLE as error:
+            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
+
+
+def _described(dataset: xr.Dataset) -> str:
+    about, sizes = dataset.attrs, dataset.sizes
+    versions = ", ".join(f"{part} {about[f'{part}_version']}" for part in ("coaxshell", "numpy", "scipy", "python"))
+    settings = ", ".join(f"{key} {value}" for key, value in json.loads(about["settings"]).items())
+    held = [dataset[name] for name in ARRAYS if name in dataset]
+    return "\n".join(
+        [
+            f"{about['title']}: shells {sizes['shell']}, orders 0 to {sizes['mode'] - 1}, instants {sizes['time']}",
+            f"written {about['created']} in format {about['coaxshell_format_version']} by {versions}",
+            f"settings: {settings}",
+            *(f"warning: {text}" for text in json.loads(about["warnings"])),
+            "arrays:",
+            *(f"  {array.name} ({', '.join(f'{dim} {size}' for dim, size in array.sizes.items())})" for array in held),
+            "scenario:",
+            str(dataset["scenario"].item()),
+        ]
+    )

@@ -1,0 +1,78 @@
+"""The summary as an aligned table of text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
+
+
+def engineering(value: float, unit: str) -> str:
+    """Return a value with four digits and the SI prefix that fits: 181500 Pa is ``181.5 kPa``."""
+    exponent = next((e for e in PREFIXES if abs(value) >= 0.99995 * 10.0**e), 0)
+    digits = f"{value / 10.0**exponent:#.4g}".rstrip(".") if value else "0"
+    return f"{digits} {PREFIXES[exponent]}{unit}"
+
+
+def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
+    """Return rows of cells as lines with columns of equal width, the first *left* ones to the left and the others to the right."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+
+    def line(row: Sequence[str]) -> str:
+        cells = (cell.ljust(w) if i < left else cell.rjust(w) for i, (cell, w) in enumerate(zip(row, widths, strict=True)))
+        return "  ".join(cells).rstrip()
+
+    return [line(row) for row in rows]
+
+
+def summary_text(summary: Mapping[str, Any]) -> str:
+    """Return the table of a summary in its plain-dict form."""
+    settings = summary["settings"]
+    start, end = summary["window"]
+    lines = [
+        summary["title"] or "unnamed system",
+        f"{settings['engine']} engine, {settings['modes']} modes, time step {settings['time_step']:g}, "
+        f"t = {start:g} to {end:g} transits ({engineering(start * summary['transit_time'], 's')} to "
+        f"{engineering(end * summary['transit_time'], 's')})",
+        "",
+    ]
+    rows: list[tuple[str, ...]] = [("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]")]
+    for shell in summary["shells"]:
+        rows += _shell_rows(shell)
+    lines += aligned(rows, left=2)
+    for key, label, unit in (
+        ("absorber_displacement", "largest absorber displacement", "m"),
+        ("absorber_force", "largest absorber force", "N/m"),
+    ):
+        if summary[key] is not None:
+            lines.append(f"{label}: {engineering(summary[key], unit)}")
+    lines += ["", *_errors(summary), *(f"warning: {text}" for text in summary["warnings"])]
+    return "\n".join(lines)
+
+
+def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    entries: list[tuple[str, str, str]] = [
+        ("stress_head", "stress at head", "Pa"),
+        ("stress_tail", "stress at tail", "Pa"),
+        ("stress", "stress anywhere", "Pa"),
+        ("stress_rms", "stress RMS", "Pa"),
+        ("displacement_head", "displacement at head", "m"),
+        ("displacement_tail", "displacement at tail", "m"),
+        ("sensor_voltage", "sensor voltage", "V"),
+        ("actuator_voltage", "actuator voltage asked", "V"),
+    ]
+    rows: list[tuple[str, ...]] = []
+    for key, label, unit in entries:
+        value = shell[key]
+        if isinstance(value, Mapping):
+            rows.append((shell["name"], label, engineering(value["value"], unit), f"{value['time']:.4g}", f"{value['angle']:.4g}"))
+        elif value is not None:
+            rows.append((shell["name"], label, engineering(value, unit), "", ""))
+    return rows
+
+
+def _errors(summary: Mapping[str, Any]) -> list[str]:
+    parts = [f"{shell['name']} {shell['stress_truncation']:.1e}" for shell in summary["shells"]]
+    modes = f"orders left out of the stress: {', '.join(parts)}; " if parts else ""
+    return [f"estimated relative errors: {modes}time window {summary['time_window_error']:.1e}"]
