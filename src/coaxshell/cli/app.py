@@ -1,0 +1,47 @@
+"""The commands of ``coaxshell``, one a file."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from coaxshell._version import __version__
+from coaxshell.cli.figure import figure
+from coaxshell.cli.info import info
+from coaxshell.cli.init import init
+from coaxshell.cli.presets import presets
+from coaxshell.cli.run import run
+
+app = typer.Typer(
+    rich_markup_mode="rich" if sys.stdout.isatty() else None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+)
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"coaxshell {__version__}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def coaxshell(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and leave.")
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", help="Show where an error came from. Allowed anywhere on the line.")] = False,
+) -> None:
+    """Compute how concentric cylindrical shells in fluids answer an acoustic shock.
+
+    Start with: coaxshell run bare
+    """
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+for _command in (run, presets, init, info, figure):
+    app.command()(_command)

@@ -1,0 +1,72 @@
+"""From the arguments of the process to its exit code: every failure becomes one line on stderr.
+
+Exit codes: 0 done, 2 bad input, 130 interrupted, 1 anything else.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Any
+
+from coaxshell.cli.usage import is_usage_error, usage_text
+from coaxshell.cli.warnings import plain_physics_warnings
+from coaxshell.errors import InputError
+
+DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The arguments without the program's name; those of the process when left out.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    debug = "--debug" in arguments
+    arguments = [argument for argument in arguments if argument != "--debug"]
+    try:
+        with plain_physics_warnings():
+            code = _invoke(arguments)
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    except BaseException as error:  # noqa: BLE001  (the last stop before the user's terminal)
+        return _explain(error, debug)
+    if code == INTERRUPTED:
+        _complain("interrupted; nothing was left behind")
+    return code
+
+
+def _invoke(arguments: list[str]) -> int:
+    from typer.main import get_command
+
+    from coaxshell.cli.app import app
+
+    outcome: Any = get_command(app).main(args=arguments, prog_name="coaxshell", standalone_mode=False)
+    return outcome if isinstance(outcome, int) else DONE
+
+
+def _explain(error: BaseException, debug: bool) -> int:
+    if debug:
+        traceback.print_exception(error)
+    if isinstance(error, SystemExit):
+        return error.code if isinstance(error.code, int) else FAILED
+    if isinstance(error, InputError):
+        _complain(str(error))
+        return BAD_INPUT
+    if is_usage_error(error):
+        _complain(usage_text(error))
+        return BAD_INPUT
+    if type(error).__name__ == "Abort":
+        _complain("interrupted; nothing was left behind")
+        return INTERRUPTED
+    hint = "" if debug else " (run again with --debug to see where)"
+    _complain(f"unexpected {type(error).__name__}: {error}{hint}")
+    return FAILED
+
+
+def _complain(text: str) -> None:
+    sys.stderr.write("error: " + " ".join(text.split()) + "\n")

@@ -1,0 +1,20 @@
+"""``coaxshell info``: what a saved run holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def info(file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="A run saved by coaxshell run --output.")]) -> None:
+    """Tell what a saved run holds."""
+    from coaxshell import response
+
+    typer.echo(response.info(file).rstrip())
+    typer.echo("")
+
+    from coaxshell.cli.tables import print_summary
+
+    print_summary(response.load_response(file))

@@ -1,0 +1,22 @@
+"""Options that several commands share. Values come as text; :mod:`coaxshell.cli.values` turns them into numbers."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", "-s", metavar="PATH=VALUE", help='Change an entry of the system, as in source.peak_pressure="50 kPa". May be repeated.'
+    ),
+]
+DurationOption = Annotated[
+    str, typer.Option("--duration", metavar="TRANSITS", help="How long, in acoustic transits a/c_e of the outermost radius.")
+]
+TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TRANSITS", help="Time step, in the same unit.")]
+ModesOption = Annotated[str, typer.Option("--modes", metavar="N|auto", help="Highest circumferential order, or auto to meet --tolerance.")]
+ToleranceOption = Annotated[str, typer.Option("--tolerance", metavar="ERROR", help="Relative error that --modes auto aims at.")]
+EngineOption = Annotated[str, typer.Option("--engine", metavar="NAME", help="How to solve: spectral or direct.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]

@@ -1,0 +1,26 @@
+"""``coaxshell presets``: what there is to start from."""
+
+from __future__ import annotations
+
+import re
+
+import typer
+
+
+def presets() -> None:
+    """List the ready-made systems."""
+    from coaxshell.model import presets as library
+
+    width = max(len(name) for name in library.names())
+    for name in library.names():
+        typer.echo(f"{name:<{width}}  {description(library.text(name))}")
+
+
+def description(text: str) -> str:
+    """Return the first sentence of the comment that a TOML text starts with."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.lstrip("# ").strip())
+    return re.split(r"(?<!Fig\.)(?<!Figs\.)(?<=\.) ", " ".join(lines), maxsplit=1)[0]

@@ -1,0 +1,82 @@
+"""Tables on stdout: drawn ones on a terminal, plain aligned text elsewhere. Warnings go to stderr, each once."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+import warnings
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import typer
+
+from coaxshell.errors import PhysicsWarning
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from coaxshell.response import Response
+    from coaxshell.response.peaks import Peak
+    from coaxshell.response.summary import Summary
+
+_ROWS = (
+    ("stress_head", "stress at head", "Pa"),
+    ("stress_tail", "stress at tail", "Pa"),
+    ("stress", "stress anywhere", "Pa"),
+    ("stress_rms", "stress RMS", "Pa"),
+    ("displacement_head", "displacement at head", "m"),
+    ("displacement_tail", "displacement at tail", "m"),
+    ("sensor_voltage", "sensor voltage", "V"),
+    ("actuator_voltage", "actuator voltage asked", "V"),
+)
+
+
+def print_summary(response: Response) -> None:
+    """Print the summary of a run on stdout and its warnings on stderr."""
+    whole = response.summary()
+    summary = dataclasses.replace(whole, warnings=())
+    if sys.stdout.isatty():
+        from rich.console import Console
+
+        console = Console()
+        console.print(summary_table(summary))
+        console.print(str(summary).splitlines()[-1], markup=False, highlight=False)
+    else:
+        typer.echo(str(summary).rstrip())
+    tell_warnings(whole.warnings)
+
+
+def tell_warnings(texts: Iterable[str]) -> None:
+    """Tell the warnings of a run."""
+    for text in texts:
+        warnings.warn(PhysicsWarning(text), stacklevel=2)
+
+
+def summary_table(summary: Summary) -> Table:
+    """Return the summary as a table with one section for each shell."""
+    from rich import box
+    from rich.markup import escape
+    from rich.table import Table
+
+    title, run, *_ = str(summary).splitlines()
+    table = Table(title=f"{escape(title)}\n[not bold]{escape(run)}[/]", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+    table.add_column("shell", style="bold")
+    table.add_column("largest magnitude")
+    for heading in ("value", "t (a/c)", "angle (°)"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for shell in summary.shells:
+        rows = [(label, cells) for key, label, unit in _ROWS if (cells := _cells(getattr(shell, key), unit))]
+        for number, (label, cells) in enumerate(rows):
+            table.add_row(shell.name if number == 0 else "", label, *cells, end_section=number == len(rows) - 1)
+    return table
+
+
+def _cells(value: Peak | float | None, unit: str) -> tuple[str, ...]:
+    """Return value, time and angle as text; nothing at all for what a shell does not have."""
+    from coaxshell.response.summary_text import engineering
+
+    if value is None:
+        return ()
+    if isinstance(value, int | float):
+        return engineering(value, unit), "", ""
+    return engineering(value.value, unit), f"{value.time:.4g}", f"{value.angle:.4g}"

@@ -1,0 +1,62 @@
+"""From the text of an option to its value; every problem is an InputError that names the option."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Literal
+
+from coaxshell.errors import InputError
+
+_OF_SETTINGS = ("duration", "time_step", "modes", "tolerance", "engine")
+
+
+def number(option: str, text: str) -> float:
+    """Return the number written in an option."""
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(option, f"{text!r} is not a number", "give a number such as 5 or 1e-3") from None
+
+
+def modes(text: str, option: str = "--modes") -> int | Literal["auto"]:
+    """Return the highest circumferential order, a whole number or "auto"."""
+    if text.strip().lower() == "auto":
+        return "auto"
+    try:
+        return int(text)
+    except ValueError:
+        raise InputError(option, f"{text!r} is not allowed", 'give a whole number of 1 or more, or "auto"') from None
+
+
+def overrides(texts: Sequence[str], option: str = "--set") -> dict[str, Any]:
+    """Return {path: value} from ``path=value`` texts; the value is read as TOML, or else as text such as ``6 mm``."""
+    found: dict[str, Any] = {}
+    for text in texts:
+        path, equals, value = text.partition("=")
+        path = path.strip()
+        if not path or not equals or not value.strip():
+            raise InputError(option, f"{text!r} is not an assignment", 'write path=value, as in "source.peak_pressure=50 kPa"')
+        if path in found:
+            raise InputError(option, f"{path!r} is given twice", "give each path once")
+        found[path] = _value(value.strip())
+    return found
+
+
+def _value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+@contextmanager
+def named_as_options() -> Iterator[None]:
+    """Let errors about the settings of a run name the option (``--time-step``) instead of the argument (``time_step``)."""
+    try:
+        yield
+    except InputError as error:
+        if error.where in _OF_SETTINGS:
+            raise InputError("--" + error.where.replace("_", "-"), error.problem, error.remedy) from None
+        raise

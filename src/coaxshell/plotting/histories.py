@@ -1,0 +1,146 @@
+"""One quantity at one point of one shell against time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.plotting.style import COLOURS, COLUMN_WIDTH, new_figure, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+    from coaxshell.response import Response
+
+FloatArray = npt.NDArray[np.float64]
+TIME_LABEL = "time (acoustic transits $a/c_e$)"
+
+
+@dataclass(frozen=True)
+class PlottedQuantity:
+    """How a quantity of the response is drawn.
+
+    Attributes
+    ----------
+    method : str
+        Method of the response that gives it in SI.
+    label : str
+        Name and unit on the axis.
+    unit : str
+        Unit as drawn.
+    per_si : float
+        Drawn units per SI unit.
+    colour : str
+        Colour of the curve.
+    """
+
+    method: str
+    label: str
+    unit: str
+    per_si: float
+    colour: str
+
+
+QUANTITIES: Mapping[str, PlottedQuantity] = MappingProxyType(
+    {
+        "stress": PlottedQuantity("stress", "hoop stress (MPa)", "MPa", 1e-6, COLOURS["blue"]),
+        "displacement": PlottedQuantity("displacement", "inward displacement (µm)", "µm", 1e6, COLOURS["orange"]),
+        "sensor_voltage": PlottedQuantity("sensor_voltage", "sensor voltage (V)", "V", 1.0, COLOURS["green"]),
+    }
+)
+"""Quantities that :func:`plot_history` draws, by name."""
+
+
+@dataclass(frozen=True)
+class History:
+    """One curve in drawn units: times in transits, values, and milliseconds per transit."""
+
+    time: FloatArray
+    values: FloatArray
+    milliseconds: float
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Time and signed value of the largest magnitude."""
+        index = int(np.argmax(np.abs(self.values)))
+        return float(self.time[index]), float(self.values[index])
+
+
+def history(response: Response, quantity: str, shell: int | str, angle: float) -> History:
+    """Return one curve of a response in drawn units; InputError for an unknown quantity."""
+    drawn = _quantity(quantity)
+    array: Any = getattr(response, drawn.method)(shell, angle=[angle]).isel(angle=0)
+    time = np.asarray(array["time"], dtype=np.float64)
+    seconds = np.asarray(array["time_seconds"], dtype=np.float64)
+    milliseconds = 1e3 * float(seconds[-1] / time[-1]) if time[-1] > 0 else 1.0
+    return History(time, drawn.per_si * np.asarray(array, dtype=np.float64), milliseconds)
+
+
+def plot_history(
+    response: Response,
+    quantity: str = "stress",
+    shell: int | str = "outer",
+    angle: float = 0.0,
+    ax: Axes | None = None,
+    **line: Any,
+) -> Axes:
+    """Draw one quantity at one point of one shell against time.
+
+    Parameters
+    ----------
+    response : Response
+    quantity : str
+        One of :data:`QUANTITIES`.
+    shell : int or "inner" or "outer"
+        Counted from the inside.
+    angle : float
+        Degrees from the source direction: 0 is the head, 180 the tail.
+    ax : Axes, optional
+        Where to draw; a new figure when left out.
+    **line
+        Passed to ``ax.plot``.
+
+    Returns
+    -------
+    Axes
+    """
+    drawn = _quantity(quantity)
+    curve = history(response, quantity, shell, angle)
+    with style():
+        if ax is None:
+            ax = new_figure(COLUMN_WIDTH, 2.4).add_subplot()
+        ax.plot(curve.time, curve.values, **{"color": drawn.colour, **line})
+        ax.set_xlabel(TIME_LABEL)
+        ax.set_ylabel(drawn.label)
+        ax.set_xlim(float(curve.time[0]), float(curve.time[-1]))
+    return ax
+
+
+def mark_peak(curve: History, ax: Axes, **marker: Any) -> Line2D:
+    """Circle the largest magnitude of a curve and return the marker."""
+    time, value = curve.peak
+    looks = {
+        "marker": "o",
+        "markersize": 6.0,
+        "markerfacecolor": "none",
+        "markeredgewidth": 1.2,
+        "linestyle": "none",
+        "clip_on": False,
+        "zorder": 5,
+    }
+    (mark,) = ax.plot([time], [value], **{**looks, **marker})
+    return mark
+
+
+def _quantity(name: str) -> PlottedQuantity:
+    try:
+        return QUANTITIES[name]
+    except KeyError:
+        raise InputError("quantity", f"{name!r} cannot be drawn", f"allowed: {', '.join(QUANTITIES)}") from None

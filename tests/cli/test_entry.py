@@ -1,0 +1,138 @@
+"""Exit codes, help, version, warnings and what happens to errors that nobody expected."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import warnings
+from pathlib import Path
+
+import pytest
+
+import coaxshell
+from coaxshell.cli import main
+from coaxshell.cli.progress import progress
+
+COMMANDS = ("run", "presets", "init", "info", "figure")
+
+
+def test_help_lists_every_command(run):
+    for arguments in (["--help"], ["-h"], []):
+        outcome = run(*arguments)
+        assert outcome.code == 0
+        assert outcome.err == ""
+        assert all(f"\n  {command} " in outcome.out for command in COMMANDS)
+        assert "..." not in outcome.out.partition("Commands:")[2]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(run, command):
+    outcome = run(command, "--help")
+    assert outcome.code == 0
+    assert "Usage: coaxshell " + command in outcome.out
+
+
+def test_version(run):
+    assert run("--version").out == f"coaxshell {coaxshell.__version__}\n"
+
+
+def test_unknown_command(refused):
+    message = refused("solve")
+    assert "'solve'" in message
+    assert "allowed: run, presets, init, info, figure" in message
+
+
+def test_unknown_option(refused):
+    assert "--verbose" in refused("--verbose")
+
+
+def test_unexpected_errors_are_one_line(run, monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError("nothing\nto divide by")
+
+    monkeypatch.setattr("coaxshell.cli.scenario.load_system", broken)
+    outcome = run("run", "bare")
+    assert outcome.code == 1
+    assert outcome.err == "error: unexpected ZeroDivisionError: nothing to divide by (run again with --debug to see where)\n"
+    outcome = run("run", "bare", "--debug")
+    assert outcome.code == 1
+    assert "Traceback" in outcome.err
+    assert outcome.err.endswith("error: unexpected ZeroDivisionError: nothing to divide by\n")
+
+
+def test_interrupt(run, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("coaxshell.cli.scenario.load_system", interrupted)
+    outcome = run("run", "bare")
+    assert outcome.code == 130
+    assert outcome.err.startswith("error: interrupted")
+    assert outcome.err.count("\n") == 1
+
+
+def test_physics_warnings_are_one_line_each_and_said_once(capsys, monkeypatch):
+    def warn(*_):
+        for text in ("too\nfast", "too fast", "too slow"):
+            warnings.warn(coaxshell.PhysicsWarning(text), stacklevel=1)
+        return coaxshell.presets.load("bare")
+
+    monkeypatch.setattr("coaxshell.cli.scenario.load_system", warn)
+    main(["run", "bare", "--modes", "0"])
+    assert capsys.readouterr().err.splitlines()[:-1] == ["warning: too fast", "warning: too slow"]
+
+
+def test_plain_progress_says_each_tenth_once(capsys):
+    with progress() as report:
+        for i in range(1001):
+            report(i / 1000, "solving")
+        report(1.0, "adding up")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [f"solving: {percent} %" for percent in range(10, 101, 10)] + ["adding up: 100 %"]
+
+
+def test_bar_on_a_terminal(capsys, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    with progress() as report:
+        report(0.5, "solving")
+    captured = capsys.readouterr()
+    assert captured.out == ""
+
+
+def test_module_and_exit_code():
+    done = subprocess.run([sys.executable, "-m", "coaxshell", "run", "bear"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("error: scenario: there is no preset 'bear'")
+
+
+def test_help_is_quick():
+    seconds = []
+    for _ in range(3):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "coaxshell", "--help"], capture_output=True, check=True)
+        seconds.append(time.perf_counter() - start)
+    assert min(seconds) < 0.5
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals")
+def test_ctrl_c_leaves_nothing_behind(tmp_path):
+    arguments = [sys.executable, "-m", "coaxshell", "run", "bare", "--modes", "1000", "--output", "out.nc"]
+    package = str(Path(coaxshell.__file__).parents[1])
+    with subprocess.Popen(
+        arguments,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": package},
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        first = process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        rest = process.stderr.read().splitlines()
+    assert first.endswith(" %\n")
+    assert process.returncode == 130
+    assert rest[-1].startswith("error: interrupted")
+    assert not any("Traceback" in line for line in rest)
+    assert list(tmp_path.iterdir()) == []
