@@ -8,6 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.linked import LinkedSpectra
+from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
 from coaxshell.solver.solution import Estimates
@@ -16,6 +19,8 @@ THIN_SHELL_LIMIT = 0.1
 TRUNCATION_LIMIT = 1e-2
 WINDOW_LIMIT = 1e-4
 LINEAR_ACOUSTICS_LIMIT = 1e-2
+RESOLVED_ANGLE = 0.5
+"""Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
 
 def shell_label(index: int, count: int) -> str:
@@ -46,6 +51,41 @@ def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
             f"{WINDOW_LIMIT:g}; halve time_step"
         )
     return warnings
+
+
+def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSpectra) -> list[str]:
+    """Return the warning about absorbers that vibrate faster than the step resolves.
+
+    The fastest motions are those of a shell's own points (their mobility over one step is the kernel's weight at lag 0, about
+    dt/2 over the local mass) and of the absorber's mass on the tangent stiffness reached, k_l + 3 k_nl max D^2.
+    """
+    if linked.iterations == 0:
+        return []  # solved exactly
+    step = structure.grid.time_step
+    points = InterfacePoints(structure.problem, links, structure.max_order)
+    local = 2.0 / step * np.diag(points.immediate(structure.kernels.present)).reshape(2, links.count).max(axis=0)
+    force = np.abs(linked.force).max(axis=(1, 2))
+    peak = np.zeros(links.count)
+    np.maximum.at(peak, links.member, force)
+    stretch = np.array([_stretch(f, k, c) for f, k, c in zip(peak, links.linear, links.cubic, strict=True)])
+    tangent = links.linear + 3.0 * links.cubic * stretch**2
+    inertia = np.divide(2.0, links.mass, out=np.zeros_like(links.mass), where=links.mass > 2.0 / local)
+    fastest = float(np.sqrt(tangent * (local + inertia)).max())
+    if fastest * step <= RESOLVED_ANGLE:
+        return []
+    factor = int(np.ceil(fastest * step / RESOLVED_ANGLE))
+    return [
+        f"absorbers: the stiffest vibrates at {fastest:.3g} per transit on the shell's own mass, {fastest * step:.2g} radians a step, "
+        f"more than {RESOLVED_ANGLE:g}; use time_step = {RESOLVED_ANGLE / fastest:.2g} or refinement = {factor}"
+    ]
+
+
+def _stretch(force: float, linear: float, cubic: float) -> float:
+    """Return the real D >= 0 of k_l D + k_nl D^3 = f."""
+    if cubic == 0.0:
+        return force / linear if linear > 0 else 0.0
+    roots = np.roots([cubic, 0.0, linear, -force])
+    return float(roots[np.abs(roots.imag) <= 1e-9 * np.abs(roots).max() + 1e-300].real.max(initial=0.0))
 
 
 def _thin_shells(problem: Problem) -> list[str]:

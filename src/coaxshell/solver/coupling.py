@@ -55,6 +55,8 @@ class ModalSystem:
     s : ndarray, shape (nodes,)
     orders : ndarray, shape (M,)
         Ascending circumferential orders.
+    like : ModalSystem, optional
+        One of the same fluids, radii, nodes and orders, whose Bessel ratios are shared.
 
     Attributes
     ----------
@@ -64,9 +66,9 @@ class ModalSystem:
         None for a rigid shell.
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, orders: FloatArray) -> None:
+    def __init__(self, problem: Problem, s: ComplexArray, orders: FloatArray, like: ModalSystem | None = None) -> None:
         self.problem, self.s, self.orders = problem, s, orders
-        self._radial: dict[tuple[float, float], RadialFunctions] = {}
+        self._radial: dict[tuple[float, float], RadialFunctions] = {} if like is None else like._radial
         self.surface = self.radial(1.0, 1.0)
         self.shells = [
             shell_operator(problem, i, s, orders) if shell.section is not None else None for i, shell in enumerate(problem.shells)
@@ -136,6 +138,13 @@ class ModalSystem:
             if i + 1 < count:
                 answer[i] = answer[i] - self._inward[i] * answer[i + 1]
         return answer
+
+    def determinant(self) -> ComplexArray:
+        """Return the determinant of the tridiagonal system, shape (orders, nodes): zero at the poles of the response."""
+        product = self._inverse_pivot[0].copy()
+        for inverse in self._inverse_pivot[1:]:
+            product *= inverse
+        return np.reciprocal(product)
 
     def tangential(self, normal: list[ComplexArray]) -> list[ComplexArray]:
         """Return V of every shell from W of every shell (no tangential load)."""

@@ -58,12 +58,12 @@ class SurfaceLoads:
             load = wave_load(surface, nodes)
             spectra = [source_spectrum(self._problem, source, surface.kappa) for source in sources]
             for half in range(self.halves):
-                weights = sum(_projection(self._orders, source.angle, half) * x for source, x in zip(sources, spectra, strict=True))
+                weights = sum(projection(self._orders, source.angle, half) * x for source, x in zip(sources, spectra, strict=True))
                 totals[half] = totals[half] + load * weights
         return [np.asarray(total, dtype=np.complex128) for total in totals]
 
 
-def _projection(orders: FloatArray, angle: float, half: int) -> FloatArray:
+def projection(orders: FloatArray, angle: float, half: int) -> FloatArray:
     """Return cos(m angle) or sin(m angle) as a column, exact at multiples of 90 degrees: symmetric systems stay symmetric."""
     turns = np.mod(orders * angle, 360.0)[:, None]
     exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}

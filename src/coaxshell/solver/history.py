@@ -24,11 +24,17 @@ class KernelTable:
     Parameters
     ----------
     kernels : ndarray, shape (outputs, inputs, M + 1, T)
-        Samples k_0, k_1, ...; k_0 is not used (the present step is the caller's).
+        Step weights k_0, k_1, ...; what k_0 does within the present step is the caller's.
+
+    Attributes
+    ----------
+    present : ndarray, shape (outputs, inputs, M + 1)
+        k_0.
     """
 
     def __init__(self, kernels: FloatArray) -> None:
         self.steps = kernels.shape[-1]
+        self.present = kernels[..., 0].copy()
         self.recent = np.ascontiguousarray(kernels[..., 1 : BLOCK + 1])
         self._kernels = kernels
         self._transforms: dict[int, npt.NDArray[np.complex128]] = {}

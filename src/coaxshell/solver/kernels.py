@@ -1,7 +1,11 @@
-"""Velocity kernels in time: the normal velocity of shell i after a unit impulse of modal pressure on shell j.
+"""Velocity kernels in time: the normal velocity of shell i after a unit impulse of modal pressure on shell j, as step weights.
 
-A shell answers an impulse by jumping to the velocity 1/M and being slowed by the fluids on its faces, so the transform
-s C_ii(s) falls only like 1/s. Its two leading terms are inverted in closed form,
+Forces are taken linear between steps and the kernel is integrated exactly against them (product integration): the weight at
+lag k is the kernel sampled after convolution with a hat two steps wide, whose transform is (sinh(s dt/2)/(s dt/2))^2. The hat's
+transform is positive, so the weights keep the positive real part of the kernel: they cannot make energy.
+
+A shell answers an impulse by jumping to the velocity 1/M and being slowed by the fluids on its faces, so s C_ii(s) falls only
+like 1/s. Its two leading terms are inverted in closed form,
 
     s C_ii(s) = (1/M)/(s + b) + O(1/s^3),    b = (R_out + R_in + c)/M,
 
@@ -12,14 +16,11 @@ the inverse FFT. Off-diagonal kernels start smoothly, after the transit of the g
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import all_orders
+from coaxshell.acoustics.operators import FloatArray, all_orders
 from coaxshell.solver.scaling import Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def initial_decay(problem: Problem, index: int, max_order: int) -> FloatArray:
@@ -33,22 +34,36 @@ def initial_decay(problem: Problem, index: int, max_order: int) -> FloatArray:
     return decay / shell.mass
 
 
-def velocity_kernels(problem: Problem, grid: LaplaceGrid, compliance: ComplexArray) -> FloatArray:
-    """Return the velocity kernels at the grid's times, shape (shells, shells, M + 1, T).
+def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArray) -> FloatArray:
+    """Return the weights of modal pressures 0, 1, 2, ... steps ago in the present modal velocities.
 
-    At t = 0 the diagonal holds the value just after the impulse, 1/M.
+    Returns
+    -------
+    ndarray, shape (shells, shells, M + 1, T)
+        dW_i/dt(t_n) = sum_k weights[i, j, m, k] P_j(t_{n-k}).
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
-    kernels = np.zeros((count, count, max_order + 1, grid.time.size))
+    weights = np.empty((count, count, max_order + 1, grid.time.size))
+    hat = (np.sinh(0.5 * grid.time_step * grid.nodes) / (0.5 * grid.time_step * grid.nodes)) ** 2 * grid.time_step
     for i in range(count):
         for j in range(count):
             spectrum = compliance[i, j] * grid.nodes
             if i == j and problem.shells[i].section is not None:
                 mass, decay = problem.shells[i].mass, initial_decay(problem, i, max_order)
-                smooth = grid.invert(spectrum - 1.0 / (mass * (grid.nodes + decay)))
-                kernels[i, j] = smooth + np.exp(-decay * grid.time) / mass
-                kernels[i, j, :, 0] = 1.0 / mass
+                weights[i, j] = grid.invert((spectrum - 1.0 / (mass * (grid.nodes + decay))) * hat)
+                weights[i, j] += exponential_weights(decay, grid) / mass
             else:
-                kernels[i, j] = grid.invert(spectrum)
-                kernels[i, j, :, 0] = 0.0
-    return kernels
+                weights[i, j] = grid.invert(spectrum * hat)
+    return weights
+
+
+def exponential_weights(decay: FloatArray, grid: LaplaceGrid) -> FloatArray:
+    """Return the product-integration weights of e^{-b t}, shape (M + 1, T), for decays b of shape (M + 1, 1).
+
+    At lag 0 the integral of e^{-b t}(1 - t/dt) over one step, dt (x - 1 + e^{-x})/x^2 with x = b dt; later dt e^{-b t}
+    (sinh(x/2)/(x/2))^2.
+    """
+    x = np.maximum(decay * grid.time_step, 1e-4)
+    weights: FloatArray = np.exp(-decay * grid.time) * (np.sinh(0.5 * x) / (0.5 * x)) ** 2 * grid.time_step
+    weights[:, 0] = (grid.time_step * (x + np.expm1(-x)) / x**2)[:, 0]
+    return weights

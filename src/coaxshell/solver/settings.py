@@ -27,6 +27,8 @@ class Settings:
         "spectral" (Laplace domain, default) or "direct" (the paper's time marching).
     tolerance : float
         Relative error aimed at by ``modes="auto"``.
+    refinement : int
+        The run is made at time_step/refinement and every refinement-th instant is kept: for stiff absorbers.
     """
 
     duration: float = 5.0
@@ -34,6 +36,7 @@ class Settings:
     modes: int | Literal["auto"] = 150
     engine: str = "spectral"
     tolerance: float = 1e-3
+    refinement: int = 1
 
     def __post_init__(self) -> None:
         _finite_positive("duration", self.duration, "acoustic transit times a/c_e")
@@ -42,17 +45,19 @@ class Settings:
         if self.modes != "auto":
             if isinstance(self.modes, bool) or not isinstance(self.modes, int) or not 1 <= self.modes <= MAX_MODES:
                 raise InputError("modes", f"{self.modes!r} is not allowed", f'give a whole number from 1 to {MAX_MODES} or "auto"')
+        if isinstance(self.refinement, bool) or not isinstance(self.refinement, int) or not 1 <= self.refinement <= 64:
+            raise InputError("refinement", f"{self.refinement!r} is not allowed", "give a whole number from 1 to 64")
         if self.engine not in ENGINES:
             raise InputError("engine", f"{self.engine!r} is unknown", f"allowed: {', '.join(ENGINES)}")
         if self.duration < 4 * self.time_step:
             raise InputError(
                 "time_step", f"{self.time_step:g} is too coarse for duration {self.duration:g}", f"at most {self.duration / 4:g} is allowed"
             )
-        if self.duration / self.time_step > MAX_STEPS:
+        if self.duration / self.time_step * self.refinement > MAX_STEPS:
             raise InputError(
                 "time_step",
-                f"{self.time_step:g} over duration {self.duration:g} asks for {self.duration / self.time_step:.3g} steps",
-                f"at most {MAX_STEPS} are allowed: use a step of {self.duration / MAX_STEPS:.2g} or more",
+                f"{self.time_step:g} over duration {self.duration:g} asks for {self.duration / self.time_step * self.refinement:.3g} steps",
+                f"at most {MAX_STEPS} are allowed: use a step of {self.duration * self.refinement / MAX_STEPS:.2g} or more",
             )
 
     @property

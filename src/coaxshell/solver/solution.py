@@ -51,10 +51,14 @@ class ModalSolution:
         Physics warnings, one sentence each with both numbers and the remedy.
     timings : dict
         Seconds by stage.
+    normal_rate, tangential_rate : ndarray, same shape, or None
+        dW/dt and dV/dt, kept where feedback needs them.
     absorber_displacement : ndarray, shape (absorbers, T)
         q_n.
     absorber_force : ndarray, shape (absorbers, 2, T)
         Line force f_n^(i)/(rho_e c_e^2 a) on the inner [0] and outer [1] of the shells it links, positive inward on the shell.
+    control_correction : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressure of the saturated minus that of the linear control law, where saturation is on.
     """
 
     problem: Problem
@@ -65,5 +69,8 @@ class ModalSolution:
     estimates: Estimates
     warnings: tuple[str, ...] = ()
     timings: dict[str, float] = field(default_factory=dict)
+    normal_rate: FloatArray | None = None
+    tangential_rate: FloatArray | None = None
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
+    control_correction: FloatArray | None = None

@@ -1,18 +1,26 @@
-"""One verb: solve a system at a resolution with an engine."""
+"""One verb: solve a system at a resolution. Prepared first, so that many absorber sets can share all that is linear."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
 from coaxshell.solver import checks, estimates
-from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.linked import LinkedSpectra, solve_linked
+from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
-from coaxshell.solver.spectral import Progress, Stopwatch, linear_spectra
+from coaxshell.solver.spectral import Progress, Stopwatch
+from coaxshell.solver.stability import require_stable
 
 
 def solve(system: System, *, settings: Settings | None = None, progress: Progress | None = None) -> ModalSolution:
@@ -29,43 +37,114 @@ def solve(system: System, *, settings: Settings | None = None, progress: Progres
     Raises
     ------
     InputError
-        If the engine cannot solve this system.
+        If the engine cannot solve this system, its feedback is unstable or its absorbers cannot be marched at this step.
     """
-    settings = settings or Settings()
-    if settings.engine == "direct":
-        raise InputError("engine", '"direct" is not available yet', 'use engine="spectral"')
-    if system.absorber_list:
-        raise InputError("absorbers", f"{len(system.absorber_list)} given", "absorbers cannot be solved yet; leave them out")
-    problem = dimensionless(system)
-    return _spectral(problem, settings, progress)
+    return Prepared(system, settings or Settings(), progress).solve()
 
 
-def _spectral(problem: Problem, settings: Settings, progress: Progress | None) -> ModalSolution:
-    stopwatch = Stopwatch()
-    grid = LaplaceGrid(settings.time_step, settings.steps)
-    chosen = settings.modes
-    warnings: list[str] = []
-    if chosen == "auto":
-        chosen, remaining = estimates.choose_modes(problem, grid, settings.tolerance)
+class Prepared:
+    """A structure solved once under its sources, ready for any number of absorber sets.
+
+    Parameters
+    ----------
+    system : System
+        Its own absorbers are only the default of ``solve``.
+    settings : Settings
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        If the engine is not available or the feedback is unstable.
+    """
+
+    def __init__(self, system: System, settings: Settings, progress: Progress | None = None) -> None:
+        if settings.engine == "direct":
+            raise InputError("engine", '"direct" is not available yet', 'use engine="spectral"')
+        self._stopwatch = Stopwatch()
+        self._progress = progress
+        self.problem = dimensionless(system)
+        grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+        self._notes: list[str] = []
+        order = self._order(grid, settings)
+        self.settings = replace(settings, modes=order)
+        require_stable(self.problem, order, settings.duration)
+        self._stopwatch.lap("stability of the feedback")
+        self.structure = PreparedStructure(self.problem, grid, order, progress)
+        self._trust: Estimates | None = None
+
+    def _order(self, grid: LaplaceGrid, settings: Settings) -> int:
+        if settings.modes != "auto":
+            return settings.modes
+        order, remaining = estimates.choose_modes(self.problem, grid, settings.tolerance)
         if remaining > settings.tolerance:
-            warnings.append(
-                f'modes="auto": {chosen} orders, the most that are allowed, leave an estimated {remaining:.2g} of the stress, more than '
+            self._notes.append(
+                f'modes="auto": {order} orders, the most that are allowed, leave an estimated {remaining:.2g} of the stress, more than '
                 f"the tolerance {settings.tolerance:g}; accept it or shorten the source's spectrum (a longer rise_time)"
             )
-        stopwatch.lap("choosing the number of modes")
-    settings = replace(settings, modes=chosen)
-    spectra = linear_spectra(problem, grid, chosen, progress)
-    normal, tangential = spectra.normal, spectra.tangential
-    stopwatch.lap("modal system at all Laplace nodes")
-    trust = _estimates(problem, grid, normal, tangential, chosen)
-    stopwatch.lap("error estimates")
-    w, v = grid.invert(normal), grid.invert(tangential)
-    stopwatch.lap("inverse transform")
-    warnings += checks.before(problem, grid, chosen) + checks.after(problem, trust, chosen)
-    return ModalSolution(problem, settings, grid.time, w, v, trust, tuple(warnings), stopwatch.seconds)
+        self._stopwatch.lap("choosing the number of modes")
+        return order
+
+    @property
+    def trust(self) -> Estimates:
+        """Error estimates of the structure without absorbers."""
+        if self._trust is None:
+            linear = self.structure.linear
+            self._trust = _estimates(self.structure, linear.normal, linear.tangential)
+        return self._trust
+
+    def solve(self, absorbers: Iterable[Absorber] | AbsorberRing | None = None, progress: Progress | None = None) -> ModalSolution:
+        """Return the modal histories with the given absorbers; with the system's own if None.
+
+        Raises
+        ------
+        InputError
+            If an absorber does not fit the system or the force law cannot be marched at this step.
+        """
+        system = self.problem.system if absorbers is None else self.problem.system.replace(absorbers=absorbers)
+        problem, structure = replace(self.problem, system=system), self.structure
+        grid, stopwatch, progress = structure.grid, self._stopwatch, progress or self._progress
+        linked: LinkedSpectra | None = None
+        warnings = list(self._notes)
+        if system.absorber_list:
+            structure.compliance  # noqa: B018 - one pass for response and compliance together
+            stopwatch.lap("modal system at all Laplace nodes")
+            links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
+            linked = solve_linked(structure, links, progress)
+            normal, tangential = linked.normal, linked.tangential
+            stopwatch.lap("absorbers")
+            warnings += checks.absorbers(structure, links, linked)
+        else:
+            normal, tangential = structure.linear.normal, structure.linear.tangential
+            stopwatch.lap("modal system at all Laplace nodes")
+        trust = self.trust
+        stopwatch.lap("error estimates")
+        order, keep = structure.max_order, slice(None, None, self.settings.refinement)
+        w, v = grid.invert(normal)[..., keep], grid.invert(tangential)[..., keep]
+        rates: list[FloatArray | None] = [None, None]
+        if any(shell.gains is not None for shell in problem.shells):
+            rates = [grid.invert(x * grid.nodes)[..., keep] for x in (normal, tangential)]
+        stopwatch.lap("inverse transform")
+        warnings += checks.before(problem, grid, order) + checks.after(problem, trust, order)
+        timings, self._stopwatch = stopwatch.seconds, Stopwatch()
+        return ModalSolution(
+            problem,
+            self.settings,
+            grid.time[keep],
+            w,
+            v,
+            trust,
+            tuple(warnings),
+            timings,
+            rates[0],
+            rates[1],
+            linked.displacement[:, keep] if linked is not None else None,
+            linked.force[..., keep] if linked is not None else None,
+        )
 
 
-def _estimates(problem: Problem, grid: LaplaceGrid, normal: ComplexArray, tangential: ComplexArray, max_order: int) -> Estimates:
+def _estimates(structure: PreparedStructure, normal: ComplexArray, tangential: ComplexArray) -> Estimates:
+    problem, grid, max_order = structure.problem, structure.grid, structure.max_order
     orders = estimates.sampled_orders(problem, max_order + 1)
     above = estimates.modal_norms(problem, grid, orders)
     below = estimates.computed_norms(normal, tangential)

@@ -1,0 +1,188 @@
+"""Absorbers in dimensionless form, their symmetry, and the projection between their forces and the modes.
+
+Absorber n links shell i to shell i + 1 at theta_n. On side j (0 the inner, 1 the outer shell) it exerts, positive inward,
+
+    f = c dD/dt + k_l D + k_nl D^3,  D = q - w_j(theta_n);      m d2q/dt2 = -f_0 - f_1         (Eqs. 6, 7)
+
+and a line force f at radius R is the modal pressure f cos(m theta_n)/(beta pi R), beta = 2 for m = 0, else 1 (sine half alike).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.model.absorbers import Absorber
+from coaxshell.solver.excitation import projection
+from coaxshell.solver.scaling import Problem
+
+Array = npt.NDArray[Any]
+
+_SAME_ANGLE = 1e-9
+"""Degrees within which two angles count as one."""
+
+
+@dataclass(frozen=True)
+class AbsorberSet:
+    """Absorbers of one system, dimensionless; mirror images are carried once where the motion is symmetric.
+
+    Attributes
+    ----------
+    angle : ndarray, shape (N,)
+        Degrees.
+    mass, damping, linear, cubic : ndarray, shape (N,)
+        m/(rho_e a^2), c/(rho_e c_e a), k_l/(rho_e c_e^2), k_nl a^2/(rho_e c_e^2).
+    inner_shell : ndarray of int, shape (N,)
+    multiplicity : ndarray, shape (N,)
+        2 for one that stands for itself and its mirror image, else 1.
+    member : ndarray of int
+        For every absorber of the description, the one here that stands for it.
+    halves : int
+        1 if only the cosine half of the Fourier series is excited, else 2.
+    """
+
+    angle: FloatArray
+    mass: FloatArray
+    damping: FloatArray
+    linear: FloatArray
+    cubic: FloatArray
+    inner_shell: npt.NDArray[np.int64]
+    multiplicity: FloatArray
+    member: npt.NDArray[np.int64]
+    halves: int
+
+    @property
+    def count(self) -> int:
+        """N, absorbers carried."""
+        return int(self.angle.size)
+
+    @cached_property
+    def is_linear(self) -> bool:
+        """Whether no absorber has cubic stiffness."""
+        return not np.any(self.cubic)
+
+    def shapes(self, max_order: int) -> FloatArray:
+        """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (halves, N, M + 1)."""
+        orders = all_orders(max_order)
+        return np.stack([np.stack([projection(orders, float(angle), half)[:, 0] for angle in self.angle]) for half in range(self.halves)])
+
+
+def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halves: int) -> AbsorberSet:
+    """Return the dimensionless absorbers; with symmetric sources and layout, one of each mirrored pair."""
+    length, pressure, velocity = problem.scales.length, problem.scales.pressure, problem.scales.velocity
+    symmetric = source_halves == 1 and _mirror_symmetric(absorbers)
+    carried: list[Absorber] = []
+    multiplicity: list[float] = []
+    found: dict[tuple[object, ...], int] = {}
+    member = []
+    for absorber in absorbers:
+        key = _place(absorber, mirrored=False) if symmetric else (len(carried),)
+        mirror = _place(absorber, mirrored=True) if symmetric else key
+        if mirror != key and mirror in found:
+            index = found.pop(mirror)  # each one here answers for one mirror image
+            multiplicity[index] = 2.0
+        else:
+            index = len(carried)
+            carried.append(absorber)
+            multiplicity.append(1.0)
+            found[key] = index
+        member.append(index)
+    column = {
+        name: np.array([getattr(a, name) for a in carried], dtype=np.float64) for name in Absorber.model_fields if name != "inner_shell"
+    }
+    return AbsorberSet(
+        angle=column["angle"],
+        mass=column["mass"] * velocity**2 / (pressure * length**2),
+        damping=column["damping"] * velocity / (pressure * length),
+        linear=column["linear_stiffness"] / pressure,
+        cubic=column["cubic_stiffness"] * length**2 / pressure,
+        inner_shell=np.array([a.inner_shell for a in carried], dtype=np.int64),
+        multiplicity=np.array(multiplicity),
+        member=np.array(member, dtype=np.int64),
+        halves=1 if symmetric else 2,
+    )
+
+
+def _place(absorber: Absorber, *, mirrored: bool) -> tuple[object, ...]:
+    """Return what makes two absorbers equal: rounded angle and all properties."""
+    angle = round((-absorber.angle if mirrored else absorber.angle) / _SAME_ANGLE) % round(360.0 / _SAME_ANGLE)
+    rest = tuple(value for name, value in absorber.model_dump().items() if name != "angle")
+    return (angle, *rest)
+
+
+def _mirror_symmetric(absorbers: tuple[Absorber, ...]) -> bool:
+    """Return whether the layout equals its mirror image about theta = 0."""
+    ahead = sorted(map(repr, (_place(a, mirrored=False) for a in absorbers)))
+    mirror = sorted(map(repr, (_place(a, mirrored=True) for a in absorbers)))
+    return ahead == mirror
+
+
+class InterfacePoints:
+    """The 2N points at which absorbers touch shells, and the maps between them and the modes.
+
+    Points are ordered by side, then absorber: 0..N-1 on the inner shells, N..2N-1 on the outer ones.
+    """
+
+    def __init__(self, problem: Problem, absorbers: AbsorberSet, max_order: int) -> None:
+        self.shell = np.concatenate([absorbers.inner_shell, absorbers.inner_shell + 1])
+        self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
+        shapes = absorbers.shapes(max_order)
+        self._evaluate = [np.ascontiguousarray(shapes[:, points % absorbers.count]) for _, points in self._groups]
+        orders = all_orders(max_order)
+        beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
+        weight = np.tile(absorbers.multiplicity, 2)
+        self._project = [
+            np.ascontiguousarray(self._evaluate[i] * weight[points][None, :, None] / (beta_pi * problem.shells[i].radius))
+            for i, points in self._groups
+        ]
+        self.count = self.shell.size
+        self.halves, self.modes = shapes.shape[0], max_order + 1
+
+    def evaluate(self, modal: Array) -> Array:
+        """Return the value at every point of modal amplitudes (shells, halves, M + 1[, T]): shape (points[, T])."""
+        values = np.empty((self.count, *modal.shape[3:]), modal.dtype)
+        for (i, points), shape in zip(self._groups, self._evaluate, strict=True):
+            values[points] = sum(shape[h] @ modal[i, h] for h in range(min(self.halves, modal.shape[1])))
+        return values
+
+    def project(self, forces: Array) -> Array:
+        """Return the modal pressures (shells, halves, M + 1[, T]) of line forces at the points (points[, T])."""
+        modal = np.zeros((len(self._groups), self.halves, self.modes, *forces.shape[1:]), forces.dtype)
+        for (i, points), shape in zip(self._groups, self._project, strict=True):
+            if points.size:
+                for h in range(self.halves):
+                    modal[i, h] = shape[h].T @ forces[points]
+        return modal
+
+    def immediate(self, present: FloatArray) -> FloatArray:
+        """Return the velocities at the points per force there within the same step, shape (points, points).
+
+        ``present`` holds the kernels' weights at lag 0, shape (shells, shells, M + 1).
+        """
+        matrix = np.zeros((self.count, self.count))
+        for i, rows in self._groups:
+            for j, columns in self._groups:
+                shapes = zip(self._evaluate[i], self._project[j], strict=True)
+                matrix[np.ix_(rows, columns)] = sum((e * present[i, j]) @ p.T for e, p in shapes)
+        return matrix
+
+    def receptance(self, compliance: ComplexArray) -> ComplexArray:
+        """Return the displacements at the points per unit force at the points, shape (nodes, points, points).
+
+        ``compliance`` is C_ij, shape (shells, shells, M + 1, nodes).
+        """
+        nodes = compliance.shape[-1]
+        matrix = np.zeros((nodes, self.count, self.count), np.complex128)
+        for i, rows in self._groups:
+            for j, columns in self._groups:
+                if rows.size and columns.size:
+                    spectra = np.ascontiguousarray(compliance[i, j].T)
+                    shapes = zip(self._evaluate[i], self._project[j], strict=True)
+                    matrix[:, rows[:, None], columns] = sum((e * spectra[:, None, :]) @ p.T for e, p in shapes)
+        return matrix

@@ -1,0 +1,68 @@
+"""Linear absorbers, solved exactly at each Laplace node.
+
+With z = c s + k_l and the mass eliminated, q = z (w_0 + w_1)/(m s^2 + 2 z), the forces on the two sides are f = -Y w,
+
+    Y = [[z - z^2/d, -z^2/d], [-z^2/d, z - z^2/d]],     d = m s^2 + 2 z,
+
+and the shells answer w = w_linear + G f with G = E C(s) P, E evaluating modes at the points and P projecting forces on modes:
+(I + G Y) w = w_linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.spectral import Progress, over_blocks
+
+_BLOCK_BYTES = 32 * 1024 * 1024
+
+
+@dataclass(frozen=True)
+class LinearAbsorberSpectra:
+    """Transforms of the interface quantities: force (2N, nodes), mass_displacement (N, nodes), modal_pressure."""
+
+    force: ComplexArray
+    mass_displacement: ComplexArray
+    modal_pressure: ComplexArray
+
+
+def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return (own, other, mass) per absorber and node, shape (nodes, N): Y = [[own, other], [other, own]], q = mass (w_0 + w_1)."""
+    z = absorbers.damping * s[:, None] + absorbers.linear
+    dynamic = absorbers.mass * s[:, None] ** 2 + 2.0 * z
+    share = z / dynamic
+    return z - z * share, -z * share, share
+
+
+def solve_linear(
+    structure: PreparedStructure, absorbers: AbsorberSet, points: InterfacePoints, progress: Progress | None = None
+) -> LinearAbsorberSpectra:
+    """Return the interface spectra of linear absorbers, exact up to the modal truncation."""
+    nodes, count = structure.grid.nodes, absorbers.count
+    excited = points.evaluate(structure.linear.normal)
+    force = np.empty((2 * count, nodes.size), np.complex128)
+    displacement = np.empty((count, nodes.size), np.complex128)
+    width = max(4, _BLOCK_BYTES // (16 * (2 * count) ** 2))
+    blocks = [slice(a, min(a + width, nodes.size)) for a in range(0, nodes.size, width)]
+
+    def work(block: slice) -> None:
+        own, other, mass = admittance(absorbers, nodes[block])
+        receptance = points.receptance(structure.compliance[..., block])
+        system = np.empty_like(receptance)
+        for side in (0, 1):
+            here, there = slice(side * count, (side + 1) * count), slice((1 - side) * count, (2 - side) * count)
+            system[:, :, here] = receptance[:, :, here] * own[:, None, :] + receptance[:, :, there] * other[:, None, :]
+        system[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
+        w = np.linalg.solve(system, excited[:, block].T[:, :, None])[:, :, 0]
+        inner, outer = w[:, :count], w[:, count:]
+        force[:count, block] = -(own * inner + other * outer).T
+        force[count:, block] = -(other * inner + own * outer).T
+        displacement[:, block] = (mass * (inner + outer)).T
+
+    over_blocks(blocks, work, progress, "linear absorbers")
+    return LinearAbsorberSpectra(force, displacement, points.project(force))

@@ -1,0 +1,76 @@
+"""The prepared structure with its absorbers: exact in the Laplace domain where they are linear, marched where they are not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.operators import FloatArray
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.linear_absorbers import solve_linear
+from coaxshell.solver.march import march
+from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.spectral import Progress
+
+
+@dataclass(frozen=True)
+class LinkedSpectra:
+    """The answer with absorbers.
+
+    Attributes
+    ----------
+    normal, tangential : ndarray, shape (shells, halves, M + 1, nodes)
+        Transforms of W and V.
+    force : ndarray, shape (N, 2, T)
+        Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
+    displacement : ndarray, shape (N, T)
+        q of every absorber of the description.
+    iterations : int
+        Newton iterations in all, 0 if solved exactly.
+    """
+
+    normal: ComplexArray
+    tangential: ComplexArray
+    force: FloatArray
+    displacement: FloatArray
+    iterations: int
+
+
+def solve_linked(
+    structure: PreparedStructure, absorbers: AbsorberSet, progress: Progress | None = None, *, exact: bool | None = None
+) -> LinkedSpectra:
+    """Return the response with absorbers.
+
+    ``exact`` None chooses: linear absorbers in the Laplace domain, cubic ones by the march. False marches linear ones too, for
+    comparison.
+    """
+    points = InterfacePoints(structure.problem, absorbers, structure.max_order)
+    grid = structure.grid
+    if absorbers.is_linear if exact is None else exact:
+        linear = solve_linear(structure, absorbers, points, progress)
+        pressure, iterations = linear.modal_pressure, 0
+        force, displacement = grid.invert(linear.force), grid.invert(linear.mass_displacement)
+    else:
+        result = march(
+            absorbers,
+            points,
+            structure.kernels,
+            points.evaluate(structure.linear_displacement),
+            points.evaluate(structure.linear_velocity),
+            grid.time_step,
+            progress,
+        )
+        pressure, iterations = grid.transform(result.modal_pressure), result.iterations
+        force, displacement = result.force, result.mass_displacement
+    normal, tangential = structure.forced_spectra(pressure)
+    sides = force.reshape(2, absorbers.count, -1).swapaxes(0, 1)
+    return LinkedSpectra(normal, tangential, sides[absorbers.member], displacement[absorbers.member], iterations)
+
+
+def modal_pressure_of(structure: PreparedStructure, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:
+    """Return the modal pressures (shells, halves, M + 1, T) of stored absorber forces (N, 2, T)."""
+    points = InterfacePoints(structure.problem, absorbers, structure.max_order)
+    representative = np.array([int(np.flatnonzero(absorbers.member == i)[0]) for i in range(absorbers.count)])
+    return points.project(force[representative].swapaxes(0, 1).reshape(2 * absorbers.count, -1))
