@@ -50,7 +50,7 @@ if TYPE_CHECKING:
         materials,
         presets,
     )
-    from coaxshell.response import Response, load_response, simulate
+    from coaxshell.response import PreparedSystem, Response, load_response, prepare, simulate
 
 _ROOMS = {
     "coaxshell.model": (
@@ -58,7 +58,7 @@ _ROOMS = {
         "Piezoelectric PlaneShock PlaneWave RigidShell Sampled Shell SphericalShock SphericalWave Step System UnderwaterExplosion "
         "Vacuum absorber_ring fluids materials presets"
     ),
-    "coaxshell.response": "Response load_response simulate",
+    "coaxshell.response": "PreparedSystem Response load_response prepare simulate",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 
@@ -81,6 +81,7 @@ __all__ = [
     "Piezoelectric",
     "PlaneShock",
     "PlaneWave",
+    "PreparedSystem",
     "Response",
     "RigidShell",
     "Sampled",
@@ -96,6 +97,7 @@ __all__ = [
     "fluids",
     "load_response",
     "materials",
+    "prepare",
     "presets",
     "simulate",
 ]

@@ -37,15 +37,20 @@ def _starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
 
     Near the imaginary axis with |z| > m the recurrence does not forget its start, so the start must be exact there.
     """
+    far = np.flatnonzero(np.abs(z) > _ASYMPTOTIC_LIMIT * order)
+    above = ive(order + 1, z[far])
+    usable = above != 0  # ive underflows where Re z is large and |z| not much above m; there the start is forgotten quickly
+    far, above = far[usable], above[usable]
     ratio = np.empty_like(z)
-    far = np.abs(z) > _ASYMPTOTIC_LIMIT * order
-    ratio[far] = ive(order + 1, z[far]) / ive(order, z[far])
-    near = z[~far]
+    ratio[far] = above / ive(order, z[far])
+    rest = np.ones(z.size, dtype=bool)
+    rest[far] = False
+    near = z[rest]
     top = order + _FORGETTING_STEPS
     r = near / (top + 0.5 + np.sqrt((top + 1.5) ** 2 + near**2))  # DLMF 10.41 leading ratio (Amos's bound)
     for m in range(top, order, -1):
         r = 1.0 / (2 * m / near + r)
-    ratio[~far] = r
+    ratio[rest] = r
     return ratio
 
 

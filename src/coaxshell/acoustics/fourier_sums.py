@@ -26,7 +26,7 @@ def exponential_sums(times: npt.NDArray[np.float64], weights: npt.NDArray[np.flo
     Parameters
     ----------
     times : ndarray, shape (J,)
-        0 <= t_j < period.
+        t_j >= 0.
     weights : ndarray, shape (J, sets)
         Real weights c_j, one set a column.
     grid : LaplaceGrid
@@ -38,27 +38,26 @@ def exponential_sums(times: npt.NDArray[np.float64], weights: npt.NDArray[np.flo
     """
     cells = int(fft.next_fast_len(int(np.ceil(_OVERSAMPLING * grid.samples)), real=True))
     position = times * (cells / grid.period)
-    spread = _spreading(position, np.exp(-grid.shift * times))
-    spread_weights = spread @ weights
+    spread = _spreading(position, np.exp(-grid.shift * times), cells) @ weights
     fine = np.zeros((weights.shape[1], cells))
-    used = min(cells, spread_weights.shape[0])
-    fine[:, :used] = spread_weights[:used].T
-    if used < spread_weights.shape[0]:  # the last times wrap around the period
-        fine[:, : spread_weights.shape[0] - used] += spread_weights[used:].T
+    fine[:, : spread.shape[0]] = spread.T
     spectrum: npt.NDArray[np.complex128] = fft.rfft(fine, axis=-1, workers=WORKERS)[:, : grid.nodes.size]
     spectrum *= _deconvolution(np.arange(grid.nodes.size) / cells)
     return spectrum
 
 
-def _spreading(position: npt.NDArray[np.float64], damping: npt.NDArray[np.float64]) -> sparse.csr_array:
-    """Return the matrix that spreads weights at fractional positions onto cells, delayed by half the kernel's width."""
+def _spreading(position: npt.NDArray[np.float64], damping: npt.NDArray[np.float64], cells: int) -> sparse.csr_array:
+    """Return the matrix that spreads weights at fractional positions onto periodic cells, delayed by half the kernel's width.
+
+    Cells above the highest that is reached are left out.
+    """
     first = np.floor(position).astype(np.int64) + 1
     cell = first[:, None] + np.arange(_WIDTH)
     offset = (cell - position[:, None] - _WIDTH / 2) / (_WIDTH / 2)
     kernel = i0(_SHAPE * np.sqrt(np.maximum(0.0, 1.0 - offset**2))) / i0(_SHAPE) * damping[:, None]
     column = np.broadcast_to(np.arange(position.size)[:, None], cell.shape)
-    shape = (int(cell.max()) + 1, position.size)
-    return sparse.csr_array((kernel.ravel(), (cell.ravel(), column.ravel())), shape=shape)
+    shape = (min(int(cell.max()) + 1, cells), position.size)
+    return sparse.csr_array((kernel.ravel(), ((cell % cells).ravel(), column.ravel())), shape=shape)
 
 
 def _deconvolution(frequency: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:

@@ -2,8 +2,8 @@
 
 from coaxshell.response.loading import load_response
 from coaxshell.response.response import Response
-from coaxshell.response.simulation import simulate
+from coaxshell.response.simulation import PreparedSystem, prepare, simulate
 from coaxshell.response.storage import info
 from coaxshell.response.summary import ShellSummary, Summary
 
-__all__ = ["Response", "ShellSummary", "Summary", "info", "load_response", "simulate"]
+__all__ = ["PreparedSystem", "Response", "ShellSummary", "Summary", "info", "load_response", "prepare", "simulate"]

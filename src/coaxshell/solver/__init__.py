@@ -1,5 +1,5 @@
 """From a system to its modal histories."""
 
-from coaxshell.solver.solve import solve
+from coaxshell.solver.solve import Prepared, solve
 
-__all__ = ["solve"]
+__all__ = ["Prepared", "solve"]

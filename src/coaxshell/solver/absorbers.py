@@ -43,6 +43,8 @@ class AbsorberSet:
         2 for one that stands for itself and its mirror image, else 1.
     member : ndarray of int
         For every absorber of the description, the one here that stands for it.
+    every_angle : ndarray
+        Degrees, of all absorbers of the description.
     halves : int
         1 if only the cosine half of the Fourier series is excited, else 2.
     """
@@ -55,6 +57,7 @@ class AbsorberSet:
     inner_shell: npt.NDArray[np.int64]
     multiplicity: FloatArray
     member: npt.NDArray[np.int64]
+    every_angle: FloatArray
     halves: int
 
     @property
@@ -70,7 +73,8 @@ class AbsorberSet:
     def shapes(self, max_order: int) -> FloatArray:
         """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (halves, N, M + 1)."""
         orders = all_orders(max_order)
-        return np.stack([np.stack([projection(orders, float(angle), half)[:, 0] for angle in self.angle]) for half in range(self.halves)])
+        rows = [projection(orders, float(angle), half)[:, 0] for half in range(self.halves) for angle in self.angle]
+        return np.array(rows).reshape(self.halves, self.count, orders.size)
 
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halves: int) -> AbsorberSet:
@@ -105,6 +109,7 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halve
         inner_shell=np.array([a.inner_shell for a in carried], dtype=np.int64),
         multiplicity=np.array(multiplicity),
         member=np.array(member, dtype=np.int64),
+        every_angle=np.array([a.angle for a in absorbers], dtype=np.float64),
         halves=1 if symmetric else 2,
     )
 
@@ -133,7 +138,7 @@ class InterfacePoints:
         self.shell = np.concatenate([absorbers.inner_shell, absorbers.inner_shell + 1])
         self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
         shapes = absorbers.shapes(max_order)
-        self._evaluate = [np.ascontiguousarray(shapes[:, points % absorbers.count]) for _, points in self._groups]
+        self._evaluate = [np.ascontiguousarray(shapes[:, points % max(absorbers.count, 1)]) for _, points in self._groups]
         orders = all_orders(max_order)
         beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
         weight = np.tile(absorbers.multiplicity, 2)

@@ -6,14 +6,17 @@ Each is one sentence with both numbers and the remedy.
 from __future__ import annotations
 
 import numpy as np
+from scipy import fft
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linked import LinkedSpectra
 from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
-from coaxshell.solver.solution import Estimates
+from coaxshell.solver.solution import Estimates, ModalSolution
 
 THIN_SHELL_LIMIT = 0.1
 TRUNCATION_LIMIT = 1e-2
@@ -78,6 +81,46 @@ def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSp
         f"absorbers: the stiffest vibrates at {fastest:.3g} per transit on the shell's own mass, {fastest * step:.2g} radians a step, "
         f"more than {RESOLVED_ANGLE:g}; use time_step = {RESOLVED_ANGLE / fastest:.2g} or refinement = {factor}"
     ]
+
+
+def actuators(solution: ModalSolution) -> list[str]:
+    """Return the warnings about actuators asked for more than their field limit, with the factor."""
+    warnings = []
+    for i, shell in enumerate(solution.problem.shells):
+        if shell.gains is None or solution.normal_rate is None or solution.tangential_rate is None:
+            continue
+        asked = peak_voltage(solution, i)
+        limit = voltage_limit(solution.problem, i)
+        control = solution.problem.system.control
+        if control is None or asked <= limit:
+            continue
+        label = shell_label(i, len(solution.problem.shells))
+        if control.saturation:
+            outcome = f"the voltage was held at {limit:.4g} V, where the law asked for {asked:.4g} V ({asked / limit:.2g} times as much)"
+            remedy = "lower the gains to stay within what the actuator can do"
+        else:
+            outcome = f"the control law asks for {asked:.4g} V, {asked / limit:.2g} times the {limit:.4g} V its actuator stands"
+            remedy = "set control.saturation = true to see what it can really do, or lower the gains"
+        warnings.append(f"{label}: {outcome}; {remedy}")
+    return warnings
+
+
+def peak_voltage(solution: ModalSolution, index: int) -> float:
+    """Return the largest voltage that the control law of one shell asks for, anywhere and at any time (Eq. 17)."""
+    gains = solution.problem.shells[index].gains
+    assert gains is not None
+    assert solution.normal_rate is not None
+    assert solution.tangential_rate is not None
+    orders = all_orders(solution.normal.shape[2] - 1)[:, None]
+    sensor_v, sensor_w = solution.problem.sensor_gain(index, orders)
+    w = gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index]
+    v = gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index]
+    volts = sensor_v * v + sensor_w * w
+    points = 2 * orders.size
+    spectrum = np.zeros((points // 2 + 1, volts.shape[-1]), np.complex128)
+    spectrum[: orders.size] = volts[0] if volts.shape[0] == 1 else volts[0] - 1j * volts[1]
+    spectrum[1:] *= 0.5
+    return float(np.abs(fft.irfft(spectrum, points, axis=0, workers=WORKERS)).max() * points)
 
 
 def _stretch(force: float, linear: float, cubic: float) -> float:

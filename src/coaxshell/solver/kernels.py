@@ -44,7 +44,7 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
     weights = np.empty((count, count, max_order + 1, grid.time.size))
-    hat = (np.sinh(0.5 * grid.time_step * grid.nodes) / (0.5 * grid.time_step * grid.nodes)) ** 2 * grid.time_step
+    hat = hat_transform(grid)
     for i in range(count):
         for j in range(count):
             spectrum = compliance[i, j] * grid.nodes
@@ -54,6 +54,48 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
                 weights[i, j] += exponential_weights(decay, grid) / mass
             else:
                 weights[i, j] = grid.invert(spectrum * hat)
+    return weights
+
+
+def hat_transform(grid: LaplaceGrid) -> ComplexArray:
+    """Return dt (sinh(s dt/2)/(s dt/2))^2 at the nodes: what sampling against forces linear between steps does to a spectrum."""
+    half = 0.5 * grid.time_step * grid.nodes
+    return np.asarray((np.sinh(half) / half) ** 2 * grid.time_step, dtype=np.complex128)
+
+
+def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArray) -> ComplexArray:
+    """Return the voltage asked for per W of a controlled shell, (k_p + k_d s) times its sensor's gain (Eqs. 17, 20).
+
+    ``ratio`` is V/W of the shell, shape (M + 1, nodes).
+    """
+    gains = problem.shells[index].gains
+    assert gains is not None
+    sensor_v, sensor_w = problem.sensor_gain(index, all_orders(ratio.shape[0] - 1)[:, None])
+    return np.asarray((gains.proportional + gains.derivative * s) * (sensor_v * ratio + sensor_w), dtype=np.complex128)
+
+
+def voltage_weights(
+    problem: Problem, grid: LaplaceGrid, compliance: ComplexArray, ratio: ComplexArray, controlled: list[int]
+) -> FloatArray:
+    """Return the step weights of modal pressures in the voltages asked for, shape (controlled, shells, M + 1, T).
+
+    The leading term of the derivative feedback, k_d times the sensor's gain on W times (1/M)/(s + b), is inverted in closed form.
+    """
+    count, max_order = compliance.shape[0], compliance.shape[2] - 1
+    weights = np.empty((len(controlled), count, max_order + 1, grid.time.size))
+    hat = hat_transform(grid)
+    for row, i in enumerate(controlled):
+        law = voltage_law(problem, i, grid.nodes, ratio[i])
+        shell = problem.shells[i]
+        assert shell.gains is not None
+        decay = initial_decay(problem, i, max_order)
+        leading = shell.gains.derivative * problem.sensor_gain(i, all_orders(max_order)[:, None])[1] / shell.mass
+        for j in range(count):
+            if i == j:
+                weights[row, j] = grid.invert((law * compliance[i, j] - leading / (grid.nodes + decay)) * hat)
+                weights[row, j] += leading * exponential_weights(decay, grid)
+            else:
+                weights[row, j] = grid.invert(law * compliance[i, j] * hat)
     return weights
 
 

@@ -10,6 +10,7 @@ from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linear_absorbers import solve_linear
+from coaxshell.solver.linear_ring import is_ring, solve_ring
 from coaxshell.solver.march import march
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.spectral import Progress
@@ -17,7 +18,7 @@ from coaxshell.solver.spectral import Progress
 
 @dataclass(frozen=True)
 class LinkedSpectra:
-    """The answer with absorbers.
+    """The answer with absorbers and saturation.
 
     Attributes
     ----------
@@ -27,6 +28,8 @@ class LinkedSpectra:
         Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
     displacement : ndarray, shape (N, T)
         q of every absorber of the description.
+    correction : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressure of what saturated actuators lack.
     iterations : int
         Newton iterations in all, 0 if solved exactly.
     """
@@ -35,38 +38,39 @@ class LinkedSpectra:
     tangential: ComplexArray
     force: FloatArray
     displacement: FloatArray
+    correction: FloatArray | None
     iterations: int
 
 
 def solve_linked(
-    structure: PreparedStructure, absorbers: AbsorberSet, progress: Progress | None = None, *, exact: bool | None = None
+    structure: PreparedStructure,
+    absorbers: AbsorberSet,
+    progress: Progress | None = None,
+    *,
+    saturate: bool = False,
+    exact: bool | None = None,
 ) -> LinkedSpectra:
-    """Return the response with absorbers.
+    """Return the response with absorbers, and with saturating actuators if asked for.
 
-    ``exact`` None chooses: linear absorbers in the Laplace domain, cubic ones by the march. False marches linear ones too, for
-    comparison.
+    ``exact`` None chooses: linear absorbers in the Laplace domain, anything nonlinear by the march. False marches linear ones
+    too, for comparison.
     """
-    points = InterfacePoints(structure.problem, absorbers, structure.max_order)
     grid = structure.grid
-    if absorbers.is_linear if exact is None else exact:
-        linear = solve_linear(structure, absorbers, points, progress)
+    correction: FloatArray | None = None
+    if (absorbers.is_linear and not saturate) if exact is None else exact:
+        if is_ring(absorbers):
+            linear = solve_ring(structure, absorbers)
+        else:
+            linear = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
         pressure, iterations = linear.modal_pressure, 0
         force, displacement = grid.invert(linear.force), grid.invert(linear.mass_displacement)
     else:
-        result = march(
-            absorbers,
-            points,
-            structure.kernels,
-            points.evaluate(structure.linear_displacement),
-            points.evaluate(structure.linear_velocity),
-            grid.time_step,
-            progress,
-        )
-        pressure, iterations = grid.transform(result.modal_pressure), result.iterations
+        result = march(structure, absorbers, saturate=saturate, progress=progress)
+        pressure, iterations, correction = grid.transform(result.modal_pressure), result.iterations, result.correction
         force, displacement = result.force, result.mass_displacement
     normal, tangential = structure.forced_spectra(pressure)
-    sides = force.reshape(2, absorbers.count, -1).swapaxes(0, 1)
-    return LinkedSpectra(normal, tangential, sides[absorbers.member], displacement[absorbers.member], iterations)
+    sides = force.reshape(2, absorbers.count, grid.time.size).swapaxes(0, 1)
+    return LinkedSpectra(normal, tangential, sides[absorbers.member], displacement[absorbers.member], correction, iterations)
 
 
 def modal_pressure_of(structure: PreparedStructure, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ iteration slows down. A massless absorber has S = 0 at every instant instead of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,10 @@ class StepState:
         """Return the state before the shock."""
         pair = (2, count)
         return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), np.zeros(pair), np.zeros(count), np.zeros(count))
+
+    def copy(self) -> StepState:
+        """Return a state that a step may change without changing this one; steps replace arrays, so sharing them is safe."""
+        return replace(self)
 
 
 class InterfaceNewton:

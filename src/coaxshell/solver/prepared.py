@@ -10,7 +10,7 @@ from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.solver.history import KernelTable
-from coaxshell.solver.kernels import velocity_weights
+from coaxshell.solver.kernels import velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import LinearSpectra, Progress, linear_spectra
 
@@ -71,6 +71,23 @@ class PreparedStructure:
     def kernels(self) -> KernelTable:
         """Step weights of the velocity kernels, ready for history sums."""
         return KernelTable(velocity_weights(self.problem, self.grid, self.compliance))
+
+    @cached_property
+    def controlled(self) -> list[int]:
+        """Shells with feedback."""
+        return [i for i, shell in enumerate(self.problem.shells) if shell.gains is not None]
+
+    @cached_property
+    def kernels_with_voltage(self) -> KernelTable:
+        """The same, with the voltages asked for on the controlled shells as further outputs."""
+        voltage = voltage_weights(self.problem, self.grid, self.compliance, self.tangential_ratio, self.controlled)
+        return KernelTable(np.concatenate([velocity_weights(self.problem, self.grid, self.compliance), voltage]))
+
+    @cached_property
+    def linear_voltage(self) -> FloatArray:
+        """Voltages asked for without absorbers or saturation, shape (controlled, halves, M + 1, T)."""
+        laws = [voltage_law(self.problem, i, self.grid.nodes, self.tangential_ratio[i]) for i in self.controlled]
+        return np.stack([self.grid.invert(law * self.linear.normal[i]) for law, i in zip(laws, self.controlled, strict=True)])
 
     def forced_spectra(self, pressure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Return the transforms of W and V, sources and modal pressures on the shells together.

@@ -106,13 +106,14 @@ class Prepared:
         grid, stopwatch, progress = structure.grid, self._stopwatch, progress or self._progress
         linked: LinkedSpectra | None = None
         warnings = list(self._notes)
-        if system.absorber_list:
+        saturate = system.control is not None and system.control.saturation
+        if system.absorber_list or saturate:
             structure.compliance  # noqa: B018 - one pass for response and compliance together
             stopwatch.lap("modal system at all Laplace nodes")
             links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
-            linked = solve_linked(structure, links, progress)
+            linked = solve_linked(structure, links, progress, saturate=saturate)
             normal, tangential = linked.normal, linked.tangential
-            stopwatch.lap("absorbers")
+            stopwatch.lap("absorbers and saturation")
             warnings += checks.absorbers(structure, links, linked)
         else:
             normal, tangential = structure.linear.normal, structure.linear.tangential
@@ -127,20 +128,12 @@ class Prepared:
         stopwatch.lap("inverse transform")
         warnings += checks.before(problem, grid, order) + checks.after(problem, trust, order)
         timings, self._stopwatch = stopwatch.seconds, Stopwatch()
-        return ModalSolution(
-            problem,
-            self.settings,
-            grid.time[keep],
-            w,
-            v,
-            trust,
-            tuple(warnings),
-            timings,
-            rates[0],
-            rates[1],
-            linked.displacement[:, keep] if linked is not None else None,
-            linked.force[..., keep] if linked is not None else None,
-        )
+        solution = ModalSolution(problem, self.settings, grid.time[keep], w, v, trust, (), timings, rates[0], rates[1])
+        if linked is not None and system.absorber_list:
+            solution = replace(solution, absorber_displacement=linked.displacement[:, keep], absorber_force=linked.force[..., keep])
+        if linked is not None and linked.correction is not None:
+            solution = replace(solution, control_correction=linked.correction[..., keep])
+        return replace(solution, warnings=tuple(warnings + checks.actuators(solution)))
 
 
 def _estimates(structure: PreparedStructure, normal: ComplexArray, tangential: ComplexArray) -> Estimates:

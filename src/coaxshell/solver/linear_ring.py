@@ -1,0 +1,87 @@
+"""A ring of equal linear absorbers at equal spacing, solved exactly by its own symmetry.
+
+With the modes written e^{i m theta}, m = -M..M, a ring of N absorbers couples only orders that differ by multiples of N. Per residue
+class k = m mod N and Laplace node, the ring sees one amplitude per shell,
+
+    a_k = sum_{m = k mod N} w_m e^{i m theta_0},       p_m = N/(2 pi R) e^{-i m theta_0} f_k,
+
+so that what is an N x N problem for any layout is N problems of the two shells here.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.solver.absorbers import AbsorberSet
+from coaxshell.solver.linear_absorbers import LinearAbsorberSpectra, admittance
+from coaxshell.solver.prepared import PreparedStructure
+
+_SAME_ANGLE = 1e-9
+
+
+def is_ring(absorbers: AbsorberSet) -> bool:
+    """Return whether the absorbers of the description are equal and equally spaced."""
+    properties = (absorbers.mass, absorbers.damping, absorbers.linear, absorbers.cubic, absorbers.inner_shell)
+    if absorbers.count == 0 or any(np.ptp(x) > 0 for x in properties):
+        return False
+    angles = np.sort(absorbers.every_angle % 360.0)
+    gaps = np.diff(np.append(angles, angles[0] + 360.0))
+    return bool(np.all(np.abs(gaps - 360.0 / angles.size) <= _SAME_ANGLE))
+
+
+def solve_ring(structure: PreparedStructure, absorbers: AbsorberSet) -> LinearAbsorberSpectra:
+    """Return the interface spectra of a ring of linear absorbers, exact up to the modal truncation."""
+    nodes, count = structure.grid.nodes, absorbers.every_angle.size
+    inner = int(absorbers.inner_shell[0])
+    pair = slice(inner, inner + 2)
+    orders = np.arange(-structure.max_order, structure.max_order + 1)
+    start = float(absorbers.every_angle[0])
+    phase = np.exp(1j * np.radians(orders * start))
+    linear = _signed(structure.linear.normal[pair])
+    density = count / (2.0 * np.pi * np.array([structure.problem.shells[i].radius for i in (inner, inner + 1)]))
+    own, other, mass = (x[:, 0] for x in admittance(absorbers, nodes))
+    ring_index = np.rint((absorbers.angle - start) / (360.0 / count))
+    force = np.zeros((2, absorbers.count, nodes.size), np.complex128)
+    displacement = np.zeros((absorbers.count, nodes.size), np.complex128)
+    pressure = np.zeros_like(linear)
+    for k in range(min(count, orders.size)):
+        members = np.flatnonzero((orders - orders[k]) % count == 0)
+        turn = phase[members][:, None]
+        excited = (linear[:, members] * turn).sum(axis=1)
+        receptance = structure.compliance[pair, pair][:, :, np.abs(orders[members])].sum(axis=2) * density[None, :, None]
+        amplitude = _two_by_two(receptance, own, other, excited)
+        pull = -np.stack([own * amplitude[0] + other * amplitude[1], other * amplitude[0] + own * amplitude[1]])
+        pressure[:, members] = pull[:, None, :] * density[:, None, None] / turn
+        around = np.exp(2j * np.pi * orders[k] * ring_index / count)[:, None]
+        force += around * pull[:, None, :]
+        displacement += around * mass * (amplitude[0] + amplitude[1])
+    full = np.zeros((len(structure.problem.shells), absorbers.halves, structure.max_order + 1, nodes.size), np.complex128)
+    full[pair] = _halves(pressure, absorbers.halves)
+    return LinearAbsorberSpectra(force.reshape(2 * absorbers.count, -1), displacement, full)
+
+
+def _two_by_two(receptance: ComplexArray, own: ComplexArray, other: ComplexArray, excited: ComplexArray) -> ComplexArray:
+    """Return the amplitudes a of (1 + G Y) a = a_linear for the two shells, shape (2, nodes)."""
+    (g00, g01), (g10, g11) = receptance
+    a, b = 1.0 + g00 * own + g01 * other, g00 * other + g01 * own
+    c, d = g10 * own + g11 * other, 1.0 + g10 * other + g11 * own
+    determinant = a * d - b * c
+    return np.stack([(d * excited[0] - b * excited[1]) / determinant, (a * excited[1] - c * excited[0]) / determinant])
+
+
+def _signed(halves: ComplexArray) -> ComplexArray:
+    """Return amplitudes of e^{i m theta}, m = -M..M, shape (shells, 2M + 1, nodes), from those of cos and sin."""
+    cosine = halves[:, 0]
+    sine = halves[:, 1] if halves.shape[1] == 2 else np.zeros_like(cosine)
+    positive, negative = 0.5 * (cosine - 1j * sine), 0.5 * (cosine + 1j * sine)
+    return np.concatenate([negative[:, :0:-1], cosine[:, :1], positive[:, 1:]], axis=1)
+
+
+def _halves(signed: ComplexArray, count: int) -> ComplexArray:
+    """Return amplitudes of cos, and of sin if ``count`` is 2, from those of e^{i m theta}."""
+    order = signed.shape[1] // 2
+    positive, negative = signed[:, order:], signed[:, order::-1]
+    cosine, sine = positive + negative, 1j * (positive - negative)
+    cosine[:, 0] = signed[:, order]
+    return np.stack([cosine, sine][:count], axis=1)

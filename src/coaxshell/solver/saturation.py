@@ -1,0 +1,85 @@
+"""Actuators that cannot follow the control law: the voltage stops at the field limit.
+
+The linear solution already contains the control law, so only the correction is unknown: where the voltage asked for, u, exceeds
+the limit, the actuator lacks delta = clip(u) - u. It acts as the pressure (actuator pressure per volt) * delta on its shell, and
+changes u in turn. Points around the circle and their saturated set are solved for at every step:
+
+    u = u_known + B delta,      delta = clip(u) - u,
+
+B the response of the voltage to a correction within the same step, by its modes. On the saturated set this is the linear
+system (1 + B) delta = clip - u_known, whose set is corrected until it reproduces itself (a semi-smooth Newton method).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import linalg
+
+from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.solver.scaling import Problem
+
+_MAX_SETS = 50
+_OVERSAMPLING = 2
+
+
+class SaturatedShell:
+    """The actuator of one shell on a circle of points.
+
+    Parameters
+    ----------
+    problem : Problem
+    index : int
+        The shell.
+    present : ndarray, shape (M + 1,)
+        Modal voltage asked for per modal pressure within the same step.
+    halves : int
+    """
+
+    def __init__(self, problem: Problem, index: int, present: FloatArray, halves: int) -> None:
+        self.index = index
+        self.limit = voltage_limit(problem, index)
+        self.pressure_per_volt = problem.actuator_pressure(index)
+        orders = all_orders(present.size - 1)
+        points = _OVERSAMPLING * present.size * halves
+        span = np.pi if halves == 1 else 2.0 * np.pi
+        theta = span * (np.arange(points) + 0.5) / points
+        angles = theta[:, None] * orders
+        self.evaluate = np.concatenate([np.cos(angles), np.sin(angles)][:halves], axis=1)
+        beta = np.tile(np.where(orders == 0, 2.0, 1.0), halves)
+        self.project = np.ascontiguousarray(self.evaluate.T * (2.0 / (beta * points))[:, None])
+        self._shape = (halves, present.size)
+        self._feedthrough = np.tile(present, halves) * self.pressure_per_volt
+        self._response = (self.evaluate * self._feedthrough) @ self.project
+        self._saturated = np.zeros(points, dtype=bool)
+
+    def correction(self, asked: FloatArray) -> FloatArray:
+        """Return the modal pressure (halves, M + 1) of the correction to modal voltages asked for without it."""
+        known = self.evaluate @ asked.ravel()
+        if not self._saturated.any() and np.abs(known).max() <= self.limit:
+            return np.zeros(self._shape)
+        delta = np.zeros_like(known)
+        for _ in range(_MAX_SETS):
+            held = np.flatnonzero(self._saturated)
+            delta[:] = 0.0
+            if held.size:
+                # The sign of the limit at a held point is that of the voltage it is held against.
+                target = np.copysign(self.limit, known[held]) - known[held]
+                system = self._response[np.ix_(held, held)] + np.eye(held.size)
+                delta[held] = linalg.solve(system, target, check_finite=False, overwrite_a=True, overwrite_b=True)
+            voltage = known + (self._response[:, held] @ delta[held] if held.size else 0.0)
+            saturated = np.abs(voltage) > self.limit
+            if np.array_equal(saturated, self._saturated):
+                break
+            self._saturated = saturated
+        return (self.pressure_per_volt * (self.project @ delta)).reshape(self._shape)
+
+
+def voltage_limit(problem: Problem, index: int) -> float:
+    """Return the largest voltage of a shell's actuator: field limit times thickness."""
+    section, control = problem.shells[index].section, problem.system.control
+    assert section is not None
+    assert control is not None
+    actuator = section.layer("actuator")
+    assert actuator is not None
+    field = control.field_limit if control.field_limit is not None else actuator.field_limit
+    return field * actuator.thickness
