@@ -15,7 +15,7 @@ help:
 	@echo "make test-all  all tests"
 	@echo "make lint      style and format"
 	@echo "make types     static types"
-	@echo "make bench     seconds of a run against the number of modes"
+	@echo "make bench     time, memory and cost curves of the solver"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
 $(STAMP): pyproject.toml
@@ -46,11 +46,7 @@ types: $(STAMP)
 	@$(BIN)/mypy
 
 bench: $(STAMP)
-	@for modes in 75 150 300; do \
-	  echo "bare system, modes = $$modes"; \
-	  $(BIN)/python -m timeit -n 1 -r 3 -s "import coaxshell as cx; system = cx.presets.load('bare')" \
-	    "cx.simulate(system, modes=$$modes)"; \
-	done
+	@$(BIN)/python -m benchmarks
 
 clean:
 	@rm -rf $(VENV) $(DEMO) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

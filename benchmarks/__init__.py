@@ -1,0 +1,1 @@
+"""Timings of coaxshell: ``python -m benchmarks`` runs them all, ``python -m benchmarks.bare`` one of them."""

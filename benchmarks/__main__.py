@@ -1,0 +1,15 @@
+"""Run every benchmark."""
+
+from __future__ import annotations
+
+from benchmarks import bare, scaling
+
+
+def main() -> None:
+    """Run them one after another."""
+    for benchmark in (bare, scaling):
+        benchmark.main()
+
+
+if __name__ == "__main__":
+    main()
