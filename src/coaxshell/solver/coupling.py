@@ -10,6 +10,7 @@ whose inverse is the modal compliance C_m(s).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,45 @@ def shell_operator(problem: Problem, index: int, s: ComplexArray, orders: FloatA
         volts = sensor_v * tangential + sensor_w
         impedance -= problem.actuator_pressure(index) * (gains.proportional + gains.derivative * s) * volts
     return ShellOperator(impedance, tangential)
+
+
+@dataclass
+class FluidMatrix:
+    """Added mass of all fluids: minus the net inward pressure on each shell per normal acceleration of each, tridiagonal.
+
+    Entries are 0.0 where a vacuum leaves nothing to couple.
+    """
+
+    diagonal: list[ComplexArray | float]
+    upper: list[ComplexArray | float]
+    lower: list[ComplexArray | float]
+
+
+def fluid_matrix(problem: Problem, radial: Callable[[float, float], RadialFunctions]) -> FluidMatrix:
+    """Return the added mass of interior, gaps and exterior.
+
+    Parameters
+    ----------
+    problem : Problem
+    radial : callable
+        From slowness and radius to the Bessel ratios there.
+    """
+    count = len(problem.shells)
+    matrix = FluidMatrix([0.0] * count, [0.0] * count, [0.0] * count)
+    for i, fluid in enumerate(problem.fluids):
+        if fluid is None:
+            continue
+        walls = [radial(fluid.slowness, problem.shells[j].radius) for j in (i - 1, i) if 0 <= j < count]
+        if i == 0:
+            matrix.diagonal[0] = matrix.diagonal[0] + fluid.density * walls[0].disc
+        elif i == count:
+            matrix.diagonal[-1] = matrix.diagonal[-1] - fluid.density * walls[0].exterior
+        else:
+            gap = annulus(*walls)
+            matrix.diagonal[i - 1] = matrix.diagonal[i - 1] - fluid.density * gap.aa
+            matrix.diagonal[i] = matrix.diagonal[i] + fluid.density * gap.bb
+            matrix.upper[i - 1], matrix.lower[i] = -fluid.density * gap.ab, fluid.density * gap.ba
+    return matrix
 
 
 class ModalSystem:
@@ -84,32 +124,15 @@ class ModalSystem:
         return self._radial[key]
 
     def _assemble(self) -> None:
-        problem, s2 = self.problem, self.s * self.s
-        count = len(problem.shells)
-        self._diagonal = [op.impedance.copy() if op is not None else np.ones_like(self.surface.exterior) for op in self.shells]
-        self._upper: list[ComplexArray | float] = [0.0] * count
-        self._lower: list[ComplexArray | float] = [0.0] * count
-        exterior = problem.fluids[-1]
-        assert exterior is not None
-        self._add_wall(count - 1, -s2 * self.surface.exterior)
-        interior = problem.fluids[0]
-        if interior is not None:
-            self._add_wall(0, interior.density * s2 * self.radial(interior.slowness, problem.shells[0].radius).disc)
-        for i, gap in enumerate(problem.fluids[1:-1]):
-            if gap is None:
-                continue
-            walls = [self.radial(gap.slowness, problem.shells[j].radius) for j in (i, i + 1)]
-            operator = annulus(*walls)
-            factor = gap.density * s2
-            self._add_wall(i, -factor * operator.aa)
-            self._add_wall(i + 1, factor * operator.bb)
-            if self.shells[i] is not None and self.shells[i + 1] is not None:
-                self._upper[i] = -factor * operator.ab
-                self._lower[i + 1] = factor * operator.ba
-
-    def _add_wall(self, index: int, stiffness: ComplexArray) -> None:
-        if self.shells[index] is not None:
-            self._diagonal[index] += stiffness
+        """Add shells and fluids; a rigid shell keeps a row of its own, W = 0, and couples to none."""
+        s2, fluids = self.s * self.s, fluid_matrix(self.problem, self.radial)
+        self._diagonal = [
+            op.impedance + s2 * fluids.diagonal[i] if op is not None else np.ones_like(self.surface.exterior)
+            for i, op in enumerate(self.shells)
+        ]
+        free = [op is not None for op in self.shells]
+        self._upper = [s2 * x if free[i] and i + 1 < len(free) and free[i + 1] else 0.0 for i, x in enumerate(fluids.upper)]
+        self._lower = [s2 * x if free[i] and i > 0 and free[i - 1] else 0.0 for i, x in enumerate(fluids.lower)]
 
     def _factor(self) -> None:
         """Eliminate from the inside out; keep 1/pivot, and what passes inward and outward."""
