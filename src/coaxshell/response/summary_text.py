@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -75,4 +76,7 @@ def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
 def _errors(summary: Mapping[str, Any]) -> list[str]:
     parts = [f"{shell['name']} {shell['stress_truncation']:.1e}" for shell in summary["shells"]]
     modes = f"orders left out of the stress: {', '.join(parts)}; " if parts else ""
-    return [f"estimated relative errors: {modes}time window {summary['time_window_error']:.1e}"]
+    step = summary["time_window_error"]
+    return [
+        f"estimated relative errors: {modes}{f'time window {step:.1e}' if math.isfinite(step) else 'time step not estimated by this engine'}"
+    ]

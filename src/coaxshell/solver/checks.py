@@ -116,7 +116,7 @@ def peak_voltage(solution: ModalSolution, index: int) -> float:
     w = gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index]
     v = gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index]
     volts = sensor_v * v + sensor_w * w
-    points = 2 * orders.size
+    points = max(8 * orders.size, 720)
     spectrum = np.zeros((points // 2 + 1, volts.shape[-1]), np.complex128)
     spectrum[: orders.size] = volts[0] if volts.shape[0] == 1 else volts[0] - 1j * volts[1]
     spectrum[1:] *= 0.5

@@ -10,11 +10,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.settings import MAX_MODES
+from coaxshell.solver.settings import MAX_MODES, Settings
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -109,3 +110,32 @@ def window_error(grid: LaplaceGrid, normal: npt.NDArray[np.complex128]) -> float
     history, wider = grid.invert(head), grid.invert(head, grid.taper(0.4))
     scale = float(np.abs(history).max())
     return 0.0 if scale == 0 else float(np.abs(history - wider).max()) / scale + grid.wrap_around
+
+
+def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings) -> tuple[int, list[str]]:
+    """Return the number of modes asked for, chosen by the tolerance if "auto", and a warning if 2000 are not enough."""
+    if settings.modes != "auto":
+        return settings.modes, []
+    order, remaining = choose_modes(problem, grid, settings.tolerance)
+    if remaining <= settings.tolerance:
+        return order, []
+    return order, [
+        f'modes="auto": {order} orders, the most that are allowed, leave an estimated {remaining:.2g} of the stress, more than '
+        f"the tolerance {settings.tolerance:g}; accept it or shorten the source's spectrum (a longer rise_time)"
+    ]
+
+
+def truncation(
+    problem: Problem, grid: LaplaceGrid, max_order: int, normal: ComplexArray, tangential: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return what the orders above M would add to displacement and stress of each shell, relative to what the others give.
+
+    ``normal`` and ``tangential`` are the transforms of W and V, shape (shells, halves, M + 1, nodes).
+    """
+    orders = sampled_orders(problem, max_order + 1)
+    above = modal_norms(problem, grid, orders)
+    below = computed_norms(normal, tangential)
+    displacement, stress = (
+        relative(tail_above(max_order, orders, high), surface_total(low)) for high, low in zip(above, below, strict=True)
+    )
+    return displacement, stress

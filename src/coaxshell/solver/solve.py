@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
@@ -13,6 +12,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.linked import LinkedSpectra, solve_linked
 from coaxshell.solver.prepared import PreparedStructure
@@ -39,7 +39,10 @@ def solve(system: System, *, settings: Settings | None = None, progress: Progres
     InputError
         If the engine cannot solve this system, its feedback is unstable or its absorbers cannot be marched at this step.
     """
-    return Prepared(system, settings or Settings(), progress).solve()
+    settings = settings or Settings()
+    if settings.engine == "direct":
+        return solve_by_marching(system, settings, progress)
+    return Prepared(system, settings, progress).solve()
 
 
 class Prepared:
@@ -59,8 +62,8 @@ class Prepared:
     """
 
     def __init__(self, system: System, settings: Settings, progress: Progress | None = None) -> None:
-        if settings.engine == "direct":
-            raise InputError("engine", '"direct" is not available yet', 'use engine="spectral"')
+        if settings.engine != "spectral":
+            raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
         self._stopwatch = Stopwatch()
         self._progress = progress
         self.problem = dimensionless(system)
@@ -74,14 +77,8 @@ class Prepared:
         self._trust: Estimates | None = None
 
     def _order(self, grid: LaplaceGrid, settings: Settings) -> int:
-        if settings.modes != "auto":
-            return settings.modes
-        order, remaining = estimates.choose_modes(self.problem, grid, settings.tolerance)
-        if remaining > settings.tolerance:
-            self._notes.append(
-                f'modes="auto": {order} orders, the most that are allowed, leave an estimated {remaining:.2g} of the stress, more than '
-                f"the tolerance {settings.tolerance:g}; accept it or shorten the source's spectrum (a longer rise_time)"
-            )
+        order, notes = estimates.resolve_modes(self.problem, grid, settings)
+        self._notes += notes
         self._stopwatch.lap("choosing the number of modes")
         return order
 
@@ -90,7 +87,9 @@ class Prepared:
         """Error estimates of the structure without absorbers."""
         if self._trust is None:
             linear = self.structure.linear
-            self._trust = _estimates(self.structure, linear.normal, linear.tangential)
+            structure = self.structure
+            displacement, stress = estimates.truncation(self.problem, structure.grid, structure.max_order, linear.normal, linear.tangential)
+            self._trust = Estimates(displacement, stress, estimates.window_error(structure.grid, linear.normal))
         return self._trust
 
     def solve(self, absorbers: Iterable[Absorber] | AbsorberRing | None = None, progress: Progress | None = None) -> ModalSolution:
@@ -134,15 +133,3 @@ class Prepared:
         if linked is not None and linked.correction is not None:
             solution = replace(solution, control_correction=linked.correction[..., keep])
         return replace(solution, warnings=tuple(warnings + checks.actuators(solution)))
-
-
-def _estimates(structure: PreparedStructure, normal: ComplexArray, tangential: ComplexArray) -> Estimates:
-    problem, grid, max_order = structure.problem, structure.grid, structure.max_order
-    orders = estimates.sampled_orders(problem, max_order + 1)
-    above = estimates.modal_norms(problem, grid, orders)
-    below = estimates.computed_norms(normal, tangential)
-    displacement, stress = (
-        estimates.relative(estimates.tail_above(max_order, orders, high), estimates.surface_total(low))
-        for high, low in zip(above, below, strict=True)
-    )
-    return Estimates(displacement, stress, estimates.window_error(grid, normal))

@@ -1,0 +1,93 @@
+"""Shell modes of the direct engine: states at two instants and one central-difference step."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.errors import InputError
+from coaxshell.solver.scaling import Problem
+
+
+class ModalStep:
+    """W and V of all shells at the present and the last step, and what their stiffness and feedback demand.
+
+    Arrays of amplitudes have the shape (shells, halves, M + 1); matrices over modes (shells, M + 1).
+    """
+
+    def __init__(self, problem: Problem, grid: LaplaceGrid, max_order: int, halves: int) -> None:
+        self.problem, self.step = problem, grid.time_step
+        self.orders = all_orders(max_order)
+        count = len(problem.shells)
+        self.free = np.array([shell.section is not None for shell in problem.shells])
+        self.mass = np.array([shell.mass if shell.section is not None else 1.0 for shell in problem.shells])
+        stiff = [problem.stiffness(i, self.orders) if self.free[i] else None for i in range(count)]
+        zero = np.zeros(max_order + 1)
+        self.vv, self.vw, self.ww = (
+            np.stack([zero if k is None else getattr(k, name) for k in stiff])[:, None] for name in ("vv", "vw", "ww")
+        )
+        sensors = [problem.sensor_gain(i, self.orders) for i in range(count)]
+        self.sensor_v, self.sensor_w = (np.stack([pair[k] for pair in sensors])[:, None] for k in (0, 1))
+        gains = [shell.gains for shell in problem.shells]
+        self.proportional = np.array([0.0 if g is None else g.proportional for g in gains])[:, None, None]
+        self.derivative = np.array([0.0 if g is None else g.derivative for g in gains])[:, None, None]
+        self.actuator = np.array([problem.actuator_pressure(i) if g is not None else 0.0 for i, g in enumerate(gains)])[:, None, None]
+        shape = (count, halves, max_order + 1)
+        self.w, self.w_before, self.v, self.v_before = (np.zeros(shape) for _ in range(4))
+        self._require_stable()
+
+    def couple(self, present: FloatArray) -> None:
+        """Invert the matrices of the present accelerations: inertia, fluids' weights at lag 0, and the centred derivative feedback."""
+        count = len(self.problem.shells)
+        matrix = np.moveaxis(present.copy(), -1, 0)  # (M + 1, shells, shells)
+        feedback = -self.actuator * self.derivative * self.sensor_w * (0.5 * self.step)
+        for i in range(count):
+            if self.free[i]:
+                matrix[:, i, i] += self.mass[i] + feedback[i, 0]
+            else:
+                matrix[:, i, :] = 0.0
+                matrix[:, i, i] = 1.0
+        self.mobility = np.linalg.inv(matrix)
+
+    def accelerate(self, demand: FloatArray) -> FloatArray:
+        """Return the normal accelerations under a demand, shape (shells, halves, M + 1)."""
+        return np.asarray(np.einsum("mij,jhm->ihm", self.mobility, demand * self.free[:, None, None]), dtype=np.float64)
+
+    def demand(self, load: FloatArray) -> FloatArray:
+        """Return all that is known at this step: load on the outermost shell, stiffness, feedback without the present W''.
+
+        Also advances V, whose equation has no fluid in it.
+        """
+        tangential = -(self.vv * self.v + self.vw * self.w) / self.mass[:, None, None]
+        tangential[~self.free] = 0.0
+        self.v_after = 2.0 * self.v - self.v_before + self.step**2 * tangential
+        self.v_rate = (self.v_after - self.v_before) / (2.0 * self.step)
+        self.w_rate_known = (self.w - self.w_before) / self.step
+        volts = self.sensor_v * self.v + self.sensor_w * self.w
+        rate = self.sensor_v * self.v_rate + self.sensor_w * self.w_rate_known
+        self.asked_known = self.proportional * volts + self.derivative * rate
+        demand = self.actuator * self.asked_known - self.vw * self.v - self.ww * self.w
+        demand[-1] += load
+        return np.asarray(demand, dtype=np.float64)
+
+    def rate(self, acceleration: FloatArray) -> FloatArray:
+        """Return the centred normal velocity of this step."""
+        return self.w_rate_known + 0.5 * self.step * acceleration
+
+    def advance(self, acceleration: FloatArray) -> None:
+        """Move to the next step."""
+        after = 2.0 * self.w - self.w_before + self.step**2 * acceleration
+        self.w_before, self.w, self.v_before, self.v = self.w, after, self.v, self.v_after
+
+    def _require_stable(self) -> None:
+        """Raise InputError if a shell's own highest frequency is beyond the central difference, omega dt < 2."""
+        for i in np.flatnonzero(self.free):
+            vv, vw, ww = (x[i, 0] / self.mass[i] for x in (self.vv, self.vw, self.ww))
+            highest = float(np.sqrt(0.5 * (vv + ww + np.sqrt((vv - ww) ** 2 + 4.0 * vw**2))).max())
+            if highest * self.step >= 2.0:
+                raise InputError(
+                    "time_step",
+                    f"{self.step:g} is unstable for the direct engine: shell {i} vibrates at up to {highest:.4g} per transit",
+                    f'use at most {1.9 / highest:.2g}, fewer modes, or engine = "spectral"',
+                )

@@ -1,0 +1,59 @@
+"""From a system to a solution by the direct engine."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.model.system import System
+from coaxshell.solver import checks, estimates
+from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.direct.engine import march_directly
+from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.settings import Settings
+from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.solver.spectral import Progress, Stopwatch
+from coaxshell.solver.stability import require_stable
+
+
+def solve_by_marching(system: System, settings: Settings, progress: Progress | None = None) -> ModalSolution:
+    """Return the modal histories of a system by the direct engine.
+
+    Velocities are central differences of the recorded motion; the error of the time step is not estimated (NaN): compare two
+    steps, or the spectral engine.
+
+    Raises
+    ------
+    InputError
+        If the feedback or the step is unstable.
+    """
+    stopwatch = Stopwatch()
+    problem = dimensionless(system)
+    grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+    order, warnings = estimates.resolve_modes(problem, grid, settings)
+    require_stable(problem, order, settings.duration)
+    stopwatch.lap("stability of the feedback")
+    links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
+    saturate = system.control is not None and system.control.saturation
+    result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)
+    stopwatch.lap("time steps")
+    w, v = result.normal, result.tangential
+    trust = Estimates(*estimates.truncation(problem, grid, order, grid.transform(w), grid.transform(v)), time_window=float("nan"))
+    stopwatch.lap("error estimates")
+    keep = slice(None, None, settings.refinement)
+    solution = ModalSolution(
+        problem, replace(settings, modes=order), grid.time[keep], w[..., keep], v[..., keep], trust, (), stopwatch.seconds
+    )
+    if any(shell.gains is not None for shell in problem.shells):
+        rates = [np.gradient(x, grid.time_step, axis=-1, edge_order=2)[..., keep] for x in (w, v)]
+        solution = replace(solution, normal_rate=rates[0], tangential_rate=rates[1])
+    if system.absorber_list:
+        displacement, force = result.absorber_displacement[links.member], result.absorber_force[links.member]
+        solution = replace(solution, absorber_displacement=displacement[:, keep], absorber_force=force[..., keep])
+    if result.correction is not None:
+        solution = replace(solution, control_correction=result.correction[..., keep])
+    warnings += checks.before(problem, grid, order) + checks.after(problem, trust, order) + checks.actuators(solution)
+    return replace(solution, warnings=tuple(warnings))
