@@ -76,7 +76,6 @@ def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
 def _errors(summary: Mapping[str, Any]) -> list[str]:
     parts = [f"{shell['name']} {shell['stress_truncation']:.1e}" for shell in summary["shells"]]
     modes = f"orders left out of the stress: {', '.join(parts)}; " if parts else ""
-    step = summary["time_window_error"]
-    return [
-        f"estimated relative errors: {modes}{f'time window {step:.1e}' if math.isfinite(step) else 'time step not estimated by this engine'}"
-    ]
+    error = summary["time_window_error"]
+    step = f"time window {error:.1e}" if math.isfinite(error) else "time step not estimated by this engine"
+    return [f"estimated relative errors: {modes}{step}"]
