@@ -78,6 +78,8 @@ def test_modes_auto(run):
         (["bare", "--duration", "-5"], ["--duration", "-5", "greater than 0"]),
         (["bare", "--duration", "inf"], ["--duration", "inf", "finite"]),
         (["bare", "--tolerance", "0", "--modes", "auto"], ["--tolerance", "0", "greater than 0"]),
+        (["bare", "--refinement", "0"], ["--refinement", "0", "1 to 64"]),
+        (["bare", "--refinement", "twice"], ["--refinement", "'twice'", "whole number"]),
         (["bare", "--engine", "steam"], ["--engine", "'steam'", "spectral"]),
         (["bare", "--output", "nowhere/out.nc"], ["--output", "'nowhere'", "does not exist"]),
         (["bare", "--output", "out.csv"], ["--output", "'out.csv'", ".nc"]),

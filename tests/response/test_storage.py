@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.model import absorber_ring
 from coaxshell.response import Response, info, load_response
@@ -181,3 +183,16 @@ def test_settings_survive(make: Callable[..., ModalSolution], tmp_path: Path) ->
     solution = make()
     solution = replace(solution, settings=replace(solution.settings, tolerance=1 / 3))
     assert load_response(Response(solution).save(tmp_path / "run.nc")).settings == solution.settings
+
+
+def test_every_array_of_a_solution_is_kept(tmp_path):
+    control = cx.PDControl(proportional=-2e4, derivative=-150, saturation=True)
+    system = cx.presets.load("absorbers").replace(control=control)
+    response = cx.simulate(system, modes=8, time_step=0.02, duration=1.0)
+    assert np.abs(response.solution.control_correction).max() > 0
+    response.save(tmp_path / "run.nc")
+    loaded = cx.load_response(tmp_path / "run.nc")
+    for field in dataclasses.fields(response.solution):
+        value = getattr(response.solution, field.name)
+        if isinstance(value, np.ndarray):
+            np.testing.assert_array_equal(getattr(loaded.solution, field.name), value, err_msg=field.name)

@@ -19,4 +19,7 @@ TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TRANSITS", 
 ModesOption = Annotated[str, typer.Option("--modes", metavar="N|auto", help="Highest circumferential order, or auto to meet --tolerance.")]
 ToleranceOption = Annotated[str, typer.Option("--tolerance", metavar="ERROR", help="Relative error that --modes auto aims at.")]
 EngineOption = Annotated[str, typer.Option("--engine", metavar="NAME", help="How to solve: spectral or direct.")]
+RefinementOption = Annotated[
+    str, typer.Option("--refinement", metavar="N", help="Solve at time-step/N and keep every N-th instant: for stiff absorbers.")
+]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]

@@ -22,23 +22,51 @@ def run(
     modes: options.ModesOption = "150",
     tolerance: options.ToleranceOption = "1e-3",
     engine: options.EngineOption = "spectral",
+    refinement: options.RefinementOption = "1",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Save the run: arrays, system, settings, versions.")
     ] = None,
+    compare: Annotated[
+        str | None,
+        typer.Option("--compare", metavar="SCENARIO", help="Solve this one too and print both side by side, with reductions in per cent."),
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", metavar="FILE", help="Draw the stress at head and tail of each shell; .png, .pdf or .svg.")
+    ] = None,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Solve a system and print the peaks of each shell."""
+    """Solve a system and print its peaks, alone or beside those of another one.
+
+    --set changes both systems, but absorbers and control only where a system has them. --output saves the first run.
+    """
+    from coaxshell.cli.comparison import labels, load_reference, print_comparison
     from coaxshell.cli.scenario import load_system
-
-    if output is not None:
-        writable(output, "--output", (".nc",))
-    system = load_system(scenario, changes or ())
-    response = Request(duration, time_step, modes, tolerance, engine).solve(system, quiet=quiet)
-
     from coaxshell.cli.tables import print_summary
 
     if output is not None:
-        response.save(output)
-    print_summary(response)
+        writable(output, "--output", (".nc",))
+    if figure is not None:
+        from coaxshell.plotting import FIGURE_SUFFIXES
+
+        writable(figure, "--figure", FIGURE_SUFFIXES)
+    systems = [load_system(scenario, changes or ())]
+    if compare is not None:
+        systems.append(load_reference(compare, changes or ()))
+    request = Request(duration, time_step, modes, tolerance, engine, refinement)
+    responses = [request.solve(system, quiet=quiet) for system in systems]
+    names = labels(systems[0], systems[-1]) if compare is not None else (systems[0].name or scenario,)
+    named = dict(zip(names, responses, strict=True))
+    if output is not None:
+        responses[0].save(output)
+    if figure is not None:
+        from coaxshell.plotting import figure_comparison, save_figure
+
+        save_figure(figure_comparison(named), figure)
+    if compare is not None:
+        print_comparison(named)
+    else:
+        print_summary(responses[0])
     if output is not None:
         typer.echo(f"saved {output}")
+    if figure is not None:
+        typer.echo(f"wrote {figure}")

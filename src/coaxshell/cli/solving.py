@@ -22,6 +22,7 @@ class Request:
     modes: str
     tolerance: str
     engine: str
+    refinement: str = "1"
 
     def solve(self, system: System, *, quiet: bool) -> Response:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
@@ -31,7 +32,15 @@ class Request:
         time_step = values.number("--time-step", self.time_step)
         tolerance = values.number("--tolerance", self.tolerance)
         modes = values.modes(self.modes)
+        refinement = values.whole("--refinement", self.refinement)
         with values.named_as_options(), progress(quiet) as report:
             return simulate(
-                system, duration=duration, time_step=time_step, modes=modes, tolerance=tolerance, engine=self.engine, progress=report
+                system,
+                duration=duration,
+                time_step=time_step,
+                modes=modes,
+                tolerance=tolerance,
+                engine=self.engine,
+                refinement=refinement,
+                progress=report,
             )

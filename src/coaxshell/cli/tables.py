@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from coaxshell.response.peaks import Peak
     from coaxshell.response.summary import Summary
 
-_ROWS = (
+ROWS = (
     ("stress_head", "stress at head", "Pa"),
     ("stress_tail", "stress at tail", "Pa"),
     ("stress", "stress anywhere", "Pa"),
@@ -29,6 +29,7 @@ _ROWS = (
     ("sensor_voltage", "sensor voltage", "V"),
     ("actuator_voltage", "actuator voltage asked", "V"),
 )
+"""Fields of a shell's summary, with their labels and units, in the order of the tables."""
 
 
 def print_summary(response: Response) -> None:
@@ -65,7 +66,7 @@ def summary_table(summary: Summary) -> Table:
     for heading in ("value", "t (a/c)", "angle (°)"):
         table.add_column(heading, justify="right", no_wrap=True)
     for shell in summary.shells:
-        rows = [(label, cells) for key, label, unit in _ROWS if (cells := _cells(getattr(shell, key), unit))]
+        rows = [(label, cells) for key, label, unit in ROWS if (cells := _cells(getattr(shell, key), unit))]
         for number, (label, cells) in enumerate(rows):
             table.add_row(shell.name if number == 0 else "", label, *cells, end_section=number == len(rows) - 1)
     return table

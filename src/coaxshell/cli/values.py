@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from coaxshell.errors import InputError
 
-_OF_SETTINGS = ("duration", "time_step", "modes", "tolerance", "engine")
+_OF_SETTINGS = ("duration", "time_step", "modes", "tolerance", "engine", "refinement")
 
 
 def number(option: str, text: str) -> float:
@@ -18,6 +18,14 @@ def number(option: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise InputError(option, f"{text!r} is not a number", "give a number such as 5 or 1e-3") from None
+
+
+def whole(option: str, text: str) -> int:
+    """Return the whole number written in an option."""
+    try:
+        return int(text)
+    except ValueError:
+        raise InputError(option, f"{text!r} is not a whole number", "give one such as 1 or 4") from None
 
 
 def modes(text: str, option: str = "--modes") -> int | Literal["auto"]:

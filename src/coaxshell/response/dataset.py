@@ -36,6 +36,7 @@ ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
         "rho_e c_e^2 a",
         "forces of the absorbers on the inner and outer shell they link, positive inward",
     ),
+    "control_correction": (MODAL, "rho_e c_e^2", "modal pressure that saturated actuators lack against the linear control law"),
 }
 """Arrays of a solution by name: dimensions, unit, meaning. Those that a solution does not carry are left out of the file."""
 

@@ -105,7 +105,11 @@ def exponential_weights(decay: FloatArray, grid: LaplaceGrid) -> FloatArray:
     At lag 0 the integral of e^{-b t}(1 - t/dt) over one step, dt (x - 1 + e^{-x})/x^2 with x = b dt; later dt e^{-b t}
     (sinh(x/2)/(x/2))^2.
     """
-    x = np.maximum(decay * grid.time_step, 1e-4)
-    weights: FloatArray = np.exp(-decay * grid.time) * (np.sinh(0.5 * x) / (0.5 * x)) ** 2 * grid.time_step
-    weights[:, 0] = (grid.time_step * (x + np.expm1(-x)) / x**2)[:, 0]
+    x = decay * grid.time_step
+    half = 0.5 * np.where(x == 0.0, 1.0, x)
+    hat = np.where(x == 0.0, 1.0, (np.sinh(half) / half) ** 2)
+    weights: FloatArray = np.exp(-decay * grid.time) * hat * grid.time_step
+    series = 0.5 - x / 6.0 + x**2 / 24.0  # the closed form cancels for small x
+    closed = (x + np.expm1(-x)) / np.where(x == 0.0, 1.0, x) ** 2
+    weights[:, 0] = grid.time_step * np.where(np.abs(x) < 1e-3, series, closed)[:, 0]
     return weights

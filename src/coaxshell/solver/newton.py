@@ -21,6 +21,8 @@ from coaxshell.solver.absorbers import AbsorberSet
 
 _TOLERANCE = 1e-11
 _MAX_ITERATIONS = 60
+_FEW_ITERATIONS = 3
+_EPSILON = 1e-15
 _REFRESH_RATE = 0.1
 """The Jacobian is renewed when an iteration gains less than a factor of ten."""
 
@@ -105,24 +107,27 @@ class InterfaceNewton:
         balance = self._inertia * state.mass_velocity - self._carry * state.force.sum(axis=0)
         velocity = self._mobility * (balance - force.sum(axis=0)) + self._keep_massless * state.mass_velocity
         forced = excited + (self._compliance @ force.ravel()).reshape(2, n)
-        scale = max(float(np.abs(force).max()), 1e-30)
         last = np.inf
         for iteration in range(1, _MAX_ITERATIONS + 1):
             stretch = (known_q + half * velocity) - (known_w + half * forced)
             square = self._cubic * stretch * stretch
             residual = force - (self._damping * (velocity - linear_velocity - forced) + (self._linear + square) * stretch)
             size = float(np.abs(residual).max())
+            renewed = False
             if last < np.inf:
                 self._rate = max(self._rate, size / last) if size < last else 1.0
                 if self._rate > _REFRESH_RATE:
                     self._renew((self._damping + half * (self._linear + 3.0 * square)).ravel())
+                    renewed = True
             last = size
             change = self._inverse @ residual.ravel()
             force = force - change[: 2 * n].reshape(2, n)
             velocity = velocity - change[2 * n :]
             forced = excited + (self._compliance @ force.ravel()).reshape(2, n)
             # The error left after this correction is at most the measured rate times the residual it removed.
-            if iteration > 1 and size * self._rate <= _TOLERANCE * scale:
+            if iteration > 1 and not renewed and size * self._rate <= _TOLERANCE * float(np.abs(force).max()):
+                break
+            if iteration > _FEW_ITERATIONS and size <= self._rounding(force, velocity, known_q, known_w, linear_velocity, forced):
                 break
         else:
             raise InputError(
@@ -135,3 +140,19 @@ class InterfaceNewton:
         state.mass_displacement, state.mass_velocity = known_q + half * velocity, velocity
         state.previous_force, state.force = state.force, force
         return iteration
+
+    def _rounding(
+        self,
+        force: FloatArray,
+        velocity: FloatArray,
+        known_q: FloatArray,
+        known_w: FloatArray,
+        linear_velocity: FloatArray,
+        forced: FloatArray,
+    ) -> float:
+        """Return the residual that rounding alone leaves: terms of the law may be far larger than their sum."""
+        half = self._half_step
+        reach = np.abs(known_q + half * velocity) + np.abs(known_w + half * forced)
+        rates = self._damping * (np.abs(velocity) + np.abs(linear_velocity) + np.abs(forced))
+        springs = (self._linear + 3.0 * self._cubic * reach**2) * reach
+        return _EPSILON * float((rates + springs + np.abs(force)).max())

@@ -19,7 +19,9 @@ from coaxshell.acoustics.operators import FloatArray, all_orders
 from coaxshell.solver.scaling import Problem
 
 _MAX_SETS = 50
-_OVERSAMPLING = 2
+_OVERSAMPLING = 4
+"""Points per order on the half circle: clipping makes harmonics of the voltage that fewer points would fold back."""
+_FEWEST_POINTS = 180
 
 
 class SaturatedShell:
@@ -40,7 +42,7 @@ class SaturatedShell:
         self.limit = voltage_limit(problem, index)
         self.pressure_per_volt = problem.actuator_pressure(index)
         orders = all_orders(present.size - 1)
-        points = _OVERSAMPLING * present.size * halves
+        points = max(_OVERSAMPLING * present.size, _FEWEST_POINTS) * halves
         span = np.pi if halves == 1 else 2.0 * np.pi
         theta = span * (np.arange(points) + 0.5) / points
         angles = theta[:, None] * orders

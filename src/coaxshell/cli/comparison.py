@@ -1,0 +1,109 @@
+"""Two runs side by side on stdout, with the reduction of each peak from the second to the first."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import typer
+
+from coaxshell.cli.scenario import load_system
+from coaxshell.cli.tables import ROWS, tell_warnings
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import Response
+    from coaxshell.response.peaks import Peak
+    from coaxshell.response.summary import Summary
+
+_FITTINGS = ("absorbers", "control")
+_NONE = "-"
+
+
+def load_reference(scenario: str, changes: Sequence[str] = ()) -> System:
+    """Return the system to compare with. Changes to absorbers and control are for a system that has them; all others for both.
+
+    Raises
+    ------
+    InputError
+        No such preset or file, something wrong in the file, or a change that is not allowed.
+    """
+    plain = load_system(scenario)
+    missing = [name for name, there in zip(_FITTINGS, (plain.absorbers != (), plain.control is not None), strict=True) if not there]
+    return load_system(scenario, [change for change in changes if _root(change) not in missing])
+
+
+def _root(change: str) -> str:
+    return change.partition("=")[0].strip().partition(".")[0].partition("[")[0]
+
+
+def labels(first: System, second: System) -> tuple[str, str]:
+    """Return a name for each of two systems, different even where theirs are not."""
+    one, other = first.name or "first", second.name or "second"
+    return (one, other) if one != other else (one, f"{other} (compared)")
+
+
+def print_comparison(responses: Mapping[str, Response]) -> None:
+    """Print two named runs side by side on stdout and their warnings on stderr."""
+    (first, second), summaries = responses, [response.summary() for response in responses.values()]
+    rows = comparison_rows(*summaries)
+    title = f"{first} against {second}"
+    header = ("shell", "largest magnitude", first, second, "reduction")
+    notes = [f"{name}: {_run(summary)}" for name, summary in zip(responses, summaries, strict=True)]
+    if sys.stdout.isatty():
+        from rich.console import Console
+        from rich.markup import escape
+        from rich.table import Table
+
+        table = Table(title=escape(title), title_justify="left", title_style="bold", box=None, pad_edge=False)
+        for number, heading in enumerate(header):
+            table.add_column(escape(heading), justify="left" if number < 2 else "right", no_wrap=number > 1)
+        for row in rows:
+            table.add_row(*map(escape, row))
+        Console().print(table)
+    else:
+        from coaxshell.response.summary_text import aligned
+
+        typer.echo("\n".join([title, "", *aligned([header, *rows], left=2)]))
+    typer.echo("\n" + "\n".join(notes))
+    for name, summary in zip(responses, summaries, strict=True):
+        tell_warnings(f"{name}: {text}" for text in summary.warnings)
+
+
+def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
+    """Return (shell, quantity, first value, second value, reduction) for each shell and quantity that either run has."""
+    from coaxshell.response.summary_text import engineering
+
+    ours, theirs = ({shell.name: shell for shell in summary.shells} for summary in (first, second))
+    rows = []
+    for name in dict.fromkeys([*ours, *theirs]):
+        for key, label, unit in ROWS:
+            pair = [_number(getattr(shells.get(name), key, None)) for shells in (ours, theirs)]
+            if any(value is not None for value in pair):
+                texts = [_NONE if value is None else engineering(value, unit) for value in pair]
+                rows.append((name, label, *texts, reduction(*pair)))
+    for key, label, unit in (("absorber_displacement", "displacement of masses", "m"), ("absorber_force", "force on a shell", "N/m")):
+        pair = [getattr(summary, key) for summary in (first, second)]
+        if any(value is not None for value in pair):
+            rows.append(("absorbers", label, *(_NONE if v is None else engineering(v, unit) for v in pair), reduction(*pair)))
+    return rows
+
+
+def reduction(value: float | None, reference: float | None) -> str:
+    """Return by how many per cent a value is less than the reference, negative if it is more; a dash if there is none."""
+    if value is None or not reference:
+        return _NONE
+    return f"{100.0 * (1.0 - value / reference):.1f} %"
+
+
+def _number(value: Peak | float | None) -> float | None:
+    return value if value is None or isinstance(value, int | float) else value.value
+
+
+def _run(summary: Summary) -> str:
+    settings = summary.settings
+    return (
+        f"{settings['engine']} engine, {settings['modes']} modes, time step {settings['time_step']:g}, "
+        f"t = {summary.window[0]:g} to {summary.window[1]:g} transits"
+    )

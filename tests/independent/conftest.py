@@ -1,0 +1,81 @@
+"""The independent solver, the systems it is tried on, and the distance between two answers."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+
+ANGLES = [0.0, 70.0, 180.0]
+
+
+def _module():
+    spec = importlib.util.spec_from_file_location("radial_elements", Path(__file__).with_name("radial_elements.py"))
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def radial_elements():
+    """Return the module of the independent solver."""
+    return _module()
+
+
+@pytest.fixture(scope="session")
+def pulse():
+    """Return a smooth pulse 0.05 transits wide, so that neither method pays for fronts."""
+    return cx.Gaussian(peak_pressure=2.5e4, width=0.05 / 1400)
+
+
+@pytest.fixture(scope="session")
+def struck(pulse):
+    """Return a maker of the paper's double shell under the smooth pulse."""
+
+    def build(preset="bare", angle=0.0, **changes):
+        return cx.presets.load(preset).replace(source=cx.SphericalWave(distance=5.0, angle=angle, pulse=pulse), **changes)
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def absorber():
+    """Return a maker of absorbers whose cubic stiffness rules: k_nl 1e22 doubles the forces of k_nl = 0."""
+
+    def build(**changes):
+        usual = {"angle": 0.0, "mass": 10, "damping": 1e5, "linear_stiffness": 1e9, "cubic_stiffness": 1e22}
+        return cx.Absorber(**{**usual, **changes})
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def distances(radial_elements):
+    """Return a function from a system and steps to {(shell, quantity): relative L2 distance} between package and independent solver."""
+
+    def measure(system, time_step, independent_step, duration=2.0, modes=8, angles=0, element=None):
+        usual = radial_elements.ELEMENT
+        radial_elements.ELEMENT = element or usual
+        try:
+            model = radial_elements.RadialElements(system, modes, duration, angles)
+        finally:
+            radial_elements.ELEMENT = usual
+        model.solve(independent_step, round(duration / independent_step))
+        response = cx.simulate(system, duration=duration, time_step=time_step, modes=modes)
+        coarse = max(time_step, independent_step)
+        ours, theirs = round(coarse / time_step), round(coarse / independent_step)
+        found = {}
+        for shell in range(len(system.shells)):
+            for quantity in ("displacement", "stress"):
+                got = np.asarray(getattr(response, quantity)(shell, ANGLES))[::ours]
+                wanted = np.stack([getattr(model, quantity)(shell, angle) for angle in ANGLES], axis=1)[::theirs]
+                found[shell, quantity] = float(np.linalg.norm(got - wanted) / np.linalg.norm(wanted))
+        return found
+
+    return measure
