@@ -10,7 +10,7 @@ DEMO   := demo
 .PHONY: help demo test test-all lint types bench clean
 
 help:
-	@echo "make demo      solve the bare system and draw its stresses into $(DEMO)/"
+	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
 	@echo "make test      the tests, without the slow ones"
 	@echo "make test-all  all tests"
 	@echo "make lint      style and format"
@@ -29,8 +29,14 @@ $(STAMP): pyproject.toml
 
 demo: $(STAMP)
 	@mkdir -p $(DEMO)
-	@$(BIN)/coaxshell run bare --output $(DEMO)/bare.nc
-	@$(BIN)/coaxshell figure 3 --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
+	@echo "hybrid against bare: two runs, their reductions, a sheet of fields and a film, about half a minute"
+	@$(BIN)/coaxshell run bare --quiet --output $(DEMO)/bare.nc > $(DEMO)/bare.txt
+	@$(BIN)/coaxshell run hybrid --compare bare --quiet --output $(DEMO)/hybrid.nc --figure $(DEMO)/stress.png
+	@$(BIN)/coaxshell figure 3 --quiet --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
+	@$(BIN)/coaxshell snapshots $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --times 0.5,1.2,2,3.1 --columns 2 --quiet \
+	  --output $(DEMO)/fields.png 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
+	@$(BIN)/coaxshell animate $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --frames 100 --fps 20 --size 360 --quiet \
+	  --output $(DEMO)/film.mp4 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
 
 test: $(STAMP)
 	@$(BIN)/python -m pytest -q -n 2 -m "not slow"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from benchmarks import bare, scaling
+from benchmarks import bare, engines, scaling
 
 
 def main() -> None:
     """Run them one after another."""
-    for benchmark in (bare, scaling):
+    for benchmark in (bare, scaling, engines):
         benchmark.main()
 
 

@@ -11,7 +11,20 @@ import pytest
 
 from house import PACKAGE, modules, tree
 
-FLOORS = ("model", "structure", "acoustics", "solver", "response", "studies", "plotting", "paper", "studio", "cli")
+FLOORS = (
+    "model",
+    "structure",
+    "acoustics",
+    "solver",
+    "response",
+    "studies",
+    "plotting",
+    "export",
+    "verification",
+    "paper",
+    "studio",
+    "cli",
+)
 FREE_FOR_ALL = {"errors", "_version"}
 
 

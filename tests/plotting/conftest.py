@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -46,3 +48,38 @@ def response():
 @pytest.fixture
 def make_response():
     return FakeResponse
+
+
+class Waves(FakeResponse):
+    """A response with a pressure field: a front from the right with a tail behind it, and the same from any side angle."""
+
+    peak = 2e4
+
+    def __init__(self, system, symmetric=True):
+        super().__init__(system)
+        self.time_seconds = self.time * TRANSIT
+        self.warnings = ()
+        self.solution = SimpleNamespace(normal=np.empty((2, 1 if symmetric else 2, 7, len(self.time))))
+        self.asked = []
+
+    def pressure(self, x, y, time, progress=None):
+        self.asked.append((len(x), len(y), len(time)))
+        since = np.asarray(time)[:, None, None] - (1.0 - np.asarray(x)[None, None, :]) + 0.0 * np.asarray(y)[None, :, None]
+        tilt = 1.0 if self.solution.normal.shape[1] == 1 else 1.0 + 0.2 * np.asarray(y)[None, :, None]
+        values = self.peak * tilt * np.exp(-np.clip(since, 0, None) / 0.2) * (since > 0)
+        if progress is not None:
+            progress(1.0, "pressure")
+        return xr.DataArray(values, dims=("time", "y", "x"))
+
+    def pressure_rms(self, region, radius=None):
+        return xr.DataArray(1e3 * self.time * (0.5 if region == "interior" else 1.0), dims="time", coords={"time": self.time})
+
+
+@pytest.fixture
+def waves():
+    return Waves(presets.load("bare"))
+
+
+@pytest.fixture
+def make_waves():
+    return Waves

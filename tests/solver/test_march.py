@@ -33,7 +33,7 @@ class TestOrderOfLinearAbsorbers:
     """Five damped linear absorbers, marched and exact."""
 
     rate = 2.0
-    limit = 5e-5  # at 1e-3; measured 1.0e-5
+    limit = 1e-5  # at 1e-3; measured 2e-6 here, 5.2e-6 at the paper's resolution
 
     @staticmethod
     def error(step: float) -> float:
@@ -46,7 +46,7 @@ class TestOrderOfLinearAbsorbers:
 
     def test_rate(self) -> None:
         errors = [self.error(step) for step in (4e-3, 2e-3, 1e-3)]
-        np.testing.assert_allclose([np.log2(a / b) for a, b in pairwise(errors)], self.rate, rtol=0, atol=0.3)
+        assert min(np.log2(a / b) for a, b in pairwise(errors)) > self.rate - 0.3
         assert errors[-1] <= self.limit
 
 

@@ -8,11 +8,15 @@ from typing import Annotated
 import typer
 
 from coaxshell._version import __version__
+from coaxshell.cli.animate import animate
+from coaxshell.cli.export import export
 from coaxshell.cli.figure import figure
 from coaxshell.cli.info import info
 from coaxshell.cli.init import init
 from coaxshell.cli.presets import presets
 from coaxshell.cli.run import run
+from coaxshell.cli.snapshots import snapshots
+from coaxshell.cli.verify import verify
 
 app = typer.Typer(
     rich_markup_mode="rich" if sys.stdout.isatty() else None,
@@ -43,5 +47,5 @@ def coaxshell(
         typer.echo(context.get_help())
 
 
-for _command in (run, presets, init, info, figure):
+for _command in (run, presets, init, info, figure, snapshots, animate, export, verify):
     app.command()(_command)

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import writable
+from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request
 from coaxshell.errors import InputError
 
-if TYPE_CHECKING:
-    from coaxshell.plotting import FigureRecipe
-    from coaxshell.response import Response
-
 
 def figure(
-    number: Annotated[str, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper; 3 for now.")],
-    source: Annotated[Path | None, typer.Option("--from", metavar="FILE.nc", help="Draw a saved run instead of computing one.")] = None,
+    context: typer.Context,
+    number: Annotated[str, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper: 3, 4, 13 or 14 for now.")],
+    source: Annotated[
+        list[Path] | None,
+        typer.Option("--from", metavar="FILE.nc", help="Draw a saved run instead of computing one. Twice for a comparison."),
+    ] = None,
     preset: Annotated[
-        str | None, typer.Option("--preset", metavar="NAME", help="Preset or .toml file to compute instead of the paper's.")
+        list[str] | None,
+        typer.Option("--preset", metavar="NAME", help="Preset or .toml file to compute instead of the paper's. Twice for a comparison."),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg. [default: figure-NUMBER.png]")
@@ -32,33 +35,23 @@ def figure(
     modes: options.ModesOption = "150",
     tolerance: options.ToleranceOption = "1e-3",
     engine: options.EngineOption = "spectral",
+    refinement: options.RefinementOption = "1",
     quiet: options.QuietOption = False,
 ) -> None:
-    """Draw a figure of the paper, computed or from a saved run."""
-    from coaxshell.cli.tables import tell_warnings
+    """Draw a figure of the paper, computed or from saved runs."""
     from coaxshell.plotting import FIGURE_SUFFIXES, figure_recipe, save_figure
 
     recipe = figure_recipe(number)
     target = writable(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
-    if source is not None and (preset is not None or changes):
+    if source and (preset or changes):
         raise InputError("--from", "cannot be combined with --preset or --set", "a saved run has its own system: give one or the other")
-    response = (
-        _load(source)
-        if source is not None
-        else _solve(recipe, preset, changes, Request(duration, time_step, modes, tolerance, engine), quiet)
-    )
-    save_figure(recipe.draw(response), target)
-    tell_warnings(response.warnings)
+    sources = [str(path) for path in source or ()] or preset or list(recipe.presets)
+    if len(sources) != len(recipe.presets):
+        option, wanted = "--from" if source else "--preset", len(recipe.presets)
+        raise InputError(option, f"{len(sources)} given, but figure {number} shows {wanted}", f"give the option {wanted} time(s)")
+    responses = answers(context, sources, changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
+    with progress(quiet) as report:
+        drawn = recipe.draw(responses, report)
+    save_figure(drawn, target)
+    tell_all_warnings(responses)
     typer.echo(f"wrote {target}: {recipe.title}")
-
-
-def _load(source: Path) -> Response:
-    from coaxshell.response import load_response
-
-    return load_response(source)
-
-
-def _solve(recipe: FigureRecipe, preset: str | None, changes: list[str] | None, request: Request, quiet: bool) -> Response:
-    from coaxshell.cli.scenario import load_system
-
-    return request.solve(load_system(preset or recipe.preset, changes or ()), quiet=quiet)

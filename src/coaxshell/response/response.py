@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cached_property
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from coaxshell.model.system import System
-from coaxshell.response import absorbers, histories, storage, voltages
+from coaxshell.response import absorbers, fields, histories, storage, voltages
+from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
+from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 
@@ -120,6 +124,45 @@ class Response:
         """
         return voltages.actuator_voltage(self.solution, self._index(shell), angle)
 
+    def pressure(
+        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PartOptions]
+    ) -> xr.DataArray:
+        """Return the acoustic pressure, Pa, dims (time, y, x) or (time, radius, angle).
+
+        Give *x* and *y* or *radius* and *angle* (degrees), lengths in units of a, and *time* in transits;
+        *part* is "total", "incident", "diffracted", "radiated" or "scattered". See :func:`coaxshell.response.fields.pressure.pressure`.
+        """
+        return fields.pressure(self._spectra, x, y, **options)
+
+    def velocity(
+        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PartOptions]
+    ) -> xr.DataArray:
+        """Return the particle velocity, m/s, with a dimension component, on the same grids as the pressure.
+
+        See :func:`coaxshell.response.fields.flow.velocity`.
+        """
+        return fields.velocity(self._spectra, x, y, **options)
+
+    def intensity(
+        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.FieldOptions]
+    ) -> xr.DataArray:
+        """Return the acoustic intensity p v, W/m^2, with a dimension component, on the same grids as the pressure.
+
+        See :func:`coaxshell.response.fields.flow.intensity`.
+        """
+        return fields.intensity(self._spectra, x, y, **options)
+
+    def pressure_rms(self, region: str | int, radius: float | None = None, **options: Unpack[fields.RmsOptions]) -> xr.DataArray:
+        """Return the RMS of the total pressure over a region, Pa, dims (time,): "interior", "gap", its number, or "exterior" to *radius*.
+
+        See :func:`coaxshell.response.fields.rms.pressure_rms`.
+        """
+        return fields.pressure_rms(self._spectra, region, radius, **options)
+
+    @cached_property
+    def _spectra(self) -> SolvedSpectra:
+        return spectra_of(self.solution)
+
     def absorber_displacement(self) -> xr.DataArray:
         """Return the displacement of the absorbers' masses, m, positive inward, dims (absorber, time)."""
         return absorbers.absorber_displacement(self.solution)
@@ -127,6 +170,13 @@ class Response:
     def absorber_force(self) -> xr.DataArray:
         """Return the forces of the absorbers on their shells, N/m, positive inward, dims (absorber, side, time)."""
         return absorbers.absorber_force(self.solution)
+
+    def energy(self, every: int = 10, progress: Callable[[float, str], None] | None = None) -> xr.Dataset:
+        """Return every store, flow and loss of energy and the closure residual, J per metre of length, at every so many instants.
+
+        See :func:`coaxshell.response.energy.energy`.
+        """
+        return energy(self.solution, every, progress, spectra=self._spectra)
 
     def summary(self, window: Sequence[float] | None = None) -> Summary:
         """Return peaks, RMS, error estimates and warnings within a window (start, end) in transits; print it for a table.

@@ -44,7 +44,7 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
     weights = np.empty((count, count, max_order + 1, grid.time.size))
-    hat = hat_transform(grid)
+    hat = grid.hat * grid.time_step
     for i in range(count):
         for j in range(count):
             spectrum = compliance[i, j] * grid.nodes
@@ -55,12 +55,6 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
             else:
                 weights[i, j] = grid.invert(spectrum * hat)
     return weights
-
-
-def hat_transform(grid: LaplaceGrid) -> ComplexArray:
-    """Return dt (sinh(s dt/2)/(s dt/2))^2 at the nodes: what sampling against forces linear between steps does to a spectrum."""
-    half = 0.5 * grid.time_step * grid.nodes
-    return np.asarray((np.sinh(half) / half) ** 2 * grid.time_step, dtype=np.complex128)
 
 
 def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArray) -> ComplexArray:
@@ -83,7 +77,7 @@ def voltage_weights(
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
     weights = np.empty((len(controlled), count, max_order + 1, grid.time.size))
-    hat = hat_transform(grid)
+    hat = grid.hat * grid.time_step
     for row, i in enumerate(controlled):
         law = voltage_law(problem, i, grid.nodes, ratio[i])
         shell = problem.shells[i]

@@ -66,7 +66,7 @@ def solve_linked(
         force, displacement = grid.invert(linear.force), grid.invert(linear.mass_displacement)
     else:
         result = march(structure, absorbers, saturate=saturate, progress=progress)
-        pressure, iterations, correction = grid.transform(result.modal_pressure), result.iterations, result.correction
+        pressure, iterations, correction = grid.transform_linear(result.modal_pressure), result.iterations, result.correction
         force, displacement = result.force, result.mass_displacement
     normal, tangential = structure.forced_spectra(pressure)
     sides = force.reshape(2, absorbers.count, grid.time.size).swapaxes(0, 1)

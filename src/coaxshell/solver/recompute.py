@@ -12,7 +12,7 @@ from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.excitation import needs_sine_half
-from coaxshell.solver.linked import modal_pressure_of
+from coaxshell.solver.linked import modal_pressure_of, solve_linked
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
@@ -49,8 +49,11 @@ def spectra_of(solution: ModalSolution) -> SolvedSpectra:
     pressure = solution.control_correction
     if solution.absorber_force is not None:
         links = absorber_set(problem, problem.system.absorber_list, 2 if needs_sine_half(problem.system.sources) else 1)
+        if links.is_linear and pressure is None:
+            linked = solve_linked(structure, links)  # exact, as it was solved
+            return SolvedSpectra(problem, grid, modes, linked.normal, linked.tangential)
         forces = modal_pressure_of(structure, links, solution.absorber_force)
         pressure = forces if pressure is None else forces + pressure
     if pressure is None:
         return SolvedSpectra(problem, grid, modes, structure.linear.normal, structure.linear.tangential)
-    return SolvedSpectra(problem, grid, modes, *structure.forced_spectra(grid.transform(pressure)))
+    return SolvedSpectra(problem, grid, modes, *structure.forced_spectra(grid.transform_linear(pressure)))

@@ -12,7 +12,7 @@ from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions
 from coaxshell.solver.coupling import fluid_matrix
-from coaxshell.solver.kernels import exponential_weights, hat_transform
+from coaxshell.solver.kernels import exponential_weights
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import node_blocks, over_blocks
 
@@ -67,4 +67,4 @@ def scattering_weights(grid: LaplaceGrid, orders: FloatArray) -> FloatArray:
 def front_weights(grid: LaplaceGrid, spectrum: ComplexArray, front: FloatArray) -> FloatArray:
     """Return the hat weights of a response whose value just after t = 0 is ``front``, shape (M + 1, 1)."""
     smooth = spectrum - front / (grid.nodes + _DECAY)
-    return grid.invert(smooth * hat_transform(grid)) + front * exponential_weights(np.full_like(front, _DECAY), grid)
+    return grid.invert(smooth * (grid.hat * grid.time_step)) + front * exponential_weights(np.full_like(front, _DECAY), grid)

@@ -1,0 +1,70 @@
+"""``coaxshell animate``: a film of the pressure field."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coaxshell.cli import field_options, options, values
+from coaxshell.cli.answers import answers, tell_all_warnings
+from coaxshell.cli.files import writable
+from coaxshell.cli.progress import progress
+from coaxshell.cli.solving import Request
+
+
+def animate(
+    context: typer.Context,
+    source: field_options.SourceArgument,
+    compare: field_options.CompareOption = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .mp4 (needs the extra coaxshell\\[video]) or .webp.")
+    ] = Path("film.mp4"),
+    frames: Annotated[int, typer.Option("--frames", help="Number of frames.")] = 250,
+    fps: Annotated[float, typer.Option("--fps", help="Frames per second.")] = 25.0,
+    size: Annotated[int, typer.Option("--size", help="Side of a panel in pixels.")] = 450,
+    until: Annotated[
+        str | None, typer.Option("--until", metavar="TRANSITS", help="Last instant. [default: the end of the shortest run]")
+    ] = None,
+    width: field_options.WidthOption = "6",
+    units: field_options.UnitsOption = "auto",
+    pressure_limit: field_options.PressureLimitOption = None,
+    stress_limit: field_options.StressLimitOption = None,
+    changes: options.SetOption = None,
+    duration: options.DurationOption = "5",
+    time_step: options.TimeStepOption = "1e-3",
+    modes: options.ModesOption = "150",
+    tolerance: options.ToleranceOption = "1e-3",
+    engine: options.EngineOption = "spectral",
+    refinement: options.RefinementOption = "1",
+    quiet: options.QuietOption = False,
+) -> None:
+    """Make a film of the pressure field, of one system or two."""
+    from coaxshell.plotting import FILM_SUFFIXES, FieldView, check_film, check_units, save_film
+
+    target = writable(output, "--output", FILM_SUFFIXES)
+    last = None if until is None else values.number("--until", until)
+    highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
+    highest_stress = field_options.limit("--stress-limit", stress_limit)
+    with field_options.named_as_options(pixels="size"):
+        view = FieldView(0.5 * values.number("--width", width), size)
+        check_units(units)
+        check_film(target, frames, fps)
+    sources = [source] if compare is None else [source, compare]
+    responses = answers(context, sources, changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
+    with field_options.named_as_options(), progress(quiet) as report:
+        save_film(
+            *responses,
+            path=target,
+            frames=frames,
+            fps=fps,
+            until=last,
+            view=view,
+            pressure_limit=highest_pressure,
+            stress_limit=highest_stress,
+            units=units,
+            progress=report,
+        )
+    tell_all_warnings(responses)
+    typer.echo(f"wrote {target}: {frames} frames, {frames / fps:.3g} s")

@@ -1,0 +1,80 @@
+"""``coaxshell export``: a run for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coaxshell.cli import field_options, options, values
+from coaxshell.cli.answers import answers, tell_all_warnings
+from coaxshell.cli.files import writable
+from coaxshell.cli.progress import progress
+from coaxshell.cli.solving import Request
+from coaxshell.cli.times import times as read_times
+from coaxshell.errors import InputError
+
+_KINDS = ("paraview", "csv", "mat")
+
+
+def export(
+    context: typer.Context,
+    source: field_options.SourceArgument,
+    to: Annotated[str, typer.Option("--to", metavar="KIND", help="paraview (a folder), csv or mat (a file).")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Folder or file. [default: after SOURCE, in this folder]")
+    ] = None,
+    times: Annotated[
+        str | None,
+        typer.Option("--times", metavar="T,T,...", help="ParaView: instants in transits, as in 0:5:0.05. [default: 101, evenly]"),
+    ] = None,
+    width: field_options.WidthOption = "6",
+    points: Annotated[int, typer.Option("--points", help="ParaView: points along a side of the square.")] = 301,
+    displaced: Annotated[
+        str,
+        typer.Option("--displaced", metavar="FACTOR", help="ParaView: draw the shells displaced this many times."),
+    ] = "0",
+    force: Annotated[bool, typer.Option("--force", help="Replace the folder or the file if it exists.")] = False,
+    changes: options.SetOption = None,
+    duration: options.DurationOption = "5",
+    time_step: options.TimeStepOption = "1e-3",
+    modes: options.ModesOption = "150",
+    tolerance: options.ToleranceOption = "1e-3",
+    engine: options.EngineOption = "spectral",
+    refinement: options.RefinementOption = "1",
+    quiet: options.QuietOption = False,
+) -> None:
+    """Write a run for ParaView, as CSV or for MATLAB."""
+    from coaxshell.export import check_grid, export_csv, export_mat, export_paraview
+
+    if to not in _KINDS:
+        raise InputError("--to", f"{to!r} is unknown", f"allowed: {', '.join(_KINDS)}")
+    target = _target(source, to, output, force)
+    chosen = None if times is None else read_times(times)
+    half_width, factor = 0.5 * values.number("--width", width), values.number("--displaced", displaced)
+    with field_options.named_as_options():
+        check_grid(half_width, points, factor)
+    (response,) = answers(context, [source], changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
+    with field_options.named_as_options(folder="output", path="output"), progress(quiet) as report:
+        if to == "paraview":
+            export_paraview(
+                response, target, times=chosen, half_width=half_width, points=points, displaced=factor, force=force, progress=report
+            )
+        else:
+            {"csv": export_csv, "mat": export_mat}[to](response, target)
+    tell_all_warnings([response])
+    typer.echo(f"wrote {target}" + (": open field.pvd and shells.pvd in ParaView" if to == "paraview" else ""))
+
+
+def _target(source: str, to: str, output: Path | None, force: bool) -> Path:
+    """Return where to write to, refused now if that cannot be."""
+    stem = Path(source).stem
+    if to == "paraview":
+        from coaxshell.export import new_folder
+
+        return new_folder(output or Path(f"{stem}-paraview"), force=force, name="--output")
+    target = writable(output or Path(f"{stem}.{to}"), "--output", (f".{to}",))
+    if output is None and target.exists() and not force:
+        raise InputError("--output", f"{str(target)!r} exists already", "give another name, or --force to overwrite it")
+    return target

@@ -1,0 +1,53 @@
+"""Options that the commands about pressure fields share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+import typer
+
+from coaxshell.cli import values
+from coaxshell.errors import InputError
+
+_ARGUMENTS = ("times", "until", "frames", "fps", "pixels", "width", "units", "points", "displaced", "output", "folder", "path")
+
+SourceArgument = Annotated[
+    str, typer.Argument(metavar="SOURCE", help="A preset, a .toml file, or a run saved by coaxshell run --output (.nc).")
+]
+CompareOption = Annotated[
+    str | None, typer.Option("--compare", metavar="SOURCE", help="Second system, shown beside the first on the same scales.")
+]
+WidthOption = Annotated[str, typer.Option("--width", metavar="RADII", help="Side of the square that is seen, in outermost radii a.")]
+UnitsOption = Annotated[
+    str, typer.Option("--units", metavar="UNIT", help="Of the pressure: auto, Pa, kPa, MPa, or relative for p/(rho c^2).")
+]
+PressureLimitOption = Annotated[
+    str | None, typer.Option("--pressure-limit", metavar="PA", help="End of the pressure's colour scale in Pa. [default: from the fields]")
+]
+StressLimitOption = Annotated[
+    str | None, typer.Option("--stress-limit", metavar="PA", help="End of the stress's colour scale in Pa. [default: from the fields]")
+]
+
+
+def limit(option: str, text: str | None) -> float | None:
+    """Return the end of a colour scale in Pa, None if it is left to the fields; InputError if it is not positive."""
+    if text is None:
+        return None
+    value = values.number(option, text)
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(option, f"{value:g} is not allowed", "give a positive number, in Pa")
+    return value
+
+
+@contextmanager
+def named_as_options(**names: str) -> Iterator[None]:
+    """Let errors about arguments name the options instead: ``width`` becomes ``--width``, or what *names* says of it."""
+    try:
+        yield
+    except InputError as error:
+        if error.where in _ARGUMENTS:
+            raise InputError("--" + names.get(error.where, error.where), error.problem, error.remedy) from None
+        raise

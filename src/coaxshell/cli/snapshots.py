@@ -1,0 +1,67 @@
+"""``coaxshell snapshots``: a sheet of pressure fields."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coaxshell.cli import field_options, options, values
+from coaxshell.cli.answers import answers, tell_all_warnings
+from coaxshell.cli.files import writable
+from coaxshell.cli.progress import progress
+from coaxshell.cli.solving import Request
+from coaxshell.cli.times import times as read_times
+
+
+def snapshots(
+    context: typer.Context,
+    source: field_options.SourceArgument,
+    compare: field_options.CompareOption = None,
+    times: Annotated[
+        str | None,
+        typer.Option("--times", metavar="T,T,...", help="Instants in transits, as in 0.2,1.2,3.6 or 0:5:0.5. [default: the paper's]"),
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.")] = Path("snapshots.png"),
+    columns: Annotated[int, typer.Option("--columns", min=1, max=20, help="Instants in a row.")] = 4,
+    width: field_options.WidthOption = "6",
+    pixels: Annotated[int, typer.Option("--pixels", help="Pixels along a side of each field.")] = 450,
+    units: field_options.UnitsOption = "auto",
+    pressure_limit: field_options.PressureLimitOption = None,
+    stress_limit: field_options.StressLimitOption = None,
+    changes: options.SetOption = None,
+    duration: options.DurationOption = "5",
+    time_step: options.TimeStepOption = "1e-3",
+    modes: options.ModesOption = "150",
+    tolerance: options.ToleranceOption = "1e-3",
+    engine: options.EngineOption = "spectral",
+    refinement: options.RefinementOption = "1",
+    quiet: options.QuietOption = False,
+) -> None:
+    """Draw the pressure field at several instants, with the stress."""
+    from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots, save_figure
+
+    target = writable(output, "--output", FIGURE_SUFFIXES)
+    chosen = None if times is None else read_times(times)
+    highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
+    highest_stress = field_options.limit("--stress-limit", stress_limit)
+    with field_options.named_as_options():
+        view = FieldView(0.5 * values.number("--width", width), pixels)
+        check_units(units)
+    sources = [source] if compare is None else [source, compare]
+    responses = answers(context, sources, changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
+    with field_options.named_as_options(), progress(quiet) as report:
+        figure = figure_snapshots(
+            *responses,
+            times=chosen,
+            view=view,
+            pressure_limit=highest_pressure,
+            stress_limit=highest_stress,
+            units=units,
+            columns=columns,
+            progress=report,
+        )
+    save_figure(figure, target)
+    tell_all_warnings(responses)
+    typer.echo(f"wrote {target}")

@@ -1,0 +1,141 @@
+"""A run as a time series for ParaView: the pressure on a square, and the shells with their stress and displacement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.export.folders import replacing_folder
+from coaxshell.export.vtk_xml import write_collection, write_image, write_lines
+from coaxshell.model import RigidShell
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
+
+FloatArray = npt.NDArray[np.float64]
+Report = Callable[[float, str], None]
+
+_STAGE = "ParaView"
+_BLOCK_BYTES = 0.4e9
+_ANGLES: FloatArray = np.arange(0.0, 360.0, 0.5)
+
+
+def export_paraview(
+    response: Response,
+    folder: str | Path,
+    *,
+    times: Sequence[float] | FloatArray | None = None,
+    half_width: float = 3.0,
+    points: int = 301,
+    displaced: float = 0.0,
+    force: bool = False,
+    progress: Report | None = None,
+) -> Path:
+    """Write a folder with field.pvd and shells.pvd, to be opened both in ParaView; lengths in m, times in s.
+
+    field.pvd: the total pressure (Pa) on a square of points. shells.pvd: each shell as a closed line in steps of half a degree
+    with hoop_stress (Pa), displacement (vector, m), normal_displacement (m, positive inward) and, for each line, the shell's number.
+
+    Parameters
+    ----------
+    response : Response
+    folder : str or Path
+        Made by this call.
+    times : sequence of float, optional
+        In transits, each taken at the run's nearest instant; 101 from start to end when left out.
+    half_width : float
+        Half of the square's side, in a.
+    points : int
+        Points along its side.
+    displaced : float
+        The shells are drawn displaced by this many times their displacement; 0 draws them at rest.
+    force : bool
+        Replace the folder if it exists.
+    progress : callable, optional
+        Called with the fraction done and the name of the stage.
+
+    Raises
+    ------
+    InputError
+        An argument is not allowed, the folder exists, or it cannot be written.
+    """
+    check_grid(half_width, points, displaced)
+    index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
+    seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
+    with replacing_folder(Path(folder), force=force) as partial:
+        (partial / "data").mkdir()
+        fields = _write_fields(response, partial, index, half_width, points, progress)
+        shells = _write_shells(response, partial, index, displaced)
+        write_collection(partial / "field.pvd", list(seconds), fields)
+        write_collection(partial / "shells.pvd", list(seconds), shells)
+        (partial / "system.toml").write_text(response.system.to_toml_string(), encoding="utf-8")
+    return Path(folder)
+
+
+def check_grid(half_width: float, points: int, displaced: float) -> None:
+    """Raise InputError if a square of so many points or a factor of displacement is not allowed."""
+    if not (math.isfinite(half_width) and half_width > 0):
+        raise InputError("width", f"{2 * half_width:g} is not allowed", "give a positive number, in outermost radii")
+    if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 4000:
+        raise InputError("points", f"{points!r} is not allowed", "give a whole number from 2 to 4000")
+    if not math.isfinite(displaced):
+        raise InputError("displaced", f"{displaced!r} is not allowed", "give a finite factor; 0 draws the shells at rest")
+
+
+def _instants(response: Response, times: Sequence[float] | FloatArray) -> npt.NDArray[np.intp]:
+    from coaxshell.plotting.frames import instants
+
+    return np.unique(instants(response, times))
+
+
+def _write_fields(
+    response: Response, folder: Path, index: npt.NDArray[np.intp], half_width: float, points: int, progress: Report | None
+) -> list[str]:
+    x = np.linspace(-half_width, half_width, points)
+    a = response.system.reference_radius
+    names = [f"data/field_{number:05d}.vti" for number in range(len(index))]
+    block = max(1, int(_BLOCK_BYTES // (8 * points**2)))
+    for start in range(0, len(index), block):
+        chosen = index[start : start + block]
+        pressure = response.pressure(x=x, y=x, time=np.asarray(response.time)[chosen])
+        for number, values in enumerate(np.asarray(pressure, dtype=np.float32), start):
+            write_image(folder / names[number], (-a * half_width,) * 2, (a * float(x[1] - x[0]),) * 2, {"pressure": values})
+            if progress is not None:
+                progress((number + 1) / len(index), _STAGE)
+    return names
+
+
+def _write_shells(response: Response, folder: Path, index: npt.NDArray[np.intp], displaced: float) -> list[str]:
+    shells = response.system.shells
+    theta = np.radians(_ANGLES)
+    radial = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1)
+    around = np.stack([-np.sin(theta), np.cos(theta), np.zeros_like(theta)], axis=1)
+    stress, normal, tangential = ([_on_ring(response, shell, index, name) for shell in range(len(shells))] for name in _QUANTITIES)
+    names = [f"data/shells_{number:05d}.vtp" for number in range(len(index))]
+    for number, name in enumerate(names):
+        vectors = [v[number][:, None] * around - w[number][:, None] * radial for w, v in zip(normal, tangential, strict=True)]
+        lines = [shell.radius * radial + displaced * vector for shell, vector in zip(shells, vectors, strict=True)]
+        data = {
+            "hoop_stress": np.concatenate([ring[number] for ring in stress]),
+            "displacement": np.concatenate(vectors),
+            "normal_displacement": np.concatenate([ring[number] for ring in normal]),
+        }
+        write_lines(folder / name, lines, data, {"shell": np.arange(len(shells), dtype=np.int32)})
+    return names
+
+
+_QUANTITIES = ("stress", "normal", "tangential")
+
+
+def _on_ring(response: Response, shell: int, index: npt.NDArray[np.intp], quantity: str) -> FloatArray:
+    """Return a quantity at all points of a shell and the chosen instants, shape (instants, angles); zeros for a rigid one."""
+    if isinstance(response.system.shells[shell], RigidShell):
+        return np.zeros((len(index), len(_ANGLES)))
+    labelled = response.stress(shell, angle=_ANGLES) if quantity == "stress" else response.displacement(shell, _ANGLES, quantity)
+    return np.asarray(labelled, dtype=np.float64)[index]

@@ -1,0 +1,142 @@
+"""Histories at head and tail as CSV, and histories with all modal amplitudes as a MATLAB file."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell._version import __version__
+from coaxshell.errors import InputError
+from coaxshell.model import RigidShell
+from coaxshell.plotting.saving import known_suffix, replacing
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
+
+FloatArray = npt.NDArray[np.float64]
+
+_POINTS = (("head", 0.0), ("tail", 180.0))
+_UNITS = {"stress": "Pa", "displacement": "m", "sensor_voltage": "V", "actuator_voltage": "V"}
+_MAT_LIMIT = 2**31 - 1
+
+
+def history_table(response: Response) -> dict[str, FloatArray]:
+    """Return all histories at head and tail as columns: names with units, each of shape (T,).
+
+    Time in transits and in seconds; for each elastic shell hoop stress, inward displacement and, where it has them, sensor and
+    actuator voltage, at the head (the first source's direction) and at the tail; displacement of each absorber.
+    """
+    head = response.system.sources[0].angle
+    angles = [head + turn for _, turn in _POINTS]
+    columns = {
+        "time (a/c)": np.asarray(response.time, dtype=np.float64),
+        "time (s)": np.asarray(response.time_seconds, dtype=np.float64),
+    }
+    for shell, label in _elastic(response):
+        for quantity in _quantities(response, shell):
+            values = np.asarray(getattr(response, quantity)(shell, angle=angles), dtype=np.float64)
+            for column, (point, _) in enumerate(_POINTS):
+                columns[f"{label} {quantity.replace('_', ' ')} {point} ({_UNITS[quantity]})"] = values[:, column]
+    if response.system.absorber_list:
+        for number, row in enumerate(np.asarray(response.absorber_displacement(), dtype=np.float64)):
+            columns[f"absorber {number} displacement (m)"] = row
+    return columns
+
+
+def export_csv(response: Response, path: str | Path) -> Path:
+    """Write the histories at head and tail as CSV, one row an instant, names and units in the first row.
+
+    Raises
+    ------
+    InputError
+        The file is not a .csv or cannot be written.
+    """
+    target = Path(path)
+    known_suffix(target, (".csv",))
+    columns = history_table(response)
+    with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        for row in zip(*(values.tolist() for values in columns.values()), strict=True):
+            writer.writerow([f"{value:.12g}" for value in row])
+    return target
+
+
+def export_mat(response: Response, path: str | Path) -> Path:
+    """Write histories and modal amplitudes as a MATLAB (version 5) file.
+
+    Variables: ``time`` (a/c), ``time_seconds``, ``head_angle`` (degrees), ``scenario`` (TOML), ``version``, ``shells``: a struct array
+    with radius (m), stress, displacement and voltages at [head, tail] (T x 2), and ``modal_normal``, ``modal_tangential`` (m, halves x
+    orders x T); ``absorber_displacement`` (m, absorbers x T) where there are any.
+
+    Raises
+    ------
+    InputError
+        The file is not a .mat, cannot be written, or an array is larger than the format holds.
+    """
+    from scipy.io import savemat
+
+    target = Path(path)
+    known_suffix(target, (".mat",))
+    content: dict[str, Any] = {
+        "time": np.asarray(response.time),
+        "time_seconds": np.asarray(response.time_seconds),
+        "head_angle": float(response.system.sources[0].angle),
+        "scenario": response.system.to_toml_string(),
+        "version": f"coaxshell {__version__}",
+        "shells": _shell_structs(response),
+    }
+    if response.system.absorber_list:
+        content["absorber_displacement"] = np.asarray(response.absorber_displacement())
+    largest = 8 * (response.solution.normal.size // max(1, len(response.system.shells)))
+    if largest > _MAT_LIMIT:
+        raise InputError(
+            "path", f"modal arrays of {largest / 1e9:.1f} GB do not fit a .mat file", "at most 2.1 GB: use a coarser time step"
+        )
+    with replacing(target) as partial, partial.open("wb") as file:
+        savemat(cast(Any, file), content, do_compression=True, oned_as="column")
+    return target
+
+
+def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
+    head = response.system.sources[0].angle
+    structs = []
+    for shell, described in enumerate(response.system.shells):
+        struct: dict[str, Any] = {"radius": described.radius, "rigid": isinstance(described, RigidShell)}
+        quantities = [] if struct["rigid"] else _quantities(response, shell)
+        for quantity in _UNITS:
+            given = quantity in quantities
+            struct[quantity] = np.asarray(getattr(response, quantity)(shell, angle=[head, head + 180.0])) if given else np.empty((0, 2))
+        struct["modal_normal"] = np.asarray(response.modal(shell, "displacement"))
+        struct["modal_tangential"] = np.asarray(response.modal(shell, "tangential"))
+        structs.append(struct)
+    # Equal fields in one object array become a MATLAB struct array.
+    names = [(name, object) for name in structs[0]]
+    table = np.zeros((1, len(structs)), dtype=names)
+    for number, struct in enumerate(structs):
+        for name, value in struct.items():
+            table[name][0, number] = value
+    return table
+
+
+def _elastic(response: Response) -> list[tuple[int, str]]:
+    """Return number and name of each elastic shell."""
+    shells = response.system.shells
+    names = {0: "inner", len(shells) - 1: "outer"} if len(shells) > 1 else {0: "shell"}
+    return [(i, names.get(i, f"shell {i}")) for i, shell in enumerate(shells) if not isinstance(shell, RigidShell)]
+
+
+def _quantities(response: Response, shell: int) -> list[str]:
+    """Return what an elastic shell has: stress and displacement always, voltages where it has the layers and the control."""
+    described = response.system.shells[shell]
+    roles = set() if isinstance(described, RigidShell) else {layer.role for layer in described.layers}
+    found = ["stress", "displacement"]
+    if "sensor" in roles:
+        found.append("sensor_voltage")
+    if shell in response.system.controlled_shells and {"sensor", "actuator"} <= roles:
+        found.append("actuator_voltage")
+    return found

@@ -1,0 +1,131 @@
+"""A film of the field: one system, or several side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.plotting.field_scales import FieldScales, field_scales
+from coaxshell.plotting.film_canvas import Canvas
+from coaxshell.plotting.film_files import film_writer, write_film
+from coaxshell.plotting.frames import FieldView, Frames, Report, field_frames, gathered
+from coaxshell.plotting.snapshots import headings, share_of
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
+
+Bytes = npt.NDArray[np.uint8]
+
+_STAGE = "film"
+_SAMPLES, _SAMPLE_PIXELS = 40, 90
+
+
+def save_film(
+    *responses: Response,
+    path: str | Path,
+    frames: int = 250,
+    fps: float = 25.0,
+    until: float | None = None,
+    view: FieldView | None = None,
+    pressure_limit: float | None = None,
+    stress_limit: float | None = None,
+    names: Sequence[str] = (),
+    units: str = "auto",
+    progress: Report | None = None,
+    memory: float = 0.9e9,
+) -> Path:
+    """Write a film of the pressure field and of the stress on the shells; several responses are shown side by side.
+
+    Parameters
+    ----------
+    *responses : Response
+    path : str or Path
+        An .mp4 (needs the extra ``coaxshell[video]``) or a .webp.
+    frames : int
+        Number of frames, from the impact to *until*.
+    fps : float
+        Frames per second.
+    until : float, optional
+        Last instant in transits; the end of the shortest run when left out.
+    view : FieldView, optional
+        What each panel shows and its side in pixels; the paper's 6 x 6 square of 450 x 450 when left out.
+    pressure_limit, stress_limit : float, optional
+        Ends of the two colour scales, Pa, the same for all frames; chosen from the whole film when left out.
+    names : sequence of str
+        Headings; the names of the systems when left out.
+    units : str
+        Of the pressure; one of PRESSURE_UNITS.
+    progress : callable, optional
+        Called with the fraction done and the name of the stage.
+    memory : float
+        Bytes that the pressure of one block of frames may take, all systems together.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        An argument is not allowed, or the film cannot be written.
+    """
+    target = Path(path)
+    check_film(target, frames, fps)
+    view = view or FieldView()
+    times = _times(responses, frames, until)
+    scales = _film_scales(responses, times, view, pressure_limit, stress_limit)
+    canvas = Canvas(responses, headings(responses, names), view, scales, units)
+    pictures = _pictures(canvas, responses, times, view, memory / len(responses), progress)
+    write_film(target, (canvas.width, canvas.height), len(times), fps, pictures)
+    return target
+
+
+def check_film(path: Path, frames: int, fps: float) -> None:
+    """Raise InputError if a film of this kind, length and rate cannot be made here."""
+    if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= 100_000:
+        raise InputError("frames", f"{frames!r} is not allowed", "give a whole number from 2 to 100000")
+    if not (math.isfinite(fps) and 0.1 <= fps <= 240):
+        raise InputError("fps", f"{fps!r} is not allowed", "give a number from 0.1 to 240")
+    film_writer(path)
+
+
+def _times(responses: Sequence[Response], frames: int, until: float | None) -> npt.NDArray[np.float64]:
+    if not responses:
+        raise InputError("responses", "there are none", "give at least one response")
+    end = min(float(response.time[-1]) for response in responses)
+    if until is not None and not 0 < until <= end * (1 + 1e-9):
+        raise InputError("until", f"{until!r} is not within the run", f"give a time up to {end:g} transits")
+    return np.linspace(0.0, end if until is None else until, frames)
+
+
+def _film_scales(
+    responses: Sequence[Response], times: npt.NDArray[np.float64], view: FieldView, pressure: float | None, stress: float | None
+) -> FieldScales:
+    """Return scales from instants spread over the film, on a coarse grid."""
+    if pressure is not None and stress is not None:
+        return FieldScales(pressure, stress)
+    coarse = FieldView(view.half_width, min(view.pixels, _SAMPLE_PIXELS))
+    chosen = times[:: max(1, len(times) // _SAMPLES)]
+    return field_scales([gathered(field_frames(response, chosen, coarse)) for response in responses], pressure, stress)
+
+
+def _pictures(
+    canvas: Canvas, responses: Sequence[Response], times: npt.NDArray[np.float64], view: FieldView, memory: float, progress: Report | None
+) -> Iterator[Bytes]:
+    done = 0
+    streams: list[Iterator[Frames]] = [
+        field_frames(response, times, view, progress=share_of(progress, number, len(responses)), memory=memory)
+        for number, response in enumerate(responses)
+    ]
+    for parts in zip(*streams, strict=True):
+        for index in range(len(parts[0])):
+            done += 1
+            if progress is not None:
+                progress(done / len(times), _STAGE)
+            yield canvas.frame(parts, index)

@@ -1,0 +1,224 @@
+"""Frames of a film as arrays: what does not move is drawn once by matplotlib, and what moves is filled in by numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.plotting.field import ABSORBER_COLOUR, RING_WIDTH, WALL_COLOUR, absorber_places, ring_radii, time_stamp
+from coaxshell.plotting.field_scales import (
+    PRESSURE_COLOURS,
+    STRESS_COLOURS,
+    FieldScales,
+    add_colour_bar,
+    pressure_unit,
+    stress_unit,
+)
+from coaxshell.plotting.frames import FieldView, Frames
+from coaxshell.plotting.style import style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from coaxshell.model import System
+    from coaxshell.response import Response
+
+Bytes = npt.NDArray[np.uint8]
+FloatArray = npt.NDArray[np.float64]
+
+_DPI = 100
+_MARGIN, _GAP, _TOP, _BAR, _LABELS = 10, 12, 34, 14, 58  # at 450 pixels a panel; they grow with it
+_LEVELS = 1024
+_FRAME = 60  # dark grey
+_LONGEST = 28
+
+
+@dataclass(frozen=True)
+class _Ring:
+    """The pixels of a shell: where they are, whose degree they show, and how much of each pixel the shell covers."""
+
+    rows: npt.NDArray[np.intp]
+    columns: npt.NDArray[np.intp]
+    degree: npt.NDArray[np.intp]
+    cover: npt.NDArray[np.float32]
+
+
+class Canvas:
+    """Turn fields of one or several systems into frames.
+
+    Parameters
+    ----------
+    responses : sequence of Response
+    names : sequence of str
+        Written above the panels.
+    view : FieldView
+        What each panel shows; its pixels are those of the film.
+    scales : FieldScales
+    units : str
+        Of the pressure; one of PRESSURE_UNITS.
+    """
+
+    def __init__(self, responses: Sequence[Response], names: Sequence[str], view: FieldView, scales: FieldScales, units: str) -> None:
+        self.view, self.scales = view, scales
+        self._zoom = view.pixels / 450.0
+        count, side = len(responses), view.pixels
+        self._top = self._px(_TOP)
+        self._left = [self._px(_MARGIN) + i * (side + self._px(_GAP)) for i in range(count)]
+        width = self._left[-1] + side + self._px(_MARGIN)
+        height = self._top + side + self._px(_LABELS)
+        self.width, self.height = width + width % 2, height + height % 2  # video wants even numbers
+        self._colours = _table(PRESSURE_COLOURS)
+        self._stress_colours = _table(STRESS_COLOURS)
+        self._background = self._draw_background(responses, names, units)
+        self._rings = [[self._ring(radius) for radius in ring_radii(response.system)] for response in responses]
+        self._overlays = [_Overlay(_draw_overlay(response.system, view)) for response in responses]
+        self._stamp = _Stamp(max(9, self._px(13)))
+
+    def frame(self, parts: Sequence[Frames], index: int) -> Bytes:
+        """Return one frame, shape (height, width, 3), from the same index of each system's frames."""
+        picture = self._background.copy()
+        for left, part, rings, overlay in zip(self._left, parts, self._rings, self._overlays, strict=True):
+            panel = picture[self._top : self._top + self.view.pixels, left : left + self.view.pixels]
+            panel[:] = _coloured(part.field(index)[::-1], self.scales.pressure, self._colours)
+            for ring, stress in zip(rings, part.stress, strict=True):
+                if stress is not None:
+                    _blend(panel, ring, _coloured(stress[index], self.scales.stress, self._stress_colours))
+            overlay.onto(panel)
+            panel[[0, -1]] = panel[:, [0, -1]] = _FRAME
+        self._stamp.write(picture, time_stamp(parts[0], index, mathematics=False), self._left[0], self._top)
+        return picture
+
+    def _px(self, at_450: float) -> int:
+        return round(at_450 * self._zoom)
+
+    def _ring(self, radius: float) -> _Ring:
+        """Return the pixels of a shell, rows counted from the top, with soft edges."""
+        x = self.view.centres
+        y = x[::-1, None]
+        covered = 0.5 + (0.5 * RING_WIDTH - np.abs(np.hypot(x, y) - radius)) / self.view.pixel
+        rows, columns = np.nonzero(covered > 0)
+        angle = np.degrees(np.arctan2(y[rows, 0], x[columns]))
+        degree = np.rint(angle).astype(np.intp) % 360
+        return _Ring(rows, columns, degree, np.clip(covered[rows, columns], 0.0, 1.0).astype(np.float32))
+
+    def _draw_background(self, responses: Sequence[Response], names: Sequence[str], units: str) -> Bytes:
+        """Return the page without fields: names, frames of the panels, colour bars."""
+        with style():
+            figure = _page(self.width, self.height)
+            size = 9.0 * self._zoom
+            for left, name in zip(self._left, names, strict=True):
+                right, height = (left + self.view.pixels) / self.width, 1.0 - 0.5 * self._top / self.height
+                figure.text(right, height, _shortened(name), ha="right", va="center", fontsize=1.15 * size, fontweight="bold")
+            bars = (
+                (self.scales.pressure, pressure_unit(responses[0], units, self.scales.pressure), PRESSURE_COLOURS),
+                (self.scales.stress, stress_unit(self.scales.stress), STRESS_COLOURS),
+            )
+            for number, (limit, unit, colours) in enumerate(bars):
+                length = min(0.42 * self.width, self.view.pixels * 0.9)
+                centre = (0.26 + 0.48 * number) * self.width
+                bottom = self._px(_LABELS - 9 - _BAR)
+                bounds = ((centre - 0.5 * length) / self.width, bottom / self.height, length / self.width, self._px(_BAR) / self.height)
+                bar = add_colour_bar(figure.add_axes(bounds), limit, unit, colours, orientation="horizontal")
+                bar.ax.tick_params(labelsize=0.85 * size, length=2 * self._zoom, pad=1.5 * self._zoom)
+                bar.set_label(unit.label, fontsize=0.9 * size, labelpad=0.5)
+            picture = _pixels(figure)
+        return np.ascontiguousarray(picture[..., :3])
+
+
+class _Overlay:
+    """A transparent picture laid over a panel; only the pixels that it touches are worked on."""
+
+    def __init__(self, picture: Bytes) -> None:
+        alpha = picture[..., 3].astype(np.float32) / 255.0
+        self.rows, self.columns = np.nonzero(alpha)
+        cover = alpha[self.rows, self.columns, None]
+        self._ink = picture[self.rows, self.columns, :3] * cover
+        self._rest = 1.0 - cover
+
+    def onto(self, panel: Bytes) -> None:
+        """Lay the picture over a panel."""
+        under = panel[self.rows, self.columns]
+        panel[self.rows, self.columns] = (under * self._rest + self._ink + 0.5).astype(np.uint8)
+
+
+class _Stamp:
+    """Writes the time at the top left in matplotlib's own font, whose figures all have the same width."""
+
+    def __init__(self, size: int) -> None:
+        from matplotlib import font_manager
+        from PIL import ImageFont
+
+        self._font: Any = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), size)
+        self._height = size
+
+    def write(self, picture: Bytes, text: str, left: int, top: int) -> None:
+        """Write a text centred in the strip above the panels, its left edge given."""
+        from PIL import Image, ImageDraw
+
+        strip = Image.fromarray(picture[:top])
+        ImageDraw.Draw(strip).text((left, top // 2), text, fill=(0, 0, 0), font=self._font, anchor="lm")
+        picture[:top] = np.asarray(strip)
+
+
+def _page(width: int, height: int) -> Figure:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _pixels(figure: Figure) -> Bytes:
+    canvas: Any = figure.canvas
+    canvas.draw()
+    return np.array(canvas.buffer_rgba(), dtype=np.uint8)
+
+
+def _draw_overlay(system: System, view: FieldView) -> Bytes:
+    """Return walls and absorbers on a transparent ground, shape (pixels, pixels, 4)."""
+    from matplotlib.patches import Circle
+
+    with style():
+        figure = _page(view.pixels, view.pixels)
+        figure.patch.set_alpha(0.0)
+        ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        ax.set_axis_off()
+        ax.set(xlim=(-view.half_width, view.half_width), ylim=(-view.half_width, view.half_width))
+        zoom = view.pixels / 450.0
+        for radius in ring_radii(system):
+            for edge in (radius - 0.5 * RING_WIDTH, radius + 0.5 * RING_WIDTH):
+                ax.add_patch(Circle((0, 0), edge, fill=False, edgecolor=WALL_COLOUR, linewidth=0.6 * zoom))
+        if system.absorber_list:
+            x, y = absorber_places(system)
+            ax.plot(x, y, linestyle="none", marker="o", markersize=2.4 * zoom, color=ABSORBER_COLOUR, markeredgewidth=0)
+        return _pixels(figure)
+
+
+def _shortened(name: str) -> str:
+    """Return a name that leaves room for the time."""
+    return name if len(name) <= _LONGEST else name[: _LONGEST - 1].rstrip() + "…"
+
+
+def _table(name: str) -> Bytes:
+    """Return a colour map as a table of _LEVELS colours."""
+    from matplotlib import colormaps
+
+    return np.asarray(colormaps[name](np.linspace(0.0, 1.0, _LEVELS), bytes=True)[:, :3], dtype=np.uint8)
+
+
+def _coloured(values: npt.NDArray[Any], limit: float, table: Bytes) -> Bytes:
+    """Return the colours of values on a scale from -limit to limit, shape (..., 3)."""
+    half = 0.5 * (_LEVELS - 1)
+    index = np.clip(values * np.float32(half / limit) + np.float32(half + 0.5), 0, _LEVELS - 1).astype(np.intp)
+    return np.asarray(table[index], dtype=np.uint8)
+
+
+def _blend(panel: Bytes, ring: _Ring, colours: Bytes) -> None:
+    under = panel[ring.rows, ring.columns].astype(np.float32)
+    cover = ring.cover[:, None]
+    panel[ring.rows, ring.columns] = (under + cover * (colours[ring.degree] - under) + 0.5).astype(np.uint8)

@@ -1,0 +1,133 @@
+"""What a user asks of a field, checked: where, when, which part, how smooth, within how much memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.response import arguments
+from coaxshell.solver.recompute import SolvedSpectra
+
+FloatArray = npt.NDArray[np.float64]
+Progress = Callable[[float, str], None]
+Tell = Callable[[float], None]
+
+PARTS = ("total", "incident", "diffracted", "radiated", "scattered")
+FILTERS = ("lanczos", "exponential")
+LEAST_MEMORY = 64e6
+RESOLUTION = 5e-3
+"""Default time resolution of large grids in transits, unless the run is coarser."""
+
+
+def axis(name: str, values: object, *, least: float | None = None, unit: str = "a") -> FloatArray:
+    """Return a coordinate axis as a one-dimensional array; InputError naming it if it is not one of finite real numbers."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "iuf":
+        raise InputError(name, f"{array.dtype} is not real", f"give real numbers in {unit}")
+    array = np.atleast_1d(array.astype(np.float64))
+    if array.ndim != 1 or array.size == 0:
+        raise InputError(name, f"an array of shape {array.shape} is not allowed", f"give one number or a list of them, in {unit}")
+    if not np.all(np.isfinite(array)):
+        raise InputError(name, f"{array[~np.isfinite(array)][0]} is not finite", f"give finite numbers in {unit}")
+    if least is not None and np.any(array < least):
+        raise InputError(name, f"{array.min():g} is not allowed", f"give numbers of at least {least:g} in {unit}")
+    return array
+
+
+def instants(time: object, last: float) -> FloatArray:
+    """Return the instants asked for, in transits, shape () or (T,); InputError if any lies outside the run."""
+    array = np.asarray(time)
+    if array.dtype.kind not in "iuf" or array.ndim > 1 or array.size == 0:
+        raise InputError("time", f"{time!r} is not a number or a list of numbers", "give transits a/c_e")
+    array = array.astype(np.float64)
+    slack = 1e-9 * last
+    bad = ~((array >= -slack) & (array <= last + slack))
+    if np.any(bad):
+        raise InputError("time", f"{array[bad].flat[0]:g} lies outside the run", f"give times from 0 to {last:g} transits")
+    return np.asarray(np.clip(array, 0.0, last), dtype=np.float64)
+
+
+def when_of(time: npt.ArrayLike | None, spectra: SolvedSpectra) -> FloatArray:
+    """Return the instants asked for, shape () or (T,); InputError if there are none or some lie outside the run."""
+    last = float(spectra.grid.time[-1])
+    if time is None:
+        raise InputError("time", "is missing", f"give one time or a list of them, from 0 to {last:g} transits")
+    return instants(time, last)
+
+
+class FieldOptions(TypedDict, total=False):
+    """Keyword arguments of a field beside its place; see :func:`coaxshell.response.fields.pressure.pressure`."""
+
+    radius: npt.ArrayLike | None
+    angle: npt.ArrayLike | None
+    time: npt.ArrayLike | None
+    filter: str | None
+    time_resolution: float | None
+    memory: float
+    progress: Progress | None
+
+
+class PartOptions(FieldOptions, total=False):
+    """The same, with the part of the field."""
+
+    part: str
+
+
+class RmsOptions(TypedDict, total=False):
+    """Keyword arguments of a mean over a region."""
+
+    time: npt.ArrayLike | None
+    part: str
+    filter: str | None
+    time_resolution: float | None
+    memory: float
+    progress: Progress | None
+
+
+@dataclass(frozen=True)
+class Request:
+    """Options common to all fields; ``resolution_given`` tells whether the time resolution is the user's or only a proposal."""
+
+    part: str
+    filter: str | None
+    resolution: float
+    resolution_given: bool
+    memory: float
+    progress: Progress | None
+
+
+def request(
+    *, part: str, filter: str | None, time_resolution: float | None, memory: float, progress: Progress | None, step: float
+) -> Request:
+    """Return the options, checked; InputError naming the one that is wrong."""
+    arguments.one_of("part", part, PARTS)
+    if filter is not None:
+        arguments.one_of("filter", filter, FILTERS)
+    resolution = max(RESOLUTION, step) if time_resolution is None else positive("time_resolution", time_resolution, "transits a/c_e")
+    memory = positive("memory", memory, "bytes")
+    if memory < LEAST_MEMORY:
+        raise InputError("memory", f"{memory:g} bytes are too few", f"give at least {LEAST_MEMORY:g}")
+    return Request(part, filter, max(resolution, step), time_resolution is not None, memory, progress)
+
+
+def positive(name: str, value: object, unit: str) -> float:
+    """Return a finite number greater than 0; InputError otherwise."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)) or not 0 < float(value) < np.inf:
+        raise InputError(name, f"{value!r} is not allowed", f"give a finite number greater than 0 ({unit})")
+    return float(value)
+
+
+def mode_filter(name: str | None, max_order: int) -> FloatArray:
+    """Return the weight of every order: 1; sinc(m/(M + 1)) for "lanczos"; exp(-36 (m/(M + 1))^6) for "exponential"."""
+    ratio = np.arange(max_order + 1) / (max_order + 1.0)
+    match name:
+        case "lanczos":
+            return np.asarray(np.sinc(ratio), dtype=np.float64)
+        case "exponential":
+            return np.exp(-36.0 * ratio**6)
+    return np.ones_like(ratio)

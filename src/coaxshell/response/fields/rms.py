@@ -1,0 +1,112 @@
+"""RMS of the pressure over a fluid region: orders by Parseval, radii by Gauss quadrature."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import scipy.fft
+import xarray as xr
+
+from coaxshell.response.fields.band import band
+from coaxshell.response.fields.domain import Domain, default_instants, domain_of
+from coaxshell.response.fields.grids import instants_of
+from coaxshell.response.fields.modal_field import modal_field
+from coaxshell.response.fields.regions import FloatArray
+from coaxshell.response.fields.request import Progress, Request, mode_filter, request, when_of
+from coaxshell.response.fields.sources import Incident
+from coaxshell.response.synthesis import mean_square
+from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.scaling import Problem
+
+
+def pressure_rms(
+    spectra: SolvedSpectra,
+    region: str | int,
+    radius: float | None = None,
+    *,
+    time: npt.ArrayLike | None = None,
+    part: str = "total",
+    filter: str | None = None,
+    time_resolution: float | None = None,
+    memory: float = 1e9,
+    progress: Progress | None = None,
+) -> xr.DataArray:
+    """Return the RMS of the pressure over the area of a region, Pa, dims (time,).
+
+    Parameters
+    ----------
+    spectra : SolvedSpectra
+    region : str or int
+        "interior" (within the innermost shell), "gap" (between two shells), "exterior" (from the outermost shell to *radius*), or the
+        number of a fluid from the inside.
+    radius : float, optional
+        Outer radius of the exterior annulus in units of a, 3 by default.
+    time : float or array_like, optional
+        Instants in transits; by default equal steps of the run, 500 to 1000 of them.
+    part, filter, time_resolution, memory, progress
+        As in :func:`coaxshell.response.fields.pressure.pressure`.
+
+    Raises
+    ------
+    InputError
+        If the region is unknown or another argument is not allowed.
+    """
+    step = spectra.grid.time_step
+    asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
+    domain = domain_of(spectra.problem, region, radius)
+    when = when_of(default_instants(spectra.grid.time) if time is None else time, spectra)
+    square = _mean_square(spectra, asked, domain, np.atleast_1d(when))
+    values = np.sqrt(np.maximum(square, 0.0)) * spectra.problem.scales.pressure
+    attributes = {
+        "units": "Pa",
+        "long_name": f"RMS of the {'' if part == 'total' else part + ' '}pressure, {region}",
+        "region": str(region),
+        "inner_radius": domain.region.inner,
+        "outer_radius": domain.outer,
+        "part": part,
+        "filter": filter or "none",
+        "time_resolution": asked.resolution,
+    }
+    dims = ("time",) if when.ndim else ()
+    return xr.DataArray(values.reshape(when.shape), dims=dims, coords=instants_of(spectra, when), name="pressure_rms", attrs=attributes)
+
+
+def _mean_square(spectra: SolvedSpectra, asked: Request, domain: Domain, times: FloatArray) -> FloatArray:
+    """Return the mean square of the dimensionless pressure over a domain, shape (times,)."""
+    radii, weights = domain.rule(asked.resolution)
+    field = modal_field(spectra, band(spectra.grid, asked.resolution), domain.region, asked.part)
+    weight = mode_filter(asked.filter, spectra.max_order)[:, None]
+    points = scipy.fft.next_fast_len(max(720, 4 * weight.size), real=True) if domain.region.exterior else 0
+    block = max(1, int(asked.memory / 4 / (8 * times.size * (4 * weight.size + 3 * points))))
+    total = np.zeros(times.size)
+    for start in range(0, radii.size, block):
+        here, share = radii[start : start + block], weights[start : start + block]
+        modal = None
+        if field is not None:
+            modal = field.histories(here, times) * weight
+            for r, amplitudes in zip(share, modal, strict=True):
+                total += r * mean_square(amplitudes)
+        if domain.region.exterior and asked.part in ("total", "incident"):
+            total += share @ _with_incident(spectra.problem, here, times, modal, points)
+        if asked.progress is not None:
+            asked.progress(min(1.0, (start + block) / radii.size), "mean square")
+    return total
+
+
+def _with_incident(problem: Problem, radii: FloatArray, times: FloatArray, modal: FloatArray | None, points: int) -> FloatArray:
+    """Return what the incident waves add to the mean squares on circles, (radii, times): their own, and twice the product with the field.
+
+    The product needs only the orders of the field, from an FFT of the incident waves around each circle.
+    """
+    theta = 2.0 * np.pi * np.arange(points) / points
+    incident = Incident(problem, np.outer(radii, np.cos(theta)).ravel(), np.outer(radii, np.sin(theta)).ravel(), float(times.max()))
+    added = np.empty((radii.size, times.size))
+    for i, instant in enumerate(times):
+        waves = incident.pressure(float(instant)).reshape(radii.size, points)
+        added[:, i] = np.einsum("rp,rp->r", waves, waves) / points
+        if modal is not None:
+            spectrum = scipy.fft.rfft(waves, axis=1)[:, : modal.shape[2]] * (2.0 / points)
+            added[:, i] += np.einsum("rm,rm->r", modal[:, 0, :, i], spectrum.real)
+            if modal.shape[1] == 2:
+                added[:, i] -= np.einsum("rm,rm->r", modal[:, 1, :, i], spectrum.imag)
+    return added

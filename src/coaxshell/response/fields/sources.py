@@ -1,0 +1,59 @@
+"""The incident waves of a system at points of its own frame, summed over its sources."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.free_field import FreeField, LineField, PlaneField, SphericalField, TimeFunction
+from coaxshell.acoustics.incident import LineGeometry, SphericalGeometry
+from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
+from coaxshell.acoustics.pulse_transforms import pulse_transform
+from coaxshell.model.sources import Source
+from coaxshell.response.fields.regions import FloatArray
+from coaxshell.solver.excitation import incident_wave
+from coaxshell.solver.scaling import Problem
+
+
+class Incident:
+    """All incident waves at points (x, y), in units of a; pressures in rho_e c_e^2, velocities in c_e."""
+
+    def __init__(self, problem: Problem, x: FloatArray, y: FloatArray, latest: float) -> None:
+        self._size = x.size
+        self._waves = [_wave(problem, source, x, y, latest) for source in problem.system.sources] if x.size else []
+
+    def pressure(self, time: float) -> FloatArray:
+        """Return the pressure at an instant, shape (points,)."""
+        total = np.zeros(self._size)
+        for field, _, delay in self._waves:
+            total += field.pressure(time - delay)
+        return total
+
+    def velocity(self, time: float) -> FloatArray:
+        """Return the particle velocity along x and y at an instant, shape (2, points)."""
+        total = np.zeros((2, self._size))
+        for field, (cos, sin), delay in self._waves:
+            along, across = field.velocity(time - delay)
+            total[0] += cos * along - sin * across
+            total[1] += sin * along + cos * across
+        return total
+
+
+def _wave(problem: Problem, source: Source, x: FloatArray, y: FloatArray, latest: float) -> tuple[FreeField, tuple[float, float], float]:
+    scales, pulse = problem.scales, source.pulse
+    angle = np.radians(source.angle)
+    cos, sin = float(np.cos(angle)), float(np.sin(angle))
+    along, across = cos * x + sin * y, cos * y - sin * x
+    history = TimeFunction(
+        lambda t: pulse_history(pulse, t, scales.time, scales.pressure),
+        lambda t: pulse_impulse(pulse, t, scales.time, scales.pressure),
+        lambda s: pulse_transform(pulse, s, scales.time, scales.pressure),
+    )
+    geometry = incident_wave(problem, source)
+    field: FreeField
+    if isinstance(geometry, LineGeometry):
+        field = LineField(history, geometry.distance, along, across, latest)
+    elif isinstance(geometry, SphericalGeometry):
+        field = SphericalField(history, geometry.distance, along, across)
+    else:
+        field = PlaneField(history, along, across)
+    return field, (cos, sin), source.delay / scales.time
