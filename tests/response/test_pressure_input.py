@@ -82,3 +82,8 @@ def test_gaps_that_are_not_one(ring, water, shock):
 def test_an_unknown_keyword_is_a_type_error(answer):
     with pytest.raises(TypeError, match="colour"):
         answer.pressure(colour="red", **PLACE)
+
+
+def test_a_front_of_another_kind_is_refused(answer):
+    with pytest.raises(cx.InputError, match="front: 'soft' is unknown; allowed: sharp, matched"):
+        answer.pressure(**PLACE, front="soft")

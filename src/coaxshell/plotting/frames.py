@@ -170,7 +170,8 @@ def _ring_stress(response: Response, shell: int) -> FloatArray | None:
 
 def _pressure(response: Response, times: FloatArray, view: FieldView, progress: Report | None) -> npt.NDArray[np.float32]:
     arguments: dict[str, Any] = {} if progress is None else {"progress": progress}
-    return np.asarray(response.pressure(x=view.centres, y=_rows(response, view), time=times, **arguments), dtype=np.float32)
+    field = response.pressure(x=view.centres, y=_rows(response, view), time=times, front="matched", **arguments)
+    return np.asarray(field, dtype=np.float32)
 
 
 def _rows(response: Response, view: FieldView) -> FloatArray:

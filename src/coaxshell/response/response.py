@@ -125,12 +125,13 @@ class Response:
         return voltages.actuator_voltage(self.solution, self._index(shell), angle)
 
     def pressure(
-        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PartOptions]
+        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PressureOptions]
     ) -> xr.DataArray:
         """Return the acoustic pressure, Pa, dims (time, y, x) or (time, radius, angle).
 
         Give *x* and *y* or *radius* and *angle* (degrees), lengths in units of a, and *time* in transits;
-        *part* is "total", "incident", "diffracted", "radiated" or "scattered". See :func:`coaxshell.response.fields.pressure.pressure`.
+        *part* is "total", "incident", "diffracted", "radiated" or "scattered", *front* "sharp" or, for pictures, "matched".
+        See :func:`coaxshell.response.fields.pressure.pressure`.
         """
         return fields.pressure(self._spectra, x, y, **options)
 

@@ -2,7 +2,7 @@
 
 from coaxshell.response.fields.flow import intensity, velocity
 from coaxshell.response.fields.pressure import pressure
-from coaxshell.response.fields.request import FieldOptions, PartOptions, RmsOptions
+from coaxshell.response.fields.request import FieldOptions, PartOptions, PressureOptions, RmsOptions
 from coaxshell.response.fields.rms import pressure_rms
 
-__all__ = ["FieldOptions", "PartOptions", "RmsOptions", "intensity", "pressure", "pressure_rms", "velocity"]
+__all__ = ["FieldOptions", "PartOptions", "PressureOptions", "RmsOptions", "intensity", "pressure", "pressure_rms", "velocity"]

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import WORKERS
+from coaxshell.response.fields.band import band
 from coaxshell.response.fields.exact import Points, add_exact, grouped
 from coaxshell.response.fields.gridded import add_gridded, raster_radii
 from coaxshell.response.fields.grids import Grid
@@ -59,19 +60,20 @@ def evaluate(spectra: SolvedSpectra, asked: Request, grid: Grid, times: FloatArr
                 add_gridded(out, spectra, asked, (grid.radius, grid.angle), times, quantity, tell)
         results.append(out)
     if asked.part in ("total", "incident"):
-        add_incident(results, spectra, grid, times, quantities)
+        add_incident(results, spectra, asked, grid, times, quantities)
     if asked.progress is not None:
         asked.progress(1.0, "field")
     return results
 
 
 def add_incident(
-    results: list[FloatArray], spectra: SolvedSpectra, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
+    results: list[FloatArray], spectra: SolvedSpectra, asked: Request, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
 ) -> None:
-    """Add the incident waves, exact in space and time, at the points of the exterior."""
+    """Add the incident waves, exact in space, and in time too unless fronts are to match the scattered part's, outside the shells."""
     outside = np.flatnonzero(grid.radius >= 1.0)
     cos, sin = np.cos(np.radians(grid.angle[outside])), np.sin(np.radians(grid.angle[outside]))
-    incident = Incident(spectra.problem, grid.radius[outside] * cos, grid.radius[outside] * sin, float(times.max()))
+    smooth = band(spectra.grid, asked.resolution) if asked.front == "matched" else None
+    incident = Incident(spectra.problem, grid.radius[outside] * cos, grid.radius[outside] * sin, float(times.max()), smooth)
 
     def add(row: int) -> None:
         instant = float(times[row])

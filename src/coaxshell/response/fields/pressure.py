@@ -29,6 +29,7 @@ def pressure(
     angle: npt.ArrayLike | None = None,
     time: npt.ArrayLike | None = None,
     part: str = "total",
+    front: str = "sharp",
     filter: str | None = None,
     time_resolution: float | None = None,
     memory: float = 1e9,
@@ -51,6 +52,9 @@ def pressure(
     part : str
         "total", "incident" (the sources alone, exact in space and time), "diffracted" (scattered by the outermost surface as if rigid),
         "radiated" (by the motion of the shells) or "scattered" (the latter two). Inside the outermost shell all is radiated.
+    front : str
+        "sharp": incident fronts are jumps. "matched": they rise over the scattered part's time resolution, so that the two cancel in the
+        shadow, where a sharp one leaves a line about a pixel wide; for pictures.
     filter : str, optional
         Weight of the circumferential orders of the scattered part against Gibbs artefacts: "lanczos", sinc(m/(M + 1)), or
         "exponential", exp(-36 (m/(M + 1))^6); none by default.
@@ -70,7 +74,7 @@ def pressure(
         If an argument is not allowed; it names the argument.
     """
     step = spectra.grid.time_step
-    asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
+    asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step, front=front)
     grid, when = grid_of(x, y, radius, angle), when_of(time, spectra)
     asked = settled(spectra, asked, grid)
     values = evaluate(spectra, asked, grid, np.atleast_1d(when), ("pressure",))[0]

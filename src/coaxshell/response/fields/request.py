@@ -19,6 +19,7 @@ Tell = Callable[[float], None]
 
 PARTS = ("total", "incident", "diffracted", "radiated", "scattered")
 FILTERS = ("lanczos", "exponential")
+FRONTS = ("sharp", "matched")
 LEAST_MEMORY = 64e6
 RESOLUTION = 5e-3
 """Default time resolution of large grids in transits, unless the run is coarser."""
@@ -78,6 +79,12 @@ class PartOptions(FieldOptions, total=False):
     part: str
 
 
+class PressureOptions(PartOptions, total=False):
+    """The same, with how sharp the incident front is."""
+
+    front: str
+
+
 class RmsOptions(TypedDict, total=False):
     """Keyword arguments of a mean over a region."""
 
@@ -99,20 +106,29 @@ class Request:
     resolution_given: bool
     memory: float
     progress: Progress | None
+    front: str = "sharp"
 
 
 def request(
-    *, part: str, filter: str | None, time_resolution: float | None, memory: float, progress: Progress | None, step: float
+    *,
+    part: str,
+    filter: str | None,
+    time_resolution: float | None,
+    memory: float,
+    progress: Progress | None,
+    step: float,
+    front: str = "sharp",
 ) -> Request:
     """Return the options, checked; InputError naming the one that is wrong."""
     arguments.one_of("part", part, PARTS)
+    arguments.one_of("front", front, FRONTS)
     if filter is not None:
         arguments.one_of("filter", filter, FILTERS)
     resolution = max(RESOLUTION, step) if time_resolution is None else positive("time_resolution", time_resolution, "transits a/c_e")
     memory = positive("memory", memory, "bytes")
     if memory < LEAST_MEMORY:
         raise InputError("memory", f"{memory:g} bytes are too few", f"give at least {LEAST_MEMORY:g}")
-    return Request(part, filter, max(resolution, step), time_resolution is not None, memory, progress)
+    return Request(part, filter, max(resolution, step), time_resolution is not None, memory, progress, front)
 
 
 def positive(name: str, value: object, unit: str) -> float:

@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from coaxshell.acoustics.free_field import FreeField, LineField, PlaneField, SphericalField, TimeFunction
 from coaxshell.acoustics.incident import LineGeometry, SphericalGeometry
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
+from coaxshell.response.fields.front import banded
 from coaxshell.response.fields.regions import FloatArray
 from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.scaling import Problem
 
 
 class Incident:
-    """All incident waves at points (x, y), in units of a; pressures in rho_e c_e^2, velocities in c_e."""
+    """All incident waves at points (x, y), in units of a; pressures in rho_e c_e^2, velocities in c_e.
 
-    def __init__(self, problem: Problem, x: FloatArray, y: FloatArray, latest: float) -> None:
+    ``smooth`` is the band of a scattered field whose fronts those of the pressure are to match; sharp if None.
+    """
+
+    def __init__(self, problem: Problem, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None = None) -> None:
         self._size = x.size
-        self._waves = [_wave(problem, source, x, y, latest) for source in problem.system.sources] if x.size else []
+        self._waves = [_wave(problem, source, x, y, latest, smooth) for source in problem.system.sources] if x.size else []
 
     def pressure(self, time: float) -> FloatArray:
         """Return the pressure at an instant, shape (points,)."""
@@ -38,7 +45,9 @@ class Incident:
         return total
 
 
-def _wave(problem: Problem, source: Source, x: FloatArray, y: FloatArray, latest: float) -> tuple[FreeField, tuple[float, float], float]:
+def _wave(
+    problem: Problem, source: Source, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None
+) -> tuple[FreeField, tuple[float, float], float]:
     scales, pulse = problem.scales, source.pulse
     angle = np.radians(source.angle)
     cos, sin = float(np.cos(angle)), float(np.sin(angle))
@@ -48,6 +57,8 @@ def _wave(problem: Problem, source: Source, x: FloatArray, y: FloatArray, latest
         lambda t: pulse_impulse(pulse, t, scales.time, scales.pressure),
         lambda s: pulse_transform(pulse, s, scales.time, scales.pressure),
     )
+    if smooth is not None:
+        history = replace(history, history=banded(history, smooth))
     geometry = incident_wave(problem, source)
     field: FreeField
     if isinstance(geometry, LineGeometry):
