@@ -38,9 +38,12 @@ demo: $(STAMP)
 	@$(BIN)/coaxshell animate $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --frames 100 --fps 20 --size 360 --quiet \
 	  --output $(DEMO)/film.mp4 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
 
+# Two test processes share the cores; BLAS threads of their own would only spin against each other.
+test: export OPENBLAS_NUM_THREADS = 1
 test: $(STAMP)
 	@$(BIN)/python -m pytest -q -n 2 -m "not slow"
 
+test-all: export OPENBLAS_NUM_THREADS = 1
 test-all: $(STAMP)
 	@$(BIN)/python -m pytest -q -n 2
 

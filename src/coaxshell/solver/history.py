@@ -14,7 +14,7 @@ from coaxshell.acoustics.laplace_grid import WORKERS
 
 FloatArray = npt.NDArray[np.float64]
 
-BLOCK = 64
+BLOCK = 32
 """Steps summed directly before the FFTs take over."""
 
 
@@ -36,19 +36,19 @@ class KernelTable:
         self.steps = kernels.shape[-1]
         self.present = kernels[..., 0].copy()
         self.recent = np.ascontiguousarray(kernels[..., 1 : BLOCK + 1])
-        self._kernels = kernels
+        self.kernels = kernels
         self._transforms: dict[int, npt.NDArray[np.complex128]] = {}
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """(outputs, inputs, M + 1)."""
-        outputs, inputs, modes, _ = self._kernels.shape
+        outputs, inputs, modes, _ = self.kernels.shape
         return outputs, inputs, modes
 
     def transform(self, length: int) -> npt.NDArray[np.complex128]:
         """Return the transform of the first 2 * length samples, with k_0 = 0."""
         if length not in self._transforms:
-            head = self._kernels[..., : 2 * length].copy()
+            head = self.kernels[..., : 2 * length].copy()
             head[..., 0] = 0.0
             self._transforms[length] = fft.rfft(head, 2 * length, axis=-1, workers=WORKERS)
         return self._transforms[length]
