@@ -40,7 +40,10 @@ def animate(
     refinement: options.RefinementOption = "1",
     quiet: options.QuietOption = False,
 ) -> None:
-    """Make a film of the pressure field, of one system or two."""
+    """Make a film of the pressure field.
+
+    The hoop stress is drawn on the shells; with --compare, two systems side by side.
+    """
     from coaxshell.plotting import FILM_SUFFIXES, FieldView, check_film, check_units, save_film
 
     target = writable(output, "--output", FILM_SUFFIXES)

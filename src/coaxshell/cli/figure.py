@@ -38,7 +38,10 @@ def figure(
     refinement: options.RefinementOption = "1",
     quiet: options.QuietOption = False,
 ) -> None:
-    """Draw a figure of the paper, computed or from saved runs."""
+    """Draw a figure of the paper.
+
+    Its runs are computed, or read from saved ones with --from.
+    """
     from coaxshell.plotting import FIGURE_SUFFIXES, figure_recipe, save_figure
 
     recipe = figure_recipe(number)

@@ -35,9 +35,9 @@ def run(
     ] = None,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Solve a system and print its peaks, alone or beside those of another one.
+    """Solve a system and print its peaks.
 
-    --set changes both systems, but absorbers and control only where a system has them. --output saves the first run.
+    With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them. --output saves the first run.
     """
     from coaxshell.cli.comparison import labels, load_reference, print_comparison
     from coaxshell.cli.scenario import load_system

@@ -39,7 +39,10 @@ def snapshots(
     refinement: options.RefinementOption = "1",
     quiet: options.QuietOption = False,
 ) -> None:
-    """Draw the pressure field at several instants, with the stress."""
+    """Draw the pressure field at several instants.
+
+    The hoop stress is drawn on the shells; with --compare, two systems side by side.
+    """
     from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots, save_figure
 
     target = writable(output, "--output", FIGURE_SUFFIXES)
