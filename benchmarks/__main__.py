@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from benchmarks import bare, engines, scaling
+from benchmarks import bare, engines, march, scaling
 
 
 def main() -> None:
     """Run them one after another."""
-    for benchmark in (bare, scaling, engines):
+    for benchmark in (bare, scaling, march, engines):
         benchmark.main()
 
 

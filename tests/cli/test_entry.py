@@ -16,7 +16,7 @@ import coaxshell
 from coaxshell.cli import main
 from coaxshell.cli.progress import progress
 
-COMMANDS = ("run", "presets", "init", "info", "figure", "snapshots", "animate", "export")
+COMMANDS = ("run", "presets", "init", "info", "figure", "snapshots", "animate", "export", "verify", "response-function")
 
 
 def test_help_lists_every_command(run):

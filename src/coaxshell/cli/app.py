@@ -14,6 +14,7 @@ from coaxshell.cli.figure import figure
 from coaxshell.cli.info import info
 from coaxshell.cli.init import init
 from coaxshell.cli.presets import presets
+from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
 from coaxshell.cli.snapshots import snapshots
 from coaxshell.cli.verify import verify
@@ -47,5 +48,5 @@ def coaxshell(
         typer.echo(context.get_help())
 
 
-for _command in (run, presets, init, info, figure, snapshots, animate, export, verify):
+for _command in (run, presets, init, info, figure, snapshots, animate, export, verify, response_function):
     app.command()(_command)

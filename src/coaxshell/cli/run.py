@@ -37,7 +37,8 @@ def run(
 ) -> None:
     """Solve a system and print its peaks.
 
-    With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them. --output saves the first run.
+    With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them;
+    --output saves the first run.
     """
     from coaxshell.cli.comparison import labels, load_reference, print_comparison
     from coaxshell.cli.scenario import load_system

@@ -54,39 +54,43 @@ def figure_response_functions(functions: Sequence[ResponseFunction], modes: Sequ
         One, or two side by side.
     modes : sequence of int
         Orders drawn as curves, at most seven.
-
-    Returns
-    -------
-    Figure
     """
     with style():
         figure = new_figure(PAGE_WIDTH, 5.6)
         axes = figure.subplots(2, len(functions), squeeze=False, sharex="col", sharey="row", height_ratios=(1.0, 0.95))
         shown = [np.where(np.isfinite(each.values), each.values, np.nan) for each in functions]
         for values, each in zip(shown, functions, strict=True):
-            values[0] -= each.growth * each.time
-        largest = max(float(np.nanpercentile(np.abs(values), 99.0)) for values in shown)
+            values[0] -= each.growth * each.time * (each.time >= each.fronts[0][0] if each.fronts else 0.0)
+        largest = max(float(np.nanpercentile(np.abs(values), 99.0)) for values in shown) or 1.0
         for column, (values, each) in enumerate(zip(shown, functions, strict=True)):
             top, bottom = axes[0, column], axes[1, column]
             _curves(top, values, each, modes)
             image = _map(bottom, values, each, largest)
-            top.set_title(f"{'abcd'[column]}  {each.title}", loc="left", fontweight="bold")
+            letter = f"{'abcd'[column]}  " if len(functions) > 1 else ""
+            top.set_title(letter + each.title, loc="left", fontweight="bold")
             bottom.set_xlabel(TIME_LABEL)
         axes[0, 0].set_ylabel("response function")
         axes[1, 0].set_ylabel("order $m$")
         axes[0, 0].set_ylim(*_limits([values[list(modes)] for values in shown]))
         figure.colorbar(image, ax=axes[1, :].tolist(), extend="both", pad=0.015, aspect=22, label="response function")
         handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 8), columnspacing=1.4, handlelength=1.6)
+        figure.legend(
+            handles,
+            labels,
+            loc="outside lower center",
+            ncols=min(len(labels), 6 if len(labels) < 7 else 5),
+            columnspacing=1.4,
+            handlelength=1.6,
+        )
     return figure
 
 
 def _curves(ax: Axes, values: FloatArray, function: ResponseFunction, modes: Sequence[int]) -> None:
     colours = [COLOURS[name] for name in ("blue", "orange", "green", "purple", "sky", "amber", "grey")]
-    _mark(ax, function, colour=COLOURS["grey"], label=True)
+    _mark(ax, function)
     ax.axhline(0.0, color=COLOURS["grey"], linewidth=0.6, zorder=1)
     for colour, mode in zip(colours, modes, strict=False):
-        label = f"$m$ = {mode}" + (" less its mean growth" if mode == 0 and function.growth else "")
+        label = f"$m$ = {mode}" + (", growth removed" if mode == 0 and function.growth else "")
         ax.plot(function.time, values[mode], color=colour, linewidth=1.0, label=label)
     ax.set_xlim(float(function.time[0]), float(function.time[-1]))
 
@@ -97,19 +101,19 @@ def _map(ax: Axes, values: FloatArray, function: ResponseFunction, largest: floa
     image = ax.imshow(
         values, aspect="auto", origin="lower", extent=extent, cmap=diverging_map(), vmin=-largest, vmax=largest, interpolation="antialiased"
     )
+    ax.set(xlim=(float(function.time[0]), float(function.time[-1])))
     ax.grid(visible=False)
-    ax.set_xlim(float(function.time[0]), float(function.time[-1]))
     for front, _ in _drawn(function):
         ax.plot([front], [1.0], marker="v", markersize=4.0, color="black", clip_on=False, transform=ax.get_xaxis_transform(), zorder=5)
     return image
 
 
-def _mark(ax: Axes, function: ResponseFunction, *, colour: str, label: bool) -> None:
-    seen = set()
+def _mark(ax: Axes, function: ResponseFunction) -> None:
+    seen: set[bool] = set()
     for front, logarithm in _drawn(function):
-        name = ("front after odd passages" if logarithm else "front") if label and logarithm not in seen else None
+        name = ("front, a logarithm" if logarithm else "front") if logarithm not in seen else None
         seen.add(logarithm)
-        ax.axvline(front, color=colour, linewidth=0.7, linestyle=":" if logarithm else (0, (5, 2)), label=name, zorder=1.5)
+        ax.axvline(front, color=COLOURS["grey"], linewidth=0.7, linestyle=":" if logarithm else (0, (5, 2)), label=name, zorder=1.5)
 
 
 def _drawn(function: ResponseFunction) -> Sequence[tuple[float, bool]]:
@@ -120,7 +124,7 @@ def _limits(curves: Sequence[FloatArray]) -> tuple[float, float]:
     """Return limits that leave out what is only reached beside logarithms."""
     every = np.concatenate([values.ravel() for values in curves])
     low, high = (float(value) for value in np.nanpercentile(every, (0.15, 99.85)))
-    room = 0.08 * (high - low)
+    room = 0.08 * (high - low) or 1.0
     return low - room, high + room
 
 
@@ -128,7 +132,7 @@ def diverging_map() -> Colormap:
     """Return blue, white, red with equal steps of lightness and of colour: straight lines in CIELAB."""
     from matplotlib.colors import ListedColormap
 
-    ends = (np.array([32.0, 14.0, -56.0]), np.array([32.0, 58.0, 36.0]))
+    ends = (np.array([38.0, 6.0, -46.0]), np.array([38.0, 52.0, 30.0]))
     middle = np.array([97.0, 0.0, 0.0])
     part = np.linspace(0.0, 1.0, 128)[:, None]
     lab = np.concatenate([ends[0] + part * (middle - ends[0]), middle + part * (ends[1] - middle)])

@@ -1,0 +1,131 @@
+"""``coaxshell verify``: the conformance suite, and another code's histories against ours."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from coaxshell.cli import options, values
+from coaxshell.errors import InputError
+
+if TYPE_CHECKING:
+    from coaxshell.verification import Report
+
+FOLDER = Path("verification-report")
+
+
+def verify(
+    quick: Annotated[bool, typer.Option("--quick", help="Smaller versions of the checks: seconds instead of a minute or two.")] = False,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Where report.md and report.html are written; made if need be.")
+    ] = FOLDER,
+    show_list: Annotated[bool, typer.Option("--list", help="List the checks and leave.")] = False,
+    only: Annotated[list[str] | None, typer.Option("--only", metavar="NAME", help="Carry out this check only. May be repeated.")] = None,
+    against: Annotated[
+        Path | None, typer.Option("--against", metavar="FILE.csv", help="Compare another code's histories with ours; needs --case.")
+    ] = None,
+    case: Annotated[
+        str | None, typer.Option("--case", metavar="SCENARIO", help="What the other code solved: a preset or a .toml file.")
+    ] = None,
+    template: Annotated[
+        Path | None, typer.Option("--template", metavar="FILE.csv", help="Write an example for --against with our numbers for --case.")
+    ] = None,
+    tolerance: Annotated[
+        str | None,
+        typer.Option("--tolerance", metavar="ERROR", help="With --against: largest relative error that passes."),
+    ] = None,
+    time_step: options.TimeStepOption = "1e-3",
+    modes: Annotated[str, typer.Option("--modes", metavar="N", help="With --against, --template: highest order.")] = "150",
+    quiet: options.QuietOption = False,
+) -> None:
+    """Check the numbers and write a report.
+
+    Against theory, reference values and independent methods; --against compares the histories of another code.
+
+    Exits with 1 if anything fails. With --against FILE.csv --case SCENARIO another code's histories are compared with ours instead.
+    """
+    if show_list:
+        return _list()
+    if against is None and template is None:
+        if case is not None:
+            raise InputError("--case", "is for --against or --template", "give one of them, or leave --case out")
+        return _suite(only, quick, output, quiet)
+    if case is None:
+        raise InputError("--case", "is missing", "name the preset or .toml file that the other code solved")
+    resolution = values.number("--time-step", time_step), _modes(modes)
+    if template is not None:
+        _template(case, template, resolution[1])
+    if against is not None:
+        limit = None if tolerance is None else values.number("--tolerance", tolerance)
+        _against(against, case, output, limit, resolution, quiet)
+    return None
+
+
+def _list() -> None:
+    from coaxshell.verification import checks
+
+    known = checks()
+    width = max(len(one.name) for one in known)
+    for one in known:
+        typer.echo(f"{one.name:{width}}  {one.title}")
+
+
+def _suite(only: list[str] | None, quick: bool, output: Path, quiet: bool) -> None:
+    from coaxshell.cli.progress import progress
+    from coaxshell.verification import chosen, run
+    from coaxshell.verification.files import prepare
+
+    wanted = chosen(only, quick)
+    prepare(output)
+    with progress(quiet) as report:
+        found = run(wanted, quick=quick, progress=report)
+    _tell(found, output)
+
+
+def _against(path: Path, case: str, output: Path, limit: float | None, resolution: tuple[float, int], quiet: bool) -> None:
+    from coaxshell.cli.progress import progress
+    from coaxshell.cli.scenario import load_system
+    from coaxshell.verification.against import against
+
+    system = load_system(case)
+    with values.named_as_options(), progress(quiet) as report:
+        found = against(path, system, time_step=resolution[0], modes=resolution[1], tolerance=limit, progress=report)
+    _tell(found, output)
+
+
+def _template(case: str, path: Path, modes: int) -> None:
+    from coaxshell.cli.files import writable
+    from coaxshell.cli.scenario import load_system
+    from coaxshell.verification.against import template
+
+    system = load_system(case)
+    writable(path, "--template", (".csv",))
+    template(system, path, modes=modes)
+    typer.echo(f"wrote {path}")
+
+
+def _modes(text: str) -> int:
+    number = values.modes(text)
+    if number == "auto":
+        raise InputError("--modes", "'auto' is not allowed here", "give a whole number of 1 or more")
+    return number
+
+
+def _tell(found: Report, output: Path) -> None:
+    """Print the report, write its files, and leave with 1 if anything fails."""
+    from coaxshell.verification import write_report
+    from coaxshell.verification.terminal import drawn, plain
+
+    paths = write_report(found, output)
+    if sys.stdout.isatty():
+        from rich.console import Console
+
+        Console().print(*drawn(found), sep="\n")
+    else:
+        typer.echo(plain(found))
+    typer.echo("wrote " + ", ".join(str(path) for path in paths))
+    if found.failed:
+        raise typer.Exit(1)

@@ -1,0 +1,24 @@
+"""The checks, one subject a file; importing a file registers its checks."""
+
+ORDER = (
+    "reference",
+    "single_values",
+    "paper_evacuated",
+    "paper_filled",
+    "paper_double",
+    "independent",
+    "engines",
+    "energy",
+    "time_step",
+    "orders",
+    "transparency",
+    "rigid",
+    "form_function",
+    "translation",
+    "statics",
+    "rings",
+    "causality",
+    "disc_limit",
+    "published",
+)
+"""Files in the order of the report."""

@@ -1,0 +1,70 @@
+"""The suite itself passes, and a wrong package would not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coaxshell.acoustics import operators
+from coaxshell.structure import ring
+from coaxshell.verification import checks, chosen, run
+from coaxshell.verification.bench import Bench, bare_double_shell, tables
+
+
+@pytest.mark.parametrize("name", [one.name for one in checks()])
+def test_quick_check_passes(name):
+    (result,) = run(chosen([name], quick=True), quick=True).results
+    assert not [row.cells for row in result.rows if row.verdict != "pass"]
+
+
+@pytest.mark.slow
+def test_full_suite_passes():
+    report = run(chosen(None, quick=False))
+    assert not [row.cells for row in report.rows if row.verdict != "pass"]
+    assert len(report.rows) > 200
+    assert report.seconds < 300
+
+
+def failing(*names):
+    results = run(chosen(list(names), quick=True), quick=True).results
+    return {result.name for result in results if any(row.verdict == "FAIL" for row in result.rows)}
+
+
+def test_a_wrong_fluid_is_seen(monkeypatch):
+    right = operators.RadialFunctions.__dict__["exterior"].func
+    wrong = property(lambda self: 1.001 * right(self))
+    monkeypatch.setattr(operators.RadialFunctions, "exterior", wrong)
+    names = {"reference-values", "transparency", "form-function", "published", "independent"}
+    assert failing(*names) == names
+
+
+def test_a_wrong_wall_is_seen(monkeypatch):
+    from coaxshell.solver import scaling
+
+    def wrong(section, m):
+        right = ring.ring_stiffness(section, m)
+        return type(right)(*(1.001 * entry for entry in right))
+
+    monkeypatch.setattr(scaling, "ring_stiffness", wrong)
+    assert failing("statics", "ring-frequencies", "independent", "form-function") == {
+        "statics",
+        "ring-frequencies",
+        "independent",
+        "form-function",
+    }
+
+
+def test_the_package_carries_its_references():
+    assert set(tables()) == {"exterior", "exterior-short", "rigid", "evacuated", "evacuated-shock", "double-shock"}
+    assert bare_double_shell()["time"].shape == bare_double_shell()["stress_inner_head"].shape
+
+
+def test_the_bench_shares_solutions():
+    from coaxshell.model import presets
+
+    bench = Bench()
+    settings = {"duration": 0.5, "time_step": 0.02, "modes": 3}
+    first = bench.simulate(presets.load("bare"), **settings)
+    assert bench.simulate(presets.load("bare"), **settings) is first
+    assert bench.simulate(presets.load("bare"), **{**settings, "modes": 4}) is not first
+    assert np.isfinite(first.solution.normal).all()
