@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,7 @@ import coaxshell as cx
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import LinearSpectra, linear_spectra
-
-DATA = Path(__file__).parent / "reference" / "data"
+from coaxshell.verification import bench
 
 WATER = cx.Fluid(density=1000, sound_speed=1400)
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=177.45e9, poisson_ratio=0.3)
@@ -25,7 +22,7 @@ STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=177.45e9, poisson_
 @pytest.fixture(scope="session")
 def tables() -> dict[str, Any]:
     """Return the tables of high-precision values."""
-    return tomllib.loads((DATA / "tables.toml").read_text(encoding="utf-8"))
+    return bench.tables()
 
 
 @pytest.fixture(scope="session")

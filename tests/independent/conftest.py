@@ -2,30 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.verification.independent import RadialElements
 
 ANGLES = [0.0, 70.0, 180.0]
-
-
-def _module():
-    spec = importlib.util.spec_from_file_location("radial_elements", Path(__file__).with_name("radial_elements.py"))
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture(scope="session")
-def radial_elements():
-    """Return the module of the independent solver."""
-    return _module()
 
 
 @pytest.fixture(scope="session")
@@ -56,16 +39,11 @@ def absorber():
 
 
 @pytest.fixture(scope="session")
-def distances(radial_elements):
+def distances():
     """Return a function from a system and steps to {(shell, quantity): relative L2 distance} between package and independent solver."""
 
-    def measure(system, time_step, independent_step, duration=2.0, modes=8, angles=0, element=None):
-        usual = radial_elements.ELEMENT
-        radial_elements.ELEMENT = element or usual
-        try:
-            model = radial_elements.RadialElements(system, modes, duration, angles)
-        finally:
-            radial_elements.ELEMENT = usual
+    def measure(system, time_step, independent_step, duration=2.0, modes=8, angles=0, **options):
+        model = RadialElements(system, modes, duration, angles, **options)
         model.solve(independent_step, round(duration / independent_step))
         response = cx.simulate(system, duration=duration, time_step=time_step, modes=modes)
         coarse = max(time_step, independent_step)

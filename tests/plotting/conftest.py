@@ -62,7 +62,7 @@ class Waves(FakeResponse):
         self.solution = SimpleNamespace(normal=np.empty((2, 1 if symmetric else 2, 7, len(self.time))))
         self.asked = []
 
-    def pressure(self, x, y, time, progress=None):
+    def pressure(self, x, y, time, front="sharp", progress=None):
         self.asked.append((len(x), len(y), len(time)))
         since = np.asarray(time)[:, None, None] - (1.0 - np.asarray(x)[None, None, :]) + 0.0 * np.asarray(y)[None, :, None]
         tilt = 1.0 if self.solution.normal.shape[1] == 1 else 1.0 + 0.2 * np.asarray(y)[None, :, None]

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import coaxshell as cx
-
-STORED = Path(__file__).parent / "data" / "bare_double_shell.npz"
+from coaxshell.verification.bench import bare_double_shell
 
 
 @pytest.fixture(scope="module")
 def reference() -> dict[str, np.ndarray]:
-    with np.load(STORED) as stored:
-        return dict(stored)
+    return bare_double_shell()
 
 
 @pytest.fixture(scope="module")

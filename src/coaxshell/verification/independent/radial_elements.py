@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Self
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy.typing as npt
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from coaxshell.model.absorbers import Absorber
 from coaxshell.model.system import System
 from coaxshell.verification.independent.assembly import Assembly
 from coaxshell.verification.independent.incident import incident
@@ -22,6 +24,11 @@ ELEMENT = 0.125
 _ROOT = np.sqrt(3.0)
 _A = np.array([[1 / 4, 1 / 4 - _ROOT / 6], [1 / 4 + _ROOT / 6, 1 / 4]])
 _NODES, _SQUARE = _A.sum(1), _A @ _A
+
+
+def _layout(absorbers: Sequence[Absorber], sign: int) -> list[tuple[float, str]]:
+    """Return places and properties of absorbers, or of their mirror images about theta = 0."""
+    return sorted((round(sign * x.angle % 360, 9) % 360, repr(x.replace(angle=0))) for x in absorbers)
 
 
 class RadialElements:
@@ -43,7 +50,7 @@ class RadialElements:
         self.system, self.modes = system, modes
         self.assembly = Assembly.of(system, duration, element)
         absorbers = system.absorber_list
-        symmetric = all(s.angle == 0 for s in system.sources) and all(x.angle in (0, 180) for x in absorbers)
+        symmetric = all(s.angle == 0 for s in system.sources) and _layout(absorbers, 1) == _layout(absorbers, -1)
         self.blocks = [(0, m) for m in range(modes + 1)] + ([] if symmetric else [(1, m) for m in range(1, modes + 1)])
         parts = [self.assembly.block(m) for _, m in self.blocks]
         sizes = np.concatenate([[0], np.cumsum([part.mass.shape[0] for part in parts])]).astype(int)
