@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coaxshell import InputError, RigidShell, presets
-from coaxshell.plotting import FIGURES, figure_bare_histories, figure_recipe, save_figure
+from coaxshell.paper import FIGURES, figure_recipe
+from coaxshell.plotting import figure_bare_histories, save_figure
 
 
 def panels(figure):
@@ -110,5 +111,5 @@ def test_refuses_other_endings_and_places(figure, tmp_path):
 
 def test_recipes():
     assert figure_recipe("3") is FIGURES["3"]
-    with pytest.raises(InputError, match="there is no figure '99'; available: 3"):
+    with pytest.raises(InputError, match="there is no figure '99'; available: 2, 3"):
         figure_recipe("99")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,12 +13,17 @@ from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import writable
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request
+from coaxshell.cli.tables import tell_warnings
+from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
+
+if TYPE_CHECKING:
+    from coaxshell.paper import StudyRecipe
 
 
 def figure(
     context: typer.Context,
-    number: Annotated[str, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper: 3, 4, 13 or 14 for now.")],
+    number: Annotated[str, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper, 2 to 14.")],
     source: Annotated[
         list[Path] | None,
         typer.Option("--from", metavar="FILE.nc", help="Draw a saved run instead of computing one. Twice for a comparison."),
@@ -42,19 +48,41 @@ def figure(
 
     Its runs are computed, or read from saved ones with --from.
     """
-    from coaxshell.plotting import FIGURE_SUFFIXES, figure_recipe, save_figure
+    from coaxshell.paper import StudyRecipe, figure_recipe
+    from coaxshell.plotting import FIGURE_SUFFIXES, save_figure
 
     recipe = figure_recipe(number)
     target = writable(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
     if source and (preset or changes):
         raise InputError("--from", "cannot be combined with --preset or --set", "a saved run has its own system: give one or the other")
+    request = Request(duration, time_step, modes, tolerance, engine, refinement)
+    if source and isinstance(recipe, StudyRecipe):
+        raise InputError("--from", f"has no effect on figure {number}, which compares many runs", "leave it out")
     sources = [str(path) for path in source or ()] or preset or list(recipe.presets)
     if len(sources) != len(recipe.presets):
         option, wanted = "--from" if source else "--preset", len(recipe.presets)
         raise InputError(option, f"{len(sources)} given, but figure {number} shows {wanted}", f"give the option {wanted} time(s)")
-    responses = answers(context, sources, changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
-    with progress(quiet) as report:
-        drawn = recipe.draw(responses, report)
-    save_figure(drawn, target)
-    tell_all_warnings(responses)
+    if isinstance(recipe, StudyRecipe):
+        tell_warnings(_draw_study(recipe, sources, changes, request, target, quiet=quiet))
+    else:
+        responses = answers(context, sources, changes, request, quiet=quiet)
+        with progress(quiet) as report:
+            drawn = recipe.draw(responses, report)
+        save_figure(drawn, target)
+        tell_all_warnings(responses)
     typer.echo(f"wrote {target}: {recipe.title}")
+
+
+def _draw_study(
+    recipe: StudyRecipe, sources: Sequence[str], changes: Sequence[str] | None, request: Request, target: Path, *, quiet: bool
+) -> tuple[str, ...]:
+    """Solve, draw and save a figure of many runs, and return their warnings."""
+    from coaxshell.cli.scenario import load_system
+    from coaxshell.paper import Resolution
+    from coaxshell.plotting import save_figure
+
+    systems = [load_system(name, changes or ()) for name in sources]
+    with named_as_options(), progress(quiet) as report:
+        drawn = recipe.draw(systems, Resolution(**request.settings()), report)
+    save_figure(drawn.figure, target)
+    return drawn.warnings

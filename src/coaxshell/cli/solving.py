@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 from coaxshell.cli import values
 from coaxshell.cli.progress import progress
@@ -11,6 +11,17 @@ from coaxshell.cli.progress import progress
 if TYPE_CHECKING:
     from coaxshell.model import System
     from coaxshell.response import Response
+
+
+class Settings(TypedDict):
+    """Resolution of a run as numbers."""
+
+    duration: float
+    time_step: float
+    tolerance: float
+    modes: int | Literal["auto"]
+    engine: str
+    refinement: int
 
 
 @dataclass(frozen=True)
@@ -28,19 +39,17 @@ class Request:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
         from coaxshell.response import simulate
 
-        duration = values.number("--duration", self.duration)
-        time_step = values.number("--time-step", self.time_step)
-        tolerance = values.number("--tolerance", self.tolerance)
-        modes = values.modes(self.modes)
-        refinement = values.whole("--refinement", self.refinement)
+        settings = self.settings()
         with values.named_as_options(), progress(quiet) as report:
-            return simulate(
-                system,
-                duration=duration,
-                time_step=time_step,
-                modes=modes,
-                tolerance=tolerance,
-                engine=self.engine,
-                refinement=refinement,
-                progress=report,
-            )
+            return simulate(system, progress=report, **settings)
+
+    def settings(self) -> Settings:
+        """Return the settings of a run as numbers; InputError names the option that is wrong."""
+        return {
+            "duration": values.number("--duration", self.duration),
+            "time_step": values.number("--time-step", self.time_step),
+            "tolerance": values.number("--tolerance", self.tolerance),
+            "modes": values.modes(self.modes),
+            "engine": self.engine,
+            "refinement": values.whole("--refinement", self.refinement),
+        }

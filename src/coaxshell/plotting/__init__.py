@@ -6,11 +6,11 @@ from coaxshell.plotting.bare_histories import figure_bare_histories
 from coaxshell.plotting.comparison import figure_comparison, plot_comparison
 from coaxshell.plotting.field import plot_field
 from coaxshell.plotting.field_scales import PRESSURE_UNITS, check_units
-from coaxshell.plotting.figures import FIGURES, FigureRecipe, figure_recipe
 from coaxshell.plotting.film import check_film, save_film
 from coaxshell.plotting.film_files import FILM_SUFFIXES
 from coaxshell.plotting.frames import FieldView
 from coaxshell.plotting.histories import QUANTITIES, PlottedQuantity, mark_peak, plot_history
+from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
 from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
@@ -19,26 +19,26 @@ from coaxshell.plotting.style import COLOURS, style
 __all__ = [
     "COLOURS",
     "COMPARISON_TIMES",
-    "FIGURES",
     "FIGURE_SUFFIXES",
     "FILM_SUFFIXES",
     "PRESSURE_UNITS",
     "QUANTITIES",
     "SNAPSHOT_TIMES",
+    "CurvePanel",
     "FieldView",
-    "FigureRecipe",
     "PlottedQuantity",
     "check_film",
     "check_units",
     "figure_bare_histories",
     "figure_comparison",
+    "figure_named_curves",
     "figure_pressure_rms",
-    "figure_recipe",
     "figure_snapshots",
     "mark_peak",
     "plot_comparison",
     "plot_field",
     "plot_history",
+    "plot_named_curves",
     "save_figure",
     "save_film",
     "style",

@@ -1,0 +1,131 @@
+"""The paper's Figure 2: a shell without fluid inside, one filled with water, and two shells of which the inner one is hollow."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.errors import InputError
+from coaxshell.model import VACUUM, RigidShell, Shell, System
+from coaxshell.paper.cases import head_of
+from coaxshell.paper.histories import named_warnings
+from coaxshell.paper.recipes import Drawn
+from coaxshell.paper.runs import Report, Resolution, solve_each
+from coaxshell.plotting.curve_sheets import SheetCurve, SheetPanel, figure_curve_sheet
+from coaxshell.solver.excitation import SurfaceLoads
+from coaxshell.solver.scaling import dimensionless
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
+
+FloatArray = npt.NDArray[np.float64]
+
+PRESETS = ("iakovlev-evacuated", "iakovlev-filled", "iakovlev-double")
+THICKNESSES = {5e-3: "sky", 1e-2: "blue", 2e-2: "green", 4e-2: "orange"}
+"""Of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
+
+_ANGLES = {0.0: "blue", 45.0: "sky", 90.0: "green", 135.0: "amber", 180.0: "orange"}
+_SIDES = {"head": (0.0, "solid"), "tail": (180.0, (0, (4.0, 1.3)))}
+_COLOURS = {"outer": "blue", "inner": "orange"}
+_RELATIVE = "displacement / thickness, $w/h$"
+
+
+def limiting_cases(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+    """Draw Figure 2 for an evacuated shell, a filled one in several thicknesses, and a double one."""
+    evacuated, filled, double = systems
+    filled_ones = {
+        f"filled, {1e3 * thickness:g} mm": filled.replace_path("shells[0].layers[0].thickness", thickness) for thickness in THICKNESSES
+    }
+    wanted = {"evacuated": evacuated, **filled_ones, "double": double}
+    responses = dict(solve_each(wanted, resolution, progress))
+    water = [(response, thickness) for thickness, response in zip(THICKNESSES, (responses[name] for name in filled_ones), strict=True)]
+    panels = [
+        SheetPanel("a  Evacuated shell, no motion", "pressure / incident peak", _pressures(responses["evacuated"], resolution)),
+        SheetPanel("b  Evacuated shell", _RELATIVE, _ends(responses["evacuated"], "displacement", ("outer",))),
+        *(SheetPanel(f"c  Filled shell, {side}", _RELATIVE, _filled(water, side)) for side in _SIDES),
+        SheetPanel("d  Double shell, inner one hollow", _RELATIVE, _ends(responses["double"], "displacement", ("inner", "outer"))),
+        SheetPanel("e  Double shell, inner one hollow", "hoop stress (MPa)", _ends(responses["double"], "stress", ("inner", "outer"))),
+    ]
+    warnings = [(name, text) for name, response in responses.items() for text in response.warnings]
+    return Drawn(figure_curve_sheet(panels), named_warnings(warnings))
+
+
+def rigid_pressure(system: System, resolution: Resolution, modes: int, angles: list[float]) -> tuple[FloatArray, FloatArray]:
+    """Return times (T,) and incident plus diffracted pressure on the outermost surface held still, over the peak pressure, (T, A).
+
+    The sums over orders and frequencies are smoothed by Lanczos's factors, as the fronts at the surface are jumps.
+
+    Parameters
+    ----------
+    system : System
+        Its first source, a shock, and its exterior fluid are taken.
+    resolution : Resolution
+        Its duration and time step.
+    modes : int
+        Highest order.
+    angles : list of float
+        Degrees from the head.
+
+    Raises
+    ------
+    InputError
+        The source has no peak pressure.
+    """
+    source = system.sources[0]
+    peak = getattr(source, "peak_pressure", None)
+    if peak is None:
+        raise InputError("source", "it has no peak pressure to which the surface pressure could be related", "give a shock")
+    rigid = System(shells=[RigidShell(radius=system.shells[-1].radius)], fluids=[VACUUM, system.exterior], source=source.replace(angle=0.0))
+    problem, orders = dimensionless(rigid), all_orders(modes)
+    grid = LaplaceGrid(resolution.time_step, round(resolution.duration / resolution.time_step))
+    load = SurfaceLoads(problem, grid, orders)(RadialFunctions(grid.nodes, 1.0, orders), slice(None))[0]
+    modal = grid.invert(load, grid.lanczos()) * (problem.scales.pressure / peak)
+    number = np.arange(modes + 1)
+    basis = np.sinc(number / (modes + 1.0)) * np.cos(np.radians(np.multiply.outer(angles, number)))
+    return grid.time, np.asarray((basis @ modal).T, dtype=np.float64)
+
+
+def _pressures(response: Response, resolution: Resolution) -> list[SheetCurve]:
+    time, values = rigid_pressure(response.system, resolution, response.modes, list(_ANGLES))
+    return [SheetCurve(f"{angle:g}°", time, values[:, k], colour) for k, (angle, colour) in enumerate(_ANGLES.items())]
+
+
+def _history(response: Response, quantity: str, shell: str, turn: float) -> FloatArray:
+    """Return the stress in MPa, or the displacement over the thickness of the shell."""
+    values = np.asarray(getattr(response, quantity)(shell, angle=[head_of(response.system) + turn]))[:, 0]
+    return values / (1e6 if quantity == "stress" else _thickness(response.system, shell))
+
+
+def _thickness(system: System, shell: str) -> float:
+    wall = system.shells[system.shell_index(shell)]
+    if not isinstance(wall, Shell):
+        raise InputError("shells", f"the {shell} shell is rigid and has no thickness", "give an elastic one")
+    return float(sum(layer.thickness for layer in wall.layers))
+
+
+def _ends(response: Response, quantity: str, shells: tuple[str, ...]) -> list[SheetCurve]:
+    return [
+        SheetCurve(
+            f"{shell} {side}" if len(shells) > 1 else side,
+            response.time,
+            _history(response, quantity, shell, turn),
+            _COLOURS[shell],
+            dash,
+        )
+        for shell in shells
+        for side, (turn, dash) in _SIDES.items()
+    ]
+
+
+def _filled(responses: list[tuple[Response, float]], side: str) -> list[SheetCurve]:
+    turn, dash = _SIDES[side]
+    return [
+        SheetCurve(
+            f"{1e3 * thickness:g} mm", response.time, _history(response, "displacement", "outer", turn), THICKNESSES[thickness], dash
+        )
+        for response, thickness in responses
+    ]
