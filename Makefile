@@ -4,6 +4,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
+STAMP_ALL := $(VENV)/.installed-all
 DEMO   := demo
 
 .DELETE_ON_ERROR:
@@ -27,6 +28,11 @@ $(STAMP): pyproject.toml
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev]'
 	@touch $@
 
+# VTK, 764 MB installed, only reads back what we write for ParaView.
+$(STAMP_ALL): $(STAMP)
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev,paraview-check]'
+	@touch $@
+
 demo: $(STAMP)
 	@mkdir -p $(DEMO)
 	@echo "hybrid against bare: two runs, their reductions, a sheet of fields and a film, about half a minute"
@@ -44,7 +50,7 @@ test: $(STAMP)
 	@$(BIN)/python -m pytest -q -n 2 -m "not slow"
 
 test-all: export OPENBLAS_NUM_THREADS = 1
-test-all: $(STAMP)
+test-all: $(STAMP_ALL)
 	@$(BIN)/python -m pytest -q -n 2
 
 lint: $(STAMP)
