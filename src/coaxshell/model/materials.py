@@ -9,8 +9,7 @@ from pydantic import BeforeValidator
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
-from coaxshell.model.elastic import Elastic
-from coaxshell.model.library import (
+from coaxshell.model.catalogue import (
     ALUMINIUM,
     ALUMINIUM_STRUCTURAL,
     BRASS,
@@ -28,6 +27,7 @@ from coaxshell.model.library import (
     get,
     names,
 )
+from coaxshell.model.elastic import Elastic
 from coaxshell.model.naming import lookup
 from coaxshell.model.piezoelectric import Piezoelectric
 
