@@ -39,6 +39,13 @@ def test_saves_what_python_computes(run, small, tmp_path):
     np.testing.assert_array_equal(loaded.stress("inner").to_numpy(), expected.stress("inner").to_numpy())
 
 
+def test_draws_the_energy(run, small):
+    outcome = run("run", "bare", *small, "-q", "--energy", "energy.png")
+    assert outcome.code == 0, outcome.err
+    assert outcome.files == ["energy.png"]
+    assert "wrote energy.png" in outcome.out
+
+
 def test_runs_a_file(run, small, tmp_path):
     cx.presets.load("iakovlev-filled").to_toml(tmp_path / "mine.toml")
     outcome = run("run", "mine.toml", *small, "--quiet")
@@ -83,6 +90,8 @@ def test_modes_auto(run):
         (["bare", "--engine", "steam"], ["--engine", "'steam'", "spectral"]),
         (["bare", "--output", "nowhere/out.nc"], ["--output", "'nowhere'", "does not exist"]),
         (["bare", "--output", "out.csv"], ["--output", "'out.csv'", ".nc"]),
+        (["bare", "--energy", "out.nc"], ["--energy", "'out.nc'", ".png"]),
+        (["bare", "--energy", "nowhere/e.png"], ["--energy", "'nowhere'", "does not exist"]),
         (["bare", "--output"], ["--output"]),
         (["bare", "--mode", "3"], ["--mode", "--modes"]),
         (["bare", "--silent"], ["--silent", "--quiet"]),

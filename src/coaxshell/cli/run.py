@@ -33,6 +33,9 @@ def run(
     figure: Annotated[
         Path | None, typer.Option("--figure", metavar="FILE", help="Draw the stress at head and tail of each shell; .png, .pdf or .svg.")
     ] = None,
+    energy: Annotated[
+        Path | None, typer.Option("--energy", metavar="FILE", help="Draw where the energy of the first run goes; .png, .pdf or .svg.")
+    ] = None,
     quiet: options.QuietOption = False,
 ) -> None:
     """Solve a system and print its peaks.
@@ -46,10 +49,11 @@ def run(
 
     if output is not None:
         writable(output, "--output", (".nc",))
-    if figure is not None:
-        from coaxshell.plotting import FIGURE_SUFFIXES
+    for option, path in (("--figure", figure), ("--energy", energy)):
+        if path is not None:
+            from coaxshell.plotting import FIGURE_SUFFIXES
 
-        writable(figure, "--figure", FIGURE_SUFFIXES)
+            writable(path, option, FIGURE_SUFFIXES)
     systems = [load_system(scenario, changes or ())]
     if compare is not None:
         systems.append(load_reference(compare, changes or ()))
@@ -63,6 +67,13 @@ def run(
         from coaxshell.plotting import figure_comparison, save_figure
 
         save_figure(figure_comparison(named), figure)
+    if energy is not None:
+        from coaxshell.cli.progress import progress
+        from coaxshell.plotting import figure_energy, save_figure
+
+        with progress(quiet) as report:
+            balance = responses[0].energy(progress=report)
+        save_figure(figure_energy(balance), energy)
     if compare is not None:
         print_comparison(named)
     else:
@@ -71,3 +82,5 @@ def run(
         typer.echo(f"saved {output}")
     if figure is not None:
         typer.echo(f"wrote {figure}")
+    if energy is not None:
+        typer.echo(f"wrote {energy}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from coaxshell.plotting.bare_histories import figure_bare_histories
 from coaxshell.plotting.comparison import figure_comparison, plot_comparison
+from coaxshell.plotting.energy import figure_energy, plot_energy
 from coaxshell.plotting.field import plot_field
 from coaxshell.plotting.field_scales import PRESSURE_UNITS, check_units
 from coaxshell.plotting.film import check_film, save_film
@@ -31,11 +32,13 @@ __all__ = [
     "check_units",
     "figure_bare_histories",
     "figure_comparison",
+    "figure_energy",
     "figure_named_curves",
     "figure_pressure_rms",
     "figure_snapshots",
     "mark_peak",
     "plot_comparison",
+    "plot_energy",
     "plot_field",
     "plot_history",
     "plot_named_curves",

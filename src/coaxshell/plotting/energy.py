@@ -13,6 +13,7 @@ from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -82,3 +83,11 @@ def plot_energy(energy: xr.Dataset, ax: Axes | None = None) -> Axes:
         largest = float(np.abs(energy["closure_relative"].to_numpy()).max())
         ax.set_title(f"closure within {largest:.1g} of the largest work", loc="right", color=COLOURS["grey"])
     return ax
+
+
+def figure_energy(energy: xr.Dataset) -> Figure:
+    """Return a figure of the energy balance (from ``Response.energy``) alone."""
+    with style():
+        figure = new_figure()
+        plot_energy(energy, figure.subplots())
+    return figure
