@@ -5,10 +5,11 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 STAMP_ALL := $(VENV)/.installed-all
+STAMP_DOCS := $(VENV)/.installed-docs
 DEMO   := demo
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-all lint types bench clean
+.PHONY: help demo test test-all lint types bench docs clean
 
 help:
 	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
@@ -17,6 +18,7 @@ help:
 	@echo "make lint      style and format"
 	@echo "make types     static types"
 	@echo "make bench     time, memory and cost curves of the solver"
+	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
 $(STAMP): pyproject.toml
@@ -63,6 +65,18 @@ types: $(STAMP)
 bench: $(STAMP)
 	@$(BIN)/python -m benchmarks
 
+$(STAMP_DOCS): $(STAMP)
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev,docs]'
+	@touch $@
+
+# A warning is an error, and nothing is fetched: the checks read the pages that came out.
+docs: export OPENBLAS_NUM_THREADS = 1
+docs: $(STAMP_DOCS)
+	@rm -rf docs/built
+	@$(BIN)/python -m sphinx -W --keep-going -q -b html -d docs/generated/doctrees docs docs/built
+	@$(BIN)/python -m pytest -q docs/checks
+	@echo "open docs/built/index.html"
+
 clean:
-	@rm -rf $(VENV) $(DEMO) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(VENV) $(DEMO) docs/built docs/generated docs/tutorials build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +

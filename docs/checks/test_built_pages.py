@@ -1,0 +1,106 @@
+"""The site that `make docs` built: nothing is asked of the network, every public name and every page is there."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import zlib
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+import coaxshell as cx
+from coaxshell import export, plotting, verification
+
+BUILT = Path(__file__).parents[1] / "built"
+OUTSIDE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
+# What a browser fetches by itself when it shows the page; <a href> only leads somewhere when clicked.
+FETCHED = {"link": ("href",), "script": ("src",), "img": ("src", "srcset"), "source": ("src", "srcset"), "iframe": ("src",)}
+FETCHED |= {"video": ("src", "poster"), "audio": ("src",), "object": ("data",), "embed": ("src",), "image": ("href", "xlink:href")}
+
+
+class Page(HTMLParser):
+    """Collect what a page fetches, where it leads, and the ids it has."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.fetched: list[str] = []
+        self.links: list[str] = []
+        self.ids: set[str] = set()
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.fetched += [given[name] or "" for name in FETCHED.get(tag, ()) if given.get(name)]
+        self.ids |= {value for name in ("id", "name") if (value := given.get(name))}
+        if tag == "a" and given.get("href"):
+            self.links.append(given["href"] or "")
+
+
+@pytest.fixture(scope="module")
+def pages() -> dict[Path, Page]:
+    found = {path: Page(path.read_text(encoding="utf-8")) for path in sorted(BUILT.rglob("*.html")) if "_downloads" not in path.parts}
+    assert len(found) > 20, "build the pages first: make docs"
+    return found
+
+
+def test_no_page_fetches_anything_from_outside(pages):
+    assert {path.name: wrong for path, page in pages.items() if (wrong := [url for url in page.fetched if OUTSIDE.match(url)])} == {}
+
+
+def test_no_style_sheet_fetches_anything_from_outside():
+    sheets = list(BUILT.rglob("*.css"))
+    assert sheets
+    for sheet in sheets:
+        urls = re.findall(r"(?:url\(|@import\s+)[\"']?([^\"')]+)", sheet.read_text(encoding="utf-8"))
+        assert [url for url in urls if OUTSIDE.match(url)] == [], sheet
+
+
+def test_no_script_of_a_page_names_an_outside_address(pages):
+    for path in pages:
+        scripts = re.findall(r"<script[^>]*>(.*?)</script>", path.read_text(encoding="utf-8"), re.DOTALL)
+        assert [text for text in scripts if re.search(r"https?://", text)] == [], path
+
+
+def test_links_between_pages_lead_somewhere(pages):
+    broken = []
+    for path, page in pages.items():
+        for link in page.links:
+            if ":" in link.split("/")[0] or OUTSIDE.match(link):
+                continue
+            target, _, part = link.partition("#")
+            other = (path.parent / target.split("?")[0]).resolve() if target else path
+            if not other.exists() or (part and other in pages and part not in pages[other].ids):
+                broken.append(f"{path.relative_to(BUILT)}: {link}")
+    assert broken == []
+
+
+def documented() -> set[str]:
+    """Return the full names in the site's inventory of Python objects."""
+    raw = (BUILT / "objects.inv").read_bytes()
+    header = b"".join(raw.splitlines(keepends=True)[:4])
+    lines = zlib.decompress(raw[len(header) :]).decode().splitlines()
+    return {line.split(" ")[0] for line in lines if " py:" in line}
+
+
+def test_every_public_name_is_in_the_reference():
+    names = {f"coaxshell.{name}" for name in cx.__all__}
+    names |= {f"coaxshell.Response.{name}" for name, _ in inspect.getmembers(cx.Response) if not name.startswith("_")}
+    names |= {f"coaxshell.PreparedSystem.{name}" for name, _ in inspect.getmembers(cx.PreparedSystem) if not name.startswith("_")}
+    for room in (plotting, export, verification):
+        names |= {f"{room.__name__}.{name}" for name in room.__all__}
+    assert sorted(names - documented()) == []
+
+
+def test_every_figure_is_small():
+    heavy = {path.name: path.stat().st_size for path in BUILT.rglob("_images/*") if path.stat().st_size > 400_000}
+    assert heavy == {}
+
+
+def test_no_formula_was_left_as_text(pages):
+    for path in pages:
+        if "source" in path.parts:
+            continue
+        text = re.sub(r"<(pre|code|script).*?</\1>", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+        assert not re.search(r"\\(frac|hat|partial|mathrm)\b", text), path

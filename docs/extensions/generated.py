@@ -1,0 +1,30 @@
+"""Pages that the package writes itself: the conformance report, the commands, the licences. Made anew at every build."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cli_pages import command_reference
+from licence_pages import licence_table
+from sphinx.application import Sphinx
+from verification_pages import verification_report
+
+
+def write_pages(app: Sphinx) -> None:
+    """Write the pages into docs/generated, where Sphinx finds them."""
+    folder = Path(app.srcdir) / "generated"
+    folder.mkdir(exist_ok=True)
+    for name, page in (("commands", command_reference), ("licences", licence_table)):
+        _replace_if_changed(folder / f"{name}.md", page())
+    verification_report(folder)
+
+
+def _replace_if_changed(path: Path, text: str) -> None:
+    if not path.exists() or path.read_text(encoding="utf-8") != text:
+        path.write_text(text, encoding="utf-8")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Write before anything is read."""
+    app.connect("builder-inited", write_pages)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
