@@ -17,6 +17,7 @@ from coaxshell.cli.presets import presets
 from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
 from coaxshell.cli.snapshots import snapshots
+from coaxshell.cli.studio import studio
 from coaxshell.cli.verify import verify
 
 app = typer.Typer(
@@ -48,5 +49,5 @@ def coaxshell(
         typer.echo(context.get_help())
 
 
-for _command in (run, presets, init, info, figure, snapshots, animate, export, verify, response_function):
+for _command in (run, presets, init, info, figure, snapshots, animate, export, verify, response_function, studio):
     app.command()(_command)

@@ -1,0 +1,65 @@
+"""One server on 127.0.0.1, from the free port to the clean end."""
+
+from __future__ import annotations
+
+import errno
+import socket
+from collections.abc import Callable
+
+import uvicorn
+
+from coaxshell.errors import InputError
+from coaxshell.studio.app import create_app
+
+ADDRESS = "127.0.0.1"
+
+
+def serve(port: int, ready: Callable[[str], None]) -> None:
+    """Serve the page until interrupted.
+
+    Parameters
+    ----------
+    port : int
+        0 takes any free one.
+    ready : callable
+        Called with the page's address once the server answers.
+
+    Raises
+    ------
+    InputError
+        The port is taken, or not allowed.
+    """
+    with listening(port) as listener:
+        port = listener.getsockname()[1]
+        config = uvicorn.Config(create_app(port), log_level="warning", lifespan="on", server_header=False, timeout_graceful_shutdown=2)
+        _Server(config, lambda: ready(f"http://{ADDRESS}:{port}/")).run(sockets=[listener])
+
+
+def listening(port: int) -> socket.socket:
+    """Return a socket that listens on a port of this machine only; InputError if that cannot be had."""
+    if not 0 <= port <= 65535:
+        raise InputError("--port", f"{port} is not allowed", "give a number from 1024 to 65535, or 0 for any free one")
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((ADDRESS, port))
+    except OSError as error:
+        listener.close()
+        if error.errno == errno.EADDRINUSE:
+            raise InputError("--port", f"{port} is in use", "stop what uses it, or give another one (0 takes any free one)") from None
+        raise InputError("--port", f"{port} cannot be had ({error.strerror})", "give a number from 1024 to 65535, or 0") from None
+    listener.listen(128)
+    return listener
+
+
+class _Server(uvicorn.Server):
+    """Tells when it is ready."""
+
+    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._ready = ready
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started:
+            self._ready()
