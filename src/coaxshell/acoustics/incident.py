@@ -72,11 +72,21 @@ class SphericalGeometry:
     distance: float
 
     def prepare(self, grid: LaplaceGrid, orders: FloatArray) -> SurfaceLoad:
-        """Return the modal pressure plus rigid scattering of the modal velocity (S/R) dR/dr [1 + 1/(sR)] e^{-s(R - S)}.
+        """Return the modal pressure plus rigid scattering of the modal velocity, from :meth:`projections`."""
+        pressure, acceleration = self.projections(grid, orders)
 
-        The second term of the velocity is the afterflow. The projections (1/(beta pi)) * integral of (...) cos(m theta) are
-        taken by the trapezoidal rule in theta, exact to rounding once it resolves the highest frequency because the
-        integrand is periodic and band limited: its bandwidth is |s| max|dR/dtheta| + m = |s| + M.
+        def load(surface: RadialFunctions, nodes: slice) -> ComplexArray:
+            return pressure[:, nodes] + acceleration[:, nodes] * surface.exterior
+
+        return load
+
+    def projections(self, grid: LaplaceGrid, orders: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the modal pressure and radial acceleration s v0 at r = 1 of a unit pulse, each (orders, nodes).
+
+        v0 = (S/R) dR/dr [1 + 1/(sR)] e^{-s(R - S)}, of which the second term is the afterflow. The projections
+        (1/(beta pi)) * integral of (...) cos(m theta) are taken by the trapezoidal rule in theta, exact to rounding once it
+        resolves the highest frequency because the integrand is periodic and band limited: its bandwidth is
+        |s| max|dR/dtheta| + m = |s| + M.
         """
         points = int(1.05 * (grid.nyquist + float(orders[-1]))) + 64
         theta = np.pi * (np.arange(points) + 0.5) / points
@@ -87,12 +97,12 @@ class SphericalGeometry:
         shapes = np.stack([amplitude, amplitude * slope, amplitude * slope / range_], axis=1)
         weights = (shapes[:, :, None] * cosines[:, None, :]).reshape(points, -1)
         sums = exponential_sums(range_ - (self.distance - 1.0), weights, grid)
-        pressure, velocity, afterflow = sums.reshape(3, orders.size, -1)
+        pressure, front, afterflow = sums.reshape(3, orders.size, -1)
+        return pressure, self.acceleration(front, afterflow, grid.nodes)
 
-        def load(surface: RadialFunctions, nodes: slice) -> ComplexArray:
-            return pressure[:, nodes] + (velocity[:, nodes] * surface.kappa + afterflow[:, nodes]) * surface.exterior
-
-        return load
+    def acceleration(self, front: ComplexArray, afterflow: ComplexArray, s: ComplexArray) -> ComplexArray:
+        """Return s v0 from the projections of (S/R) dR/dr e^{-s(R - S)} and of the same over R."""
+        return front * s + afterflow
 
 
 def neumann(orders: FloatArray) -> FloatArray:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.fourier_sums import exponential_sums
-from coaxshell.acoustics.incident import IncidentWave, SphericalGeometry, neumann
+from coaxshell.acoustics.incident import IncidentWave, SphericalGeometry
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions
 
@@ -27,18 +24,6 @@ def incident_slope(wave: IncidentWave, grid: LaplaceGrid, orders: FloatArray, su
         The exterior fluid's at r = 1 and the nodes of the grid.
     """
     if isinstance(wave, SphericalGeometry):
-        return _spherical_slope(wave, grid, orders)
+        return -wave.projections(grid, orders)[1]
     load = wave.prepare(grid, orders)(surface, slice(0, grid.nodes.size))
     return load / (surface.disc - surface.exterior)
-
-
-def _spherical_slope(wave: SphericalGeometry, grid: LaplaceGrid, orders: FloatArray) -> ComplexArray:
-    """Project -s v0 = -(S/R) dR/dr [s + 1/R] e^{-s(R - S)} on cos(m theta) by the trapezoidal rule (see SphericalGeometry)."""
-    points = int(1.05 * (grid.nyquist + float(orders[-1]))) + 64
-    theta = np.pi * (np.arange(points) + 0.5) / points
-    range_ = np.sqrt(1.0 + wave.distance**2 - 2.0 * wave.distance * np.cos(theta))
-    amplitude = (wave.distance - 1.0) / range_ * (1.0 - wave.distance * np.cos(theta)) / range_ / points
-    cosines = np.cos(theta[:, None] * orders) * neumann(orders).T
-    weights = np.concatenate([amplitude[:, None] * cosines, (amplitude / range_)[:, None] * cosines], axis=1)
-    front, afterflow = exponential_sums(range_ - (wave.distance - 1.0), weights, grid).reshape(2, orders.size, -1)
-    return -(front * grid.nodes + afterflow)

@@ -12,6 +12,7 @@ import xarray as xr
 
 from coaxshell.errors import InputError
 from coaxshell.response.dataset import ARRAYS, format_problem, from_dataset, to_dataset
+from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution
 
 UNREADABLE = (OSError, ValueError, KeyError, TypeError, RuntimeError)
@@ -33,8 +34,10 @@ def save(solution: ModalSolution, path: str | Path, *, compression: bool = False
     Raises
     ------
     InputError
-        If the file cannot be written there.
+        If the file cannot be written there, or if the run was made with other formulas than its description stands for.
     """
+    if solution.problem != dimensionless(solution.problem.system):
+        raise InputError("response", "was made with other formulas than a file could repeat", "save its histories as tables instead")
     target = Path(path)
     if not target.parent.is_dir():
         raise InputError(str(path), f"cannot be written: there is no directory {str(target.parent)!r}", "create it first")

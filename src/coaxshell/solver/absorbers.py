@@ -139,12 +139,9 @@ class InterfacePoints:
         self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
         shapes = absorbers.shapes(max_order)
         self._evaluate = [np.ascontiguousarray(shapes[:, points % max(absorbers.count, 1)]) for _, points in self._groups]
-        orders = all_orders(max_order)
-        beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
-        weight = np.tile(absorbers.multiplicity, 2)
+        shares = problem.ingredients.point_force_shares(absorbers, max_order)
         self._project = [
-            np.ascontiguousarray(self._evaluate[i] * weight[points][None, :, None] / (beta_pi * problem.shells[i].radius))
-            for i, points in self._groups
+            np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.shells[i].radius) for i, points in self._groups
         ]
         self.count = self.shell.size
         self.halves, self.modes = shapes.shape[0], max_order + 1

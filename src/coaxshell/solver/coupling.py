@@ -10,13 +10,13 @@ whose inverse is the modal compliance C_m(s).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions, annulus
+from coaxshell.solver.ingredients import Radial
 from coaxshell.solver.scaling import Problem
 
 
@@ -59,7 +59,7 @@ class FluidMatrix:
     lower: list[ComplexArray | float]
 
 
-def fluid_matrix(problem: Problem, radial: Callable[[float, float], RadialFunctions]) -> FluidMatrix:
+def fluid_matrix(problem: Problem, radial: Radial) -> FluidMatrix:
     """Return the added mass of interior, gaps and exterior.
 
     Parameters
@@ -73,16 +73,18 @@ def fluid_matrix(problem: Problem, radial: Callable[[float, float], RadialFuncti
     for i, fluid in enumerate(problem.fluids):
         if fluid is None:
             continue
-        walls = [radial(fluid.slowness, problem.shells[j].radius) for j in (i - 1, i) if 0 <= j < count]
+        sides = [j for j in (i - 1, i) if 0 <= j < count]
+        walls = [radial(fluid.slowness, problem.shells[j].radius) for j in sides]
+        density = [fluid.density * problem.ingredients.felt_motion(problem, i, j, radial) for j in sides]
         if i == 0:
-            matrix.diagonal[0] = matrix.diagonal[0] + fluid.density * walls[0].disc
+            matrix.diagonal[0] = matrix.diagonal[0] + density[0] * walls[0].disc
         elif i == count:
-            matrix.diagonal[-1] = matrix.diagonal[-1] - fluid.density * walls[0].exterior
+            matrix.diagonal[-1] = matrix.diagonal[-1] - density[0] * walls[0].exterior
         else:
             gap = annulus(*walls)
-            matrix.diagonal[i - 1] = matrix.diagonal[i - 1] - fluid.density * gap.aa
-            matrix.diagonal[i] = matrix.diagonal[i] + fluid.density * gap.bb
-            matrix.upper[i - 1], matrix.lower[i] = -fluid.density * gap.ab, fluid.density * gap.ba
+            matrix.diagonal[i - 1] = matrix.diagonal[i - 1] - density[0] * gap.aa
+            matrix.diagonal[i] = matrix.diagonal[i] + density[1] * gap.bb
+            matrix.upper[i - 1], matrix.lower[i] = -density[1] * gap.ab, density[0] * gap.ba
     return matrix
 
 

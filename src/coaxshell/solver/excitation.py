@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.incident import IncidentWave, LineGeometry, PlaneGeometry, SphericalGeometry
+from coaxshell.acoustics.incident import IncidentWave
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions
 from coaxshell.acoustics.pulse_transforms import pulse_transform
@@ -17,11 +17,7 @@ from coaxshell.solver.scaling import Problem
 
 def incident_wave(problem: Problem, source: Source) -> IncidentWave:
     """Return the geometry of a source in units of the reference radius."""
-    distance = problem.system.source_distance(source)
-    if distance is None:
-        return PlaneGeometry()
-    geometry = LineGeometry if source.geometry == "line" else SphericalGeometry
-    return geometry(distance / problem.scales.length)
+    return problem.ingredients.source_geometry(problem, source)
 
 
 def source_spectrum(problem: Problem, source: Source, s: ComplexArray) -> ComplexArray:

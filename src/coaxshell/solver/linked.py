@@ -9,6 +9,7 @@ import numpy as np
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.ingredients import point_force_shares
 from coaxshell.solver.linear_absorbers import solve_linear
 from coaxshell.solver.linear_ring import is_ring, solve_ring
 from coaxshell.solver.march import march
@@ -58,7 +59,7 @@ def solve_linked(
     grid = structure.grid
     correction: FloatArray | None = None
     if (absorbers.is_linear and not saturate) if exact is None else exact:
-        if is_ring(absorbers):
+        if is_ring(absorbers) and structure.problem.ingredients.point_force_shares is point_force_shares:
             linear = solve_ring(structure, absorbers)
         else:
             linear = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)

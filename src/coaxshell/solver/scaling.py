@@ -13,7 +13,8 @@ import numpy as np
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.system import System
-from coaxshell.structure.ring import RingStiffness, potential_gain, ring_stiffness
+from coaxshell.solver.ingredients import OWN, Ingredients
+from coaxshell.structure.ring import RingStiffness, potential_gain
 from coaxshell.structure.section import Section, section
 
 
@@ -102,19 +103,22 @@ class Problem:
         From the inside out.
     fluids : tuple of FluidRegion or None
         From the inside out, one more than the shells; None is a vacuum.
+    ingredients : Ingredients
+        Formulas by their place, the theory manual's unless a study changes one.
     """
 
     system: System
     scales: Scales
     shells: tuple[ShellProblem, ...]
     fluids: tuple[FluidRegion | None, ...]
+    ingredients: Ingredients = OWN
 
     def stiffness(self, index: int, m: np.ndarray) -> RingStiffness:
         """Return the dimensionless modal stiffness of one shell, K a/(rho_e c_e^2)."""
         ring = self.shells[index].section
         assert ring is not None
         factor = self.scales.length / self.scales.pressure
-        return RingStiffness(*(factor * entry for entry in ring_stiffness(ring, m)))
+        return RingStiffness(*(factor * entry for entry in self.ingredients.stiffness(ring, m)))
 
     def sensor_gain(self, index: int, m: np.ndarray, role: str = "sensor") -> tuple[np.ndarray, np.ndarray]:
         """Return volts of a layer per unit dimensionless (V, W) of one shell (Eq. 20); zeros if it has no such layer."""

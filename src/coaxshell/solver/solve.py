@@ -16,7 +16,7 @@ from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.linked import LinkedSpectra, solve_linked
 from coaxshell.solver.prepared import PreparedStructure
-from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Progress, Stopwatch
@@ -50,8 +50,8 @@ class Prepared:
 
     Parameters
     ----------
-    system : System
-        Its own absorbers are only the default of ``solve``.
+    system : System or Problem
+        Its own absorbers are only the default of ``solve``. A dimensionless problem may carry other ingredients than a system's own.
     settings : Settings
     progress : callable, optional
 
@@ -61,12 +61,12 @@ class Prepared:
         If the engine is not available or the feedback is unstable.
     """
 
-    def __init__(self, system: System, settings: Settings, progress: Progress | None = None) -> None:
+    def __init__(self, system: System | Problem, settings: Settings, progress: Progress | None = None) -> None:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
         self._stopwatch = Stopwatch()
         self._progress = progress
-        self.problem = dimensionless(system)
+        self.problem = system if isinstance(system, Problem) else dimensionless(system)
         grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
         self._notes: list[str] = []
         order = self._order(grid, settings)

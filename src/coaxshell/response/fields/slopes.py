@@ -38,14 +38,23 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
         return None
     nodes = grid.nodes
-    factor = region.fluid.density * nodes * nodes
+    problem, orders = spectra.problem, all_orders(spectra.max_order)
+    acceleration = region.fluid.density * nodes * nodes
+
+    def radial(slowness: float, radius: float) -> RadialFunctions:
+        return RadialFunctions(slowness * nodes, radius, orders)
+
+    def radiated(shell: int) -> ComplexArray:
+        motion = spectra.normal[shell, ..., : nodes.size] * acceleration
+        return np.asarray(motion * problem.ingredients.felt_motion(problem, region.index, shell, radial))
+
     inner: ComplexArray | None = None
     outer: ComplexArray | None = None
     if "radiated" in parts:
         if region.index > 0:
-            inner = spectra.normal[region.index - 1, ..., : nodes.size] * factor
+            inner = radiated(region.index - 1)
         if not region.exterior:
-            outer = spectra.normal[region.index, ..., : nodes.size] * factor
+            outer = radiated(region.index)
     if "diffracted" in parts and region.exterior:
         rigid = -incident_slopes(spectra, grid)
         inner = rigid if inner is None else _sum_of_halves(inner, rigid)

@@ -1,0 +1,74 @@
+"""The formulas that the solver puts together, in one place: a study of other formulas changes them here and nothing else.
+
+A problem carries its ingredients (:attr:`coaxshell.solver.scaling.Problem.ingredients`); every stage that needs one asks the problem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.incident import IncidentWave, LineGeometry, PlaneGeometry, SphericalGeometry
+from coaxshell.acoustics.operators import FloatArray, RadialFunctions, all_orders
+from coaxshell.model.sources import Source
+from coaxshell.structure.ring import RingStiffness, ring_stiffness
+from coaxshell.structure.section import Section
+
+if TYPE_CHECKING:
+    from coaxshell.solver.absorbers import AbsorberSet
+    from coaxshell.solver.scaling import Problem
+
+Radial = Callable[[float, float], RadialFunctions]
+"""From slowness and radius to the Bessel ratios there."""
+
+
+def felt_motion(problem: Problem, region: int, wall: int, radial: Radial) -> ComplexArray | float:
+    """Return 1: a fluid moves with its wall (Eq. 9)."""
+    return 1.0
+
+
+def source_geometry(problem: Problem, source: Source) -> IncidentWave:
+    """Return the geometry of a source in units of the reference radius."""
+    distance = problem.system.source_distance(source)
+    if distance is None:
+        return PlaneGeometry()
+    geometry = LineGeometry if source.geometry == "line" else SphericalGeometry
+    return geometry(distance / problem.scales.length)
+
+
+def point_force_shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
+    """Return cos(m theta_n)/(beta pi) (sine half alike), for an absorber that stands for two twice as much: (halves, N, M + 1)."""
+    beta_pi = np.pi * np.where(all_orders(max_order) == 0, 2.0, 1.0)
+    shares: FloatArray = absorbers.shapes(max_order) * absorbers.multiplicity[:, None] / beta_pi
+    return shares
+
+
+@dataclass(frozen=True)
+class Ingredients:
+    """Formulas by their place in the solution; the defaults are the theory manual's.
+
+    Attributes
+    ----------
+    stiffness : callable
+        From a section and the orders to the modal stiffness of the ring on (V, W).
+    felt_motion : callable
+        From problem, number of the fluid, number of the shell beside it and Bessel ratios to the factor, a number or an array
+        (M + 1, nodes), with which that fluid feels the acceleration of that shell.
+    source_geometry : callable
+        From problem and source to its incident wave.
+    point_force_shares : callable
+        From absorbers and M to each order's share of a line force on a ring of radius 1, shape (halves, N, M + 1).
+    """
+
+    stiffness: Callable[[Section, FloatArray], RingStiffness] = ring_stiffness
+    felt_motion: Callable[[Problem, int, int, Radial], ComplexArray | float] = felt_motion
+    source_geometry: Callable[[Problem, Source], IncidentWave] = source_geometry
+    point_force_shares: Callable[[AbsorberSet, int], FloatArray] = point_force_shares
+
+
+OWN = Ingredients()
+"""The theory manual's formulas."""
