@@ -1,0 +1,52 @@
+"""Slips of the absorbers' forces on the modes (Eq. 19) and of the series they are expanded in (Fig. 8)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.solver.absorbers import AbsorberSet
+from coaxshell.solver.excitation import projection
+from coaxshell.solver.ingredients import Ingredients
+
+
+def missing_projection(ingredients: Ingredients) -> Ingredients:
+    """Return the ingredients without 1/(beta pi): every absorber pulls pi times (order 0: 2 pi times) as hard as its own mass feels."""
+
+    def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
+        beta_pi = np.pi * np.where(all_orders(max_order) == 0, 2.0, 1.0)
+        found: FloatArray = ingredients.point_force_shares(absorbers, max_order) * beta_pi
+        return found
+
+    return replace(ingredients, point_force_shares=shares)
+
+
+def outside_sum(ingredients: Ingredients, which: int) -> Ingredients:
+    """Return the ingredients with cos(m theta_n) outside the sum over n, n being one absorber's number for all: 0 the first, -1 the last.
+
+    Forces are still read where each absorber sits, but all of them act where that one does. In a layout that is symmetric about the
+    axis, whose series has cosines only, this is half there and half at its mirror image.
+    """
+
+    def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
+        own = absorbers.shapes(max_order)
+        orders, angle = all_orders(max_order), float(absorbers.every_angle[which])
+        there = np.stack([projection(orders, angle, half)[:, 0] for half in range(absorbers.halves)])
+        beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
+        found: FloatArray = np.broadcast_to(there[:, None, :], own.shape) * absorbers.multiplicity[:, None] / beta_pi
+        return found
+
+    return replace(ingredients, point_force_shares=shares)
+
+
+def cosine_only(ingredients: Ingredients) -> Ingredients:
+    """Return the ingredients with cosines only: an absorber off the axis acts as two of half its strength at +theta_n and -theta_n."""
+
+    def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
+        found = ingredients.point_force_shares(absorbers, max_order).copy()
+        found[1:] = 0.0
+        return found
+
+    return replace(ingredients, point_force_shares=shares)

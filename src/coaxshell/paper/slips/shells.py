@@ -1,0 +1,69 @@
+"""Slips of the shells' section, their sensors and their actuators (Eqs. 19, A.3, A.11)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from scipy.integrate import quad
+
+from coaxshell.acoustics.operators import FloatArray
+from coaxshell.solver.ingredients import Ingredients
+from coaxshell.solver.scaling import Problem
+from coaxshell.structure.ring import RingStiffness, bending_strain, membrane_strain, open_circuit_stiffness
+from coaxshell.structure.section import PiezoelectricLayer, Section
+
+
+def control_sign(problem: Problem) -> Problem:
+    """Return the problem with +e32 in front of the control term, as Eq. 19 prints it; Eqs. 4 and 13 have -e32."""
+    return _with_layers(problem, lambda _, layer: replace(layer, actuator_coupling=-layer.actuator_coupling))
+
+
+def doubled_curvature(problem: Problem) -> Problem:
+    """Return the problem with 1/(R + z)^2 within the integral for zeta22 (Eq. A.11) and 1/R^2 once more where it is used (Eqs. 5, 14, 20).
+
+    The integral is mu22 times that of cos^2(pi (z - z_c)/t)/(R + z)^2 over the layer; numbers in metres, since the two dimensions differ.
+    """
+
+    def printed(section: Section, layer: PiezoelectricLayer) -> PiezoelectricLayer:
+        half = 0.5 * layer.thickness
+        permittivity = layer.zeta22 / half
+
+        def integrand(z: float) -> float:
+            return (math.cos(math.pi * (z - layer.centre) / layer.thickness) / (section.radius + z)) ** 2
+
+        return replace(layer, zeta22=permittivity * quad(integrand, layer.centre - half, layer.centre + half)[0])
+
+    return _with_layers(problem, printed)
+
+
+def printed_strain(ingredients: Ingredients) -> Ingredients:
+    """Return the ingredients with the strain of Eq. A.3, ((1 - z/R) dv/dtheta - w)/R: no curvature from w, k = (-m, 0)/R^2.
+
+    Only section stiffness is changed; the open-circuit stiffening of piezoelectric layers keeps Eq. 20, which has both terms.
+    """
+
+    def stiffness(section: Section, m: FloatArray) -> RingStiffness:
+        ev, ew = membrane_strain(m, section.radius)
+        kv, kw = bending_strain(m, section.radius)
+        a, b, d = section.membrane, section.cross, section.bending
+        electric = sum(open_circuit_stiffness(layer, m, section.radius) for layer in section.piezoelectric)
+        return RingStiffness(
+            vv=a * ev * ev + 2 * b * ev * kv + (d + electric) * kv * kv,
+            vw=a * ev * ew + b * ew * kv + electric * kv * kw,
+            ww=a * ew * ew + electric * kw * kw,
+        )
+
+    return replace(ingredients, stiffness=stiffness)
+
+
+def _with_layers(problem: Problem, change: Callable[[Section, PiezoelectricLayer], PiezoelectricLayer]) -> Problem:
+    """Return the problem with its piezoelectric layers changed."""
+    shells = []
+    for shell in problem.shells:
+        section = shell.section
+        if section is not None:
+            section = replace(section, piezoelectric=tuple(change(section, layer) for layer in section.piezoelectric))
+        shells.append(replace(shell, section=section))
+    return replace(problem, shells=tuple(shells))

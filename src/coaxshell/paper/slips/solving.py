@@ -1,0 +1,70 @@
+"""Responses with slips turned on: the ordinary solver, given other formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from coaxshell.errors import InputError
+from coaxshell.paper.runs import Report, Resolution
+from coaxshell.paper.runs import solve_each as solve_each_corrected
+from coaxshell.paper.slips.switches import slipped
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import PreparedSystem, Response
+
+CORRECTED: frozenset[str] = frozenset()
+"""No slips: the theory manual's equations."""
+
+
+def simulate(system: System, resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Report | None = None) -> Response:
+    """Return the response of a system with some slips turned on; without any, exactly :func:`coaxshell.simulate`'s.
+
+    Raises
+    ------
+    InputError
+        If a slip is not known, the system is not the paper's kind, the engine is not the spectral one, or the slip makes the
+        feedback unstable within the duration.
+    """
+    ((_, response),) = solve_each({"": system}, resolution, slips, progress)
+    return response
+
+
+def solve_each(
+    systems: Mapping[str, System], resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Report | None = None
+) -> Iterator[tuple[str, Response]]:
+    """Yield (name, response) of each system in turn, with some slips turned on.
+
+    Neighbours that differ only in their absorbers share one prepared structure.
+
+    Raises
+    ------
+    InputError
+        As :func:`simulate`.
+    """
+    if not slips:
+        yield from solve_each_corrected(systems, resolution, progress)
+        return
+    last: tuple[System, PreparedSystem] | None = None
+    for number, (name, system) in enumerate(systems.items()):
+        if progress:
+            progress(number / len(systems), "solving")
+        structure = system.replace(absorbers=())
+        if last is None or last[0] != structure:
+            last = (structure, _prepared(structure, resolution, slips))
+        yield name, last[1].simulate(system.absorbers)
+    if progress:
+        progress(1.0, "solving")
+
+
+def _prepared(system: System, resolution: Resolution, slips: frozenset[str]) -> PreparedSystem:
+    from coaxshell.response import PreparedSystem
+    from coaxshell.solver import Prepared
+    from coaxshell.solver.settings import Settings
+
+    settings = Settings(**asdict(resolution))
+    if settings.engine != "spectral":
+        raise InputError("engine", f"{settings.engine!r} knows no slips", 'use engine="spectral"')
+    return PreparedSystem(Prepared(slipped(system, slips), settings))

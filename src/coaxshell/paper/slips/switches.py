@@ -1,0 +1,86 @@
+"""Turn slips on in a dimensionless problem: each switch changes one formula or one constant, and switches add up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from functools import partial
+from types import MappingProxyType
+
+from coaxshell.errors import InputError
+from coaxshell.model import Piezoelectric, Shell, System
+from coaxshell.paper.slips import fluids, point_forces, shells, waves
+from coaxshell.paper.slips.catalogue import SLIPS
+from coaxshell.solver.ingredients import Ingredients
+from coaxshell.solver.scaling import Problem, dimensionless
+
+
+def _formula(change: Callable[[Ingredients], Ingredients]) -> Callable[[Problem], Problem]:
+    return lambda problem: replace(problem, ingredients=change(problem.ingredients))
+
+
+def with_permittivity(system: System, reduction: str) -> System:
+    """Return a system all of whose piezoelectric materials use a reduction of mu33, "printed" or "standard" (Eq. A.11)."""
+    names = {
+        layer.material.name
+        for shell in system.shells
+        if isinstance(shell, Shell)
+        for layer in shell.layers
+        if isinstance(layer.material, Piezoelectric)
+    }
+    return system.with_overrides({f"materials.{name}.permittivity_reduction": reduction for name in names}) if names else system
+
+
+def _printed_permittivity(problem: Problem) -> Problem:
+    return replace(dimensionless(with_permittivity(problem.system, "printed")), ingredients=problem.ingredients)
+
+
+_SWITCHES: Mapping[str, Callable[[Problem], Problem]] = MappingProxyType(
+    {
+        "permittivity": _printed_permittivity,
+        "control-sign": shells.control_sign,
+        "doubled-curvature": shells.doubled_curvature,
+        "printed-strain": _formula(shells.printed_strain),
+        "radius-factor": _formula(fluids.radius_factor),
+        "interior-derivative": _formula(fluids.interior_derivative),
+        "interior-function": _formula(fluids.interior_function),
+        "incident-potential": _formula(partial(waves.printed_potential, impulse=False)),
+        "incident-potential-impulse": _formula(partial(waves.printed_potential, impulse=True)),
+        "diffraction-sign": _formula(waves.reversed_diffraction),
+        "outside-sum": _formula(partial(point_forces.outside_sum, which=-1)),
+        "outside-sum-first": _formula(partial(point_forces.outside_sum, which=0)),
+        "missing-projection": _formula(point_forces.missing_projection),
+        "cosine-only": _formula(point_forces.cosine_only),
+    }
+)
+
+SWITCHED = frozenset(_SWITCHES)
+"""Keys of the slips that a run can be made with."""
+
+
+def slipped(system: System, slips: Iterable[str]) -> Problem:
+    """Return the dimensionless problem of a system with some slips turned on.
+
+    Parameters
+    ----------
+    system : System
+        Two elastic shells and three fluids: the printed equations know no others.
+    slips : iterable of str
+        Keys of :data:`SWITCHED`.
+
+    Raises
+    ------
+    InputError
+        If a slip is not known or has no switch, or if the system is not the paper's kind.
+    """
+    wanted = frozenset(slips)
+    for key in sorted(wanted - SWITCHED):
+        what = "has no switch" if key in SLIPS else "is not known"
+        raise InputError("slips", f"{key!r} {what}", f"use {', '.join(sorted(SWITCHED))}")
+    problem = dimensionless(system)
+    if wanted and (len(problem.shells) != 2 or None in problem.fluids or any(shell.section is None for shell in problem.shells)):
+        raise InputError("slips", "the system is not two elastic shells in three fluids", "use one that is, such as the preset 'bare'")
+    for key, switch in _SWITCHES.items():
+        if key in wanted:
+            problem = switch(problem)
+    return problem
