@@ -1,0 +1,162 @@
+"""Run independent tasks on any ``concurrent.futures.Executor``: results as they come, whatever becomes of the workers."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import TypeVar
+
+from coaxshell.errors import InputError
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+AHEAD = 2
+"""Tasks handed out per worker: one in work and one waiting."""
+
+
+class WorkerDiedError(RuntimeError):
+    """The process that worked on a task ended before it was done, as when memory ran out."""
+
+
+def worker_count(workers: int | None) -> int:
+    """Return how many processes to use: as asked, or one a core that this process may use; InputError if that is not a number."""
+    if workers is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= 1024:
+        raise InputError("workers", f"{workers!r} is not allowed", "give a whole number from 1 to 1024")
+    return workers
+
+
+def capacity(executor: Executor | None, workers: int | None) -> int:
+    """Return how many tasks can be in work at a time."""
+    if executor is None:
+        return worker_count(workers)
+    client = getattr(executor, "_client", None)  # Dask's, whose number of workers changes
+    if client is not None:
+        return max(1, sum(int(cores) for cores in client.ncores().values()))
+    return int(getattr(executor, "_max_workers", 0) or worker_count(workers))
+
+
+def completed(
+    tasks: Iterable[T], work: Callable[[T], R], *, executor: Executor | None = None, workers: int | None = None
+) -> Iterator[tuple[T, R | Exception]]:
+    """Yield (task, result) as they are done, in any order; an exception in place of the result if the work raised one.
+
+    Tasks are drawn only as workers come free, so that a caller may leave one out at the last moment. With ``workers=1`` all is
+    done in this process. Otherwise in a pool of processes of our own, unless an *executor* is given. When a process of our own
+    pool dies, a new pool is made; the tasks that were in work are done again at the end, one by one, and the one under which a
+    process dies again gets :class:`WorkerDiedError`. When the caller stops early or is interrupted, nothing new is begun.
+
+    Raises
+    ------
+    InputError
+        The executor given is shut down or its workers cannot be reached.
+    """
+    if executor is not None:
+        yield from _on(executor, tasks, work, AHEAD * capacity(executor, workers))
+    elif worker_count(workers) == 1:
+        for task in tasks:
+            yield task, _tried(work, task)
+    else:
+        yield from _in_own_pool(tasks, work, worker_count(workers))
+
+
+def _tried(work: Callable[[T], R], task: T) -> R | Exception:
+    try:
+        return work(task)
+    except Exception as error:  # noqa: BLE001 - handed to the caller, who knows what to do with it
+        return error
+
+
+def _in_own_pool(tasks: Iterable[T], work: Callable[[T], R], workers: int) -> Iterator[tuple[T, R | Exception]]:
+    waiting, suspects = iter(tasks), deque[T]()
+    while True:
+        with process_pool(workers) as pool:
+            lost = yield from _drained(pool, waiting, work, AHEAD * workers)
+        if not lost:
+            break
+        suspects += lost
+    while suspects:  # one at a time, so that only the guilty one is blamed
+        task = suspects.popleft()
+        with process_pool(1) as pool:
+            lost = yield from _drained(pool, iter([task]), work, 1)
+        if lost:
+            yield task, WorkerDiedError("the process that worked on it died, twice (out of memory?)")
+
+
+def _on(executor: Executor, tasks: Iterable[T], work: Callable[[T], R], ahead: int) -> Iterator[tuple[T, R | Exception]]:
+    lost = yield from _drained(executor, iter(tasks), work, ahead)
+    for task in lost:
+        yield task, WorkerDiedError("the executor broke while it was in work")
+
+
+def _drained(
+    executor: Executor, tasks: Iterator[T], work: Callable[[T], R], ahead: int
+) -> Generator[tuple[T, R | Exception], None, list[T]]:
+    """Yield results until tasks run out or the executor breaks; return the tasks that were in work when it broke."""
+    running: dict[Future[R], T] = {}
+    lost: list[T] = []
+    try:
+        while True:
+            while not lost and len(running) < ahead:
+                task = next(tasks, None)
+                if task is None:
+                    break
+                try:
+                    running[executor.submit(work, task)] = task
+                except BrokenProcessPool:
+                    lost.append(task)
+                except RuntimeError as problem:
+                    raise InputError("executor", f"cannot be used: {problem}", "give one that is not shut down") from None
+            if not running:
+                return lost
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                task = running.pop(future)
+                error = future.exception()
+                if isinstance(error, BrokenProcessPool):
+                    lost.append(task)
+                elif error is not None and not isinstance(error, Exception):
+                    raise error
+                else:
+                    yield task, future.result() if error is None else error
+    finally:
+        for future in running:
+            future.cancel()
+
+
+@contextmanager
+def process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Yield a pool of processes that are started afresh (never forked from this one), and end it at once afterwards.
+
+    Its processes leave Ctrl-C to the parent and end when the parent does, even by kill -9.
+    """
+    kind = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    context = multiprocessing.get_context(kind)
+    if kind == "forkserver":
+        context.set_forkserver_preload(["coaxshell.studies.evaluation"])
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _begin_worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

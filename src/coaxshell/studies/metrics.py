@@ -1,0 +1,231 @@
+"""Named metrics: what a study asks of every case, as ``inner.peak_stress``, ``interior.rms_pressure`` or a function of the user's.
+
+A metric named in text is "PLACE.QUANTITY": a shell ("inner", "outer", "shells[1]"), a fluid ("interior", "gap", "exterior",
+"fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below. A function of the user's takes a Response and
+returns a number; in a study file it is written "file.py:function".
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from coaxshell.errors import InputError
+from coaxshell.model.fluids import Vacuum
+from coaxshell.model.layers import Shell
+from coaxshell.model.naming import suggestion
+from coaxshell.model.system import System
+from coaxshell.response import Response
+from coaxshell.studies.reading import Reading
+from coaxshell.studies.user_functions import UserFunction, from_callable, from_text
+
+MetricLike = str | Callable[[Response], float]
+Metrics = Sequence[MetricLike] | Mapping[str, MetricLike]
+
+
+class Quantity(NamedTuple):
+    """A number of a reading: its unit, its meaning, the role of the layer that it needs ("" for none)."""
+
+    units: str
+    long_name: str
+    needs: str = ""
+
+
+SHELL_QUANTITIES = {
+    "peak_stress": Quantity("Pa", "largest hoop stress anywhere"),
+    "peak_stress_head": Quantity("Pa", "largest hoop stress at the head"),
+    "peak_stress_tail": Quantity("Pa", "largest hoop stress at the tail"),
+    "rms_stress": Quantity("Pa", "RMS hoop stress over surface and time"),
+    "peak_displacement": Quantity("m", "largest normal displacement anywhere"),
+    "peak_displacement_head": Quantity("m", "largest normal displacement at the head"),
+    "peak_displacement_tail": Quantity("m", "largest normal displacement at the tail"),
+    "peak_sensor_voltage": Quantity("V", "largest sensor voltage anywhere", "sensor"),
+    "peak_actuator_voltage": Quantity("V", "largest actuator voltage asked for", "actuator"),
+    "peak_actuator_field": Quantity("V/m", "largest actuator field asked for", "actuator"),
+    "actuator_field_ratio": Quantity("1", "largest actuator field asked for, over its limit", "actuator"),
+    "stress_truncation": Quantity("1", "estimated share of the orders left out of the stress"),
+    "mass": Quantity("kg/m", "mass"),
+}
+FLUID_QUANTITIES = {"rms_pressure": Quantity("Pa", "RMS pressure over area and time")}
+ABSORBER_QUANTITIES = {
+    "absorber_count": Quantity("1", "number of absorbers"),
+    "absorber_mass": Quantity("kg/m", "mass added by the absorbers"),
+    "absorber_displacement": Quantity("m", "largest displacement of an absorber's mass"),
+    "absorber_force": Quantity("N/m", "largest force of an absorber on a shell"),
+    "dissipated_energy": Quantity("J/m", "energy dissipated in the absorbers' dampers"),
+}
+SYSTEM_QUANTITIES = {
+    "total_mass": Quantity("kg/m", "mass of all shells and absorbers"),
+    "time_window_error": Quantity("1", "estimated error of the inverse transform"),
+}
+WITHOUT_SHELL = {
+    "absorbers": {
+        "count": "absorber_count",
+        "mass": "absorber_mass",
+        "peak_displacement": "absorber_displacement",
+        "peak_force": "absorber_force",
+        "dissipated_energy": "dissipated_energy",
+    },
+    "system": {"mass": "total_mass", "time_window_error": "time_window_error"},
+}
+"""Quantities of the absorbers and of the system, by their names in text, and the properties of a reading that give them."""
+
+_INDEXED = re.compile(r"(shells|fluids)[.\[](\w+)\]?\.(\w+)")
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One metric of a study, ready to be sent to another process.
+
+    Attributes
+    ----------
+    name : str
+        As the user wrote it, or the name given to a function.
+    units, long_name : str
+    place : str, int
+        What it is read from: the number of a shell, a fluid, "absorbers", "system"; "" for a function of the user's.
+    quantity : str
+        Name of the method or property of :class:`Reading`.
+    function : UserFunction, optional
+    """
+
+    name: str
+    units: str
+    long_name: str
+    place: str | int = ""
+    quantity: str = ""
+    function: UserFunction | None = None
+
+    def __call__(self, reading: Reading) -> float:
+        """Return its value; InputError if a function of the user's fails or gives no finite number."""
+        if self.function is not None:
+            return self.function(reading.response, self.name)
+        found = getattr(reading, self.quantity)
+        value = float(found(self.place) if callable(found) else found)
+        if not math.isfinite(value):
+            raise InputError(self.name, f"{value!r} is not finite", "try a smaller time step")
+        return value
+
+    @property
+    def identity(self) -> str:
+        """What a hash should cover: two metrics of one identity give the same number."""
+        return self.function.identity if self.function is not None else f"{self.place}.{self.quantity}"
+
+
+def metrics_of(asked: Metrics, system: System, folder: str | None = None) -> tuple[Metric, ...]:
+    """Return the metrics of a study, checked against its base system.
+
+    Parameters
+    ----------
+    asked : sequence, or mapping of name to metric
+        Texts, and functions of a Response.
+    system : System
+    folder : str, optional
+        Where the files of "file.py:function" lie; the current folder unless given.
+
+    Raises
+    ------
+    InputError
+        None given, one unknown (with the nearest that exists), one that this system does not have, or two of one name.
+    """
+    if isinstance(asked, str) or callable(asked):
+        asked = [asked]
+    named: list[tuple[str | None, Any]] = list(asked.items()) if isinstance(asked, Mapping) else [(None, item) for item in asked]
+    if not named:
+        raise InputError("metrics", "the list is empty", "name at least one, such as inner.peak_stress")
+    found: dict[str, Metric] = {}
+    for number, (name, item) in enumerate(named):
+        where = f"metrics[{number}]" if name is None else f"metrics.{name}"
+        metric = _metric(item, name, system, where, folder)
+        if metric.name in found:
+            raise InputError(where, f"{metric.name!r} is asked for twice", "give each metric once, or names of their own")
+        found[metric.name] = metric
+    return tuple(found.values())
+
+
+def metric_names(system: System) -> list[str]:
+    """Return the names of all metrics that a system has."""
+    count = len(system.shells)
+    names: list[str] = []
+    for i, wall in enumerate(system.shells):
+        place = {0: "inner", count - 1: "outer"}.get(i, f"shells[{i}]")
+        names += [f"{place}.{key}" for key, entry in SHELL_QUANTITIES.items() if _lacks(wall, entry) is None]
+    gaps = range(1, count)
+    places = ["interior", *(["gap"] if len(gaps) == 1 else [f"fluids[{i}]" for i in gaps]), "exterior"]
+    names += [f"{place}.rms_pressure" for place, fluid in zip(places, system.fluids, strict=True) if not isinstance(fluid, Vacuum)]
+    return names + [f"{place}.{key}" for place, keys in WITHOUT_SHELL.items() for key in keys]
+
+
+def _metric(item: Any, name: str | None, system: System, where: str, folder: str | None) -> Metric:
+    if isinstance(item, Metric):
+        return item
+    if callable(item):
+        return _of_function(from_callable(item, where, name), name)
+    if not isinstance(item, str):
+        raise InputError(where, f"{item!r} is not a metric", "give a name such as inner.peak_stress, or a function of a Response")
+    text = item.strip()
+    if ":" in text:
+        return _of_function(from_text(text, where, folder), name)
+    place, quantity = _split(text)
+    label = name or text
+    if place in WITHOUT_SHELL and quantity in WITHOUT_SHELL[place]:
+        attribute = WITHOUT_SHELL[place][quantity]
+        entry = {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}[attribute]
+        return Metric(label, entry.units, entry.long_name, place, attribute)
+    if (quantity in FLUID_QUANTITIES and place in ("interior", "gap", "exterior")) or place.startswith("fluids"):
+        return _of_fluid(text, label, place, quantity, system, where)
+    shell = _shell(place, system)
+    if shell is None or quantity not in SHELL_QUANTITIES:
+        raise InputError(where, f"{text!r} is not a known metric", suggestion(text, metric_names(system)))
+    entry = SHELL_QUANTITIES[quantity]
+    lack = _lacks(system.shells[shell], entry)
+    if lack is not None:
+        raise InputError(where, f"{text!r} needs a shell that {lack}", suggestion(text, metric_names(system)))
+    return Metric(label, entry.units, f"{entry.long_name}, {_label(shell, system)}", shell, quantity)
+
+
+def _split(text: str) -> tuple[str, str]:
+    indexed = _INDEXED.fullmatch(text)
+    if indexed:
+        kind, index, quantity = indexed.groups()
+        return (index if index in ("inner", "outer") else f"{kind}[{index}]"), quantity
+    place, _, quantity = text.partition(".")
+    return place, quantity
+
+
+def _shell(place: str, system: System) -> int | None:
+    count = len(system.shells)
+    match = re.fullmatch(r"shells\[(\d+)\]", place)
+    number = int(match.group(1)) if match else {"inner": 0, "outer": count - 1}.get(place)
+    if number is None and place == "shell" and count == 1:
+        number = 0
+    return number if number is not None and number < count else None
+
+
+def _label(shell: int, system: System) -> str:
+    count = len(system.shells)
+    return "shell" if count == 1 else f"{({0: 'inner', count - 1: 'outer'}).get(shell, f'{shell}th')} shell"
+
+
+def _lacks(wall: object, entry: Quantity) -> str | None:
+    if not isinstance(wall, Shell):
+        return "is not rigid"
+    return f"has a layer with the role {entry.needs!r}" if entry.needs and getattr(wall, entry.needs) is None else None
+
+
+def _of_fluid(text: str, label: str, place: str, quantity: str, system: System, where: str) -> Metric:
+    count = len(system.shells)
+    match = re.fullmatch(r"fluids\[(\d+)\]", place)
+    number = int(match.group(1)) if match else {"interior": 0, "gap": 1 if count == 2 else None, "exterior": count}.get(place)
+    if number is None or number > count or quantity not in FLUID_QUANTITIES or isinstance(system.fluids[number], Vacuum):
+        raise InputError(where, f"{text!r} is not a metric of this system", suggestion(text, metric_names(system)))
+    entry = FLUID_QUANTITIES[quantity]
+    region = "interior" if number == 0 else "exterior" if number == count else "gap" if count == 2 else f"gap {number}"
+    return Metric(label, entry.units, f"{entry.long_name}, {region}", number, quantity)
+
+
+def _of_function(function: UserFunction, name: str | None) -> Metric:
+    return Metric(name or function.name, function.units, function.long_name, function=function)

@@ -1,0 +1,151 @@
+"""Fields of a system that a study varies: by dotted path, each with its unit and what it means."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, get_args
+
+from coaxshell.errors import InputError
+from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.base import Described, shown
+from coaxshell.model.control import PDControl
+from coaxshell.model.naming import plain, slug
+from coaxshell.model.shells import Shell
+from coaxshell.model.system import System
+from coaxshell.model.units import Quantity, whole
+
+_GAINS = ("proportional", "derivative")
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field that can be varied.
+
+    Attributes
+    ----------
+    path : str
+    units, long_name : str
+        From the model's own description; units "1" for a plain number or a count.
+    quantity : Quantity, optional
+        Its dimension and limits, None for what is not a real number.
+    integer : bool
+        Whether it is a count.
+    present : object
+        Its value in the base system.
+    """
+
+    path: str
+    units: str
+    long_name: str
+    quantity: Quantity | None
+    integer: bool
+    present: Any
+
+    def value(self, given: Any, where: str) -> Any:
+        """Return a value in SI, as a float, a whole number, or as it is if the field is neither; InputError names *where*."""
+        try:
+            if self.quantity is not None:
+                return self.quantity.validate(given)
+            if self.integer:
+                return _whole(given)
+        except InputError as error:
+            raise InputError(where, error.problem, error.remedy) from None
+        return given
+
+
+def varied(system: System, changes: Mapping[str, Any]) -> System:
+    """Return a system with the fields at the given paths changed, all at once; InputError says which and why not.
+
+    Beyond :meth:`System.with_overrides`: a gain may be set where there is no control yet (the other one is then 0), and a property
+    of absorbers that are listed one by one (``absorbers.mass``) is set on each of them.
+    """
+    plain_changes: dict[str, Any] = {}
+    controls: dict[str, Any] = {}
+    absorbers: dict[str, Any] = {}
+    for path, value in changes.items():
+        head, _, field = path.partition(".")
+        if head == "control" and system.control is None and field:
+            controls[field] = value
+        elif head == "absorbers" and isinstance(system.absorbers, tuple) and field in Absorber.model_fields:
+            absorbers[field] = value
+        else:
+            plain_changes[path] = value
+    if controls:
+        plain_changes["control"] = _new_control(controls)
+    if absorbers:
+        plain_changes["absorbers"] = _each(system, absorbers)
+    return system.with_overrides(plain_changes) if plain_changes else system
+
+
+def field_of(system: System, path: str) -> Field:
+    """Return the field at a path of a system; InputError, with the nearest that exists, if there is none."""
+    if not isinstance(path, str) or not path.strip():
+        raise InputError("over", f"{path!r} is not a path", "write it as source.peak_pressure or shells[0].radius")
+    path = path.strip()
+    head, _, name = path.partition(".")
+    if head == "control" and system.control is None and name in _GAINS:
+        return _described(path, PDControl, name, 0.0)
+    if head == "absorbers" and isinstance(system.absorbers, tuple) and system.absorbers and name in Absorber.model_fields:
+        return _described(path, Absorber, name, getattr(system.absorbers[0], name))
+    *way, last = [token for token in re.split(r"[.\[\]]+", path) if token]
+    node: Any = system
+    for token in way:
+        node = _child(node, token)
+    if isinstance(node, Described) and last in type(node).model_fields:
+        return _described(path, type(node), last, getattr(node, last))
+    if isinstance(node, tuple) and (item := _child(node, last)) is not None:
+        return Field(path, "1", path, None, False, item)
+    system.with_overrides({path: 1.0})  # raises the error that names what is allowed there
+    raise InputError(path, "is not a field of this system", "write it as source.peak_pressure or shells[0].radius")
+
+
+def _described(path: str, kind: type[Described], name: str, present: Any) -> Field:
+    info = kind.model_fields[name]
+    marks = [*info.metadata, *(mark for part in get_args(info.annotation) for mark in getattr(part, "__metadata__", ()))]
+    quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
+    integer = quantity is None and info.annotation is int
+    long_name = re.sub(r"\s*\([^()]*\)", "", (info.description or name).split(". ")[0].split("; ")[0]).rstrip(".")
+    units = (quantity.dimension.unit if quantity is not None else "") or "1"
+    return Field(path, units, f"{long_name} ({path})", quantity, integer, present)
+
+
+def _child(node: Any, token: str) -> Any:
+    """Return what a token of a path names in a part of the description; None if nothing."""
+    if isinstance(node, System) and token == "materials":
+        layers = [layer for shell in node.shells if isinstance(shell, Shell) for layer in shell.layers]
+        return {plain(slug(layer.material.name)): layer.material for layer in layers}
+    if isinstance(node, dict):
+        return node.get(plain(token))
+    if isinstance(node, tuple):
+        ends = {"inner": 0, "interior": 0, "outer": len(node) - 1, "exterior": len(node) - 1}
+        number = ends.get(token, int(token) if token.isdigit() else -1)
+        return node[number] if 0 <= number < len(node) else None
+    return getattr(node, token, None) if isinstance(node, Described) and token in type(node).model_fields else None
+
+
+def _whole(given: Any) -> int:
+    number = whole(given)
+    if isinstance(number, float) and number.is_integer():
+        number = int(number)
+    if not isinstance(number, int) or number < 0:
+        raise InputError("", f"{shown(given)} is not a count", "give a whole number of 0 or more")
+    return number
+
+
+def _new_control(entries: Mapping[str, Any]) -> PDControl:
+    try:
+        return PDControl(**{"proportional": 0.0, "derivative": 0.0, **entries})
+    except InputError as error:
+        raise InputError(f"control.{error.where}", error.problem, error.remedy) from None
+
+
+def _each(system: System, entries: Mapping[str, Any]) -> tuple[Absorber, ...]:
+    assert not isinstance(system.absorbers, AbsorberRing)
+    if not system.absorbers:
+        raise InputError(f"absorbers.{next(iter(entries))}", "this system has no absorbers", "describe a ring of them first")
+    try:
+        return tuple(absorber.replace(**entries) for absorber in system.absorbers)
+    except InputError as error:
+        raise InputError(f"absorbers.{error.where}", error.problem, error.remedy) from None

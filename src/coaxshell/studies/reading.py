@@ -1,0 +1,173 @@
+"""Single numbers read from a response, each computed only when asked for."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.model.layers import Shell
+from coaxshell.model.system import System
+from coaxshell.response import Response
+from coaxshell.response.energy.absorbers import absorber_energy
+from coaxshell.response.energy.motion import Motion
+from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
+from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
+from coaxshell.response.synthesis import circle_angles
+from coaxshell.response.voltages import actuator_limit, demanded_voltage
+
+
+class Reading:
+    """What metrics take from one response; SI throughout, absorbers and shells per metre of length.
+
+    Parameters
+    ----------
+    response : Response
+    """
+
+    def __init__(self, response: Response) -> None:
+        self.response = response
+        self.solution = response.solution
+        self.system = response.system
+        self._whole = slice(0, self.solution.time.size)
+        self._width = len(circle_angles(self.solution.normal.shape[2], self.solution.normal.shape[1]))
+        self._head = self.system.sources[0].angle
+
+    def _of(self, shell: int, gain: Gain) -> Amplitudes:
+        return lambda block: amplitudes(self.solution, shell, gain, block)
+
+    def _stress(self, shell: int) -> Amplitudes:
+        return self._of(shell, stress_gain_of(self.solution, shell))
+
+    def _displacement(self, shell: int) -> Amplitudes:
+        return self._of(shell, displacement_gain(self.solution))
+
+    def _anywhere(self, quantity: Amplitudes) -> float:
+        return peak_anywhere(quantity, self.solution.time, self._whole, self._width).value
+
+    def _at(self, quantity: Amplitudes, beside_head: float) -> float:
+        return peak_at(quantity, self.solution.time, self._whole, [self._head + beside_head])[0].value
+
+    def peak_stress(self, shell: int) -> float:
+        """Return the largest design stress of the core (Eq. 22) over the whole shell and time, head and tail included, Pa."""
+        stress = self._stress(shell)
+        return max(self._anywhere(stress), self._at(stress, 0.0), self._at(stress, 180.0))
+
+    def peak_stress_head(self, shell: int) -> float:
+        """Return the largest design stress at the head, Pa."""
+        return self._at(self._stress(shell), 0.0)
+
+    def peak_stress_tail(self, shell: int) -> float:
+        """Return the largest design stress at the tail, Pa."""
+        return self._at(self._stress(shell), 180.0)
+
+    def rms_stress(self, shell: int) -> float:
+        """Return the root mean square of the design stress over the surface and time, Pa."""
+        return root_mean_square(self._stress(shell), self.solution.time, self._whole, self._width)
+
+    def peak_displacement(self, shell: int) -> float:
+        """Return the largest normal displacement anywhere, m."""
+        return self._anywhere(self._displacement(shell))
+
+    def peak_displacement_head(self, shell: int) -> float:
+        """Return the largest normal displacement at the head, m."""
+        return self._at(self._displacement(shell), 0.0)
+
+    def peak_displacement_tail(self, shell: int) -> float:
+        """Return the largest normal displacement at the tail, m."""
+        return self._at(self._displacement(shell), 180.0)
+
+    def peak_sensor_voltage(self, shell: int) -> float:
+        """Return the largest open-circuit voltage of the sensor anywhere, V."""
+        return self._anywhere(self._of(shell, voltage_gain(self.solution, shell)))
+
+    def peak_actuator_voltage(self, shell: int) -> float:
+        """Return the largest voltage that the control law asks for anywhere, before any saturation, V; 0 without control."""
+        if self.solution.problem.shells[shell].gains is None:
+            return 0.0
+        voltage = demanded_voltage(self.solution, shell)
+        return self._anywhere(lambda block: voltage[:, :, block])
+
+    def peak_actuator_field(self, shell: int) -> float:
+        """Return the same as a field across the actuator, V/m."""
+        return self.peak_actuator_voltage(shell) / self._wall(shell).actuator.thickness  # type: ignore[union-attr]
+
+    def actuator_field_ratio(self, shell: int) -> float:
+        """Return the same over what the actuator stands (its material's or the controller's field limit)."""
+        return self.peak_actuator_voltage(shell) / actuator_limit(self.solution, shell).volts
+
+    def stress_truncation(self, shell: int) -> float:
+        """Return the estimate of what the orders above M would add to the stress, relative."""
+        return float(self.solution.estimates.modal_stress[shell])
+
+    def mass(self, shell: int) -> float:
+        """Return the mass of a shell, kg/m."""
+        return shell_mass(self._wall(shell))
+
+    def _wall(self, shell: int) -> Shell:
+        wall = self.system.shells[shell]
+        assert isinstance(wall, Shell)  # metrics refuse rigid shells before the run
+        return wall
+
+    def rms_pressure(self, region: str | int) -> float:
+        """Return the root mean square of the total pressure over a fluid region and time, Pa; the exterior up to 3 a."""
+        history = self.response.pressure_rms(region)
+        time, values = history["time"].to_numpy(), history.to_numpy()
+        return math.sqrt(float(np.trapezoid(values**2, time)) / float(time[-1] - time[0]))
+
+    @cached_property
+    def absorber_count(self) -> float:
+        """How many absorbers there are."""
+        return float(len(self.system.absorber_list))
+
+    @cached_property
+    def absorber_mass(self) -> float:
+        """Mass of all absorbers, kg/m."""
+        return absorber_mass(self.system)
+
+    @cached_property
+    def absorber_displacement(self) -> float:
+        """Largest displacement of any absorber's mass, m; 0 without absorbers."""
+        found = self.solution.absorber_displacement
+        return 0.0 if found is None or not len(found) else float(np.abs(found).max()) * self.solution.problem.scales.length
+
+    @cached_property
+    def absorber_force(self) -> float:
+        """Largest force of any absorber on either of its shells, N/m; 0 without absorbers."""
+        found = self.solution.absorber_force
+        return 0.0 if found is None or not len(found) else float(np.abs(found).max()) * self.solution.problem.scales.line_force
+
+    @cached_property
+    def dissipated_energy(self) -> float:
+        """Energy that the absorbers' dampers have turned into heat by the end of the run, J/m; 0 without absorbers."""
+        if self.solution.absorber_force is None:
+            return 0.0
+        last = Motion(self.solution, self.solution.time.size - 1)
+        return float(absorber_energy(last).dissipated[-1]) * self.solution.problem.scales.line_energy
+
+    @cached_property
+    def total_mass(self) -> float:
+        """Mass of all shells and absorbers, kg/m."""
+        shells = sum(shell_mass(wall) for wall in self.system.shells if isinstance(wall, Shell))
+        return shells + self.absorber_mass
+
+    @cached_property
+    def time_window_error(self) -> float:
+        """Estimate of the error of the inverse transform, relative."""
+        return float(self.solution.estimates.time_window)
+
+
+def shell_mass(shell: Shell) -> float:
+    """Return the mass of a shell per metre of length, kg/m: sum over its layers of rho pi (r_out^2 - r_in^2)."""
+    total, inside = 0.0, shell.inner_radius
+    for layer in shell.layers:
+        outside = inside + layer.thickness
+        total += layer.material.density * math.pi * (outside**2 - inside**2)
+        inside = outside
+    return total
+
+
+def absorber_mass(system: System) -> float:
+    """Return the mass of all absorbers of a system per metre of length, kg/m."""
+    return float(sum(absorber.mass for absorber in system.absorber_list))

@@ -1,0 +1,32 @@
+"""The resolution at which all cases of a study are run."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal
+
+from coaxshell.solver.settings import Settings
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Settings of a run, those of :func:`coaxshell.response.simulate`; the paper's unless given."""
+
+    duration: float = 5.0
+    time_step: float = 1e-3
+    modes: int | Literal["auto"] = 150
+    tolerance: float = 1e-3
+    engine: str = "spectral"
+    refinement: int = 1
+
+    def up_to(self, duration: float) -> Resolution:
+        """Return the same, but no longer than *duration* transits."""
+        return replace(self, duration=min(self.duration, duration))
+
+    def check(self) -> None:
+        """Refuse a setting that no run accepts: InputError names it."""
+        Settings(**asdict(self))
+
+    def arguments(self) -> dict[str, Any]:
+        """Return them as keyword arguments of :func:`coaxshell.response.simulate`."""
+        return asdict(self)

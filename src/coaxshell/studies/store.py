@@ -1,0 +1,154 @@
+"""A folder that keeps every finished case of a study: safe to kill at any moment, safe for several writers.
+
+One file a case, named by the hash of all that its numbers depend on, written to a temporary name and renamed; ``study.json`` says
+whose cases they are. Failed cases lie beside as ``HASH.failed.json``.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import uuid
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from coaxshell._version import __version__
+from coaxshell.errors import InputError
+from coaxshell.model.system import System
+from coaxshell.solver.settings import NUMERICS_VERSION
+from coaxshell.studies.evaluation import Outcome, failure
+from coaxshell.studies.metrics import Metric
+from coaxshell.studies.resolution import Resolution
+
+MANIFEST = "study.json"
+FORMAT_VERSION = 1
+
+
+def numerics() -> str:
+    """Return the version that a case's numbers depend on."""
+    return f"{__version__}, numerics {NUMERICS_VERSION}"
+
+
+def digest(data: Any) -> str:
+    """Return the hash of plain data, the same for the same numbers on any machine."""
+    text = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def case_key(system: System, metrics: Sequence[Metric], resolution: Resolution) -> str:
+    """Return the name under which a case is kept: the hash of its physics, metrics, resolution and the version of the numerics."""
+    asked = {metric.name: metric.identity for metric in metrics}
+    return digest({"system": system.canonical(), "metrics": asked, "resolution": asdict(resolution), "numerics": numerics()})
+
+
+class Store:
+    """The cases of one study in a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there.
+    study : mapping
+        Plain data that tell one study from another, by parts ("scenario", "over", ...): a difference is told by the part's name.
+    metrics : sequence of Metric
+        Their values are what is kept, in this order.
+    resume : bool
+        Whether the folder may already hold this study.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to, holds something else, another study, or this one though *resume* is false.
+    """
+
+    def __init__(self, folder: Path, study: Mapping[str, Any], metrics: Sequence[Metric], *, resume: bool = False) -> None:
+        self.folder, self.metrics = Path(folder), tuple(metrics)
+        manifest = {"format": FORMAT_VERSION, "numerics": numerics(), "study": {key: digest(part) for key, part in study.items()}}
+        try:
+            self._open({**manifest, "description": dict(study)}, resume=resume)
+        except OSError as error:
+            reason = (error.strerror or type(error).__name__).lower()
+            raise InputError("store", f"{str(self.folder)!r} cannot be used ({reason})", "give a folder that you may write to") from None
+
+    def _open(self, manifest: dict[str, Any], *, resume: bool) -> None:
+        path = self.folder / MANIFEST
+        if self.folder.is_dir() and not path.is_file() and any(not name.name.startswith(".") for name in self.folder.iterdir()):
+            raise InputError("store", f"{str(self.folder)!r} holds something else than a study", "give an empty or a new folder")
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if path.is_file():
+            self._same(_read(path), manifest)
+            if not resume:
+                kept = sum(1 for _ in self.folder.glob("*.json")) - 1
+                remedy = "use resume (--resume) to go on with it, or remove it"
+                raise InputError("store", f"{str(self.folder)!r} already holds {kept} cases of this study", remedy)
+            return
+        temporary = self.folder / f".{MANIFEST}.{uuid.uuid4().hex}.tmp"
+        try:
+            temporary.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
+            os.link(temporary, path)  # fails if another writer was first, where a rename would not
+        except FileExistsError:
+            self._same(_read(path), manifest)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+    def _same(self, found: dict[str, Any] | None, ours: dict[str, Any]) -> None:
+        name = str(self.folder)
+        if found is None or "study" not in found:
+            raise InputError("store", f"{name!r} has a damaged {MANIFEST}", "give another folder")
+        if found.get("format") != FORMAT_VERSION or found.get("numerics") != ours["numerics"]:
+            theirs = found.get("numerics", "another version")
+            raise InputError("store", f"{name!r} was made by coaxshell {theirs}; this is {ours['numerics']}", "give another folder")
+        theirs, mine = found["study"], ours["study"]
+        differ = [key for key in {**theirs, **mine} if theirs.get(key) != mine.get(key)]
+        if differ:
+            raise InputError("store", f"{name!r} holds another study: its {' and '.join(differ)} differ", "give another folder")
+
+    def key(self, system: System, resolution: Resolution) -> str:
+        """Return the name of a case."""
+        return case_key(system, self.metrics, resolution)
+
+    def load(self, key: str) -> Outcome | None:
+        """Return the outcome of a case, None if it is not there. Accidents count as not there: they are tried again."""
+        data = _read(self.folder / f"{key}.json")
+        if data is not None and set(data.get("values", ())) == {metric.name for metric in self.metrics}:
+            values = tuple(float(data["values"][metric.name]) for metric in self.metrics)
+            return Outcome(values, warnings=tuple(data.get("warnings", ())), seconds=float(data.get("seconds", 0.0)))
+        failed = _read(self.folder / f"{key}.failed.json")
+        if failed is not None and failed.get("expected"):
+            return failure(self.metrics, str(failed["reason"]), seconds=float(failed.get("seconds", 0.0)))
+        return None
+
+    def save(self, key: str, outcome: Outcome) -> None:
+        """Keep the outcome of a case; InputError if there is no room."""
+        data: dict[str, Any] = {"seconds": outcome.seconds}
+        if outcome.failed:
+            data |= {"reason": outcome.reason, "expected": outcome.expected}
+        else:
+            named = {metric.name: value for metric, value in zip(self.metrics, outcome.values, strict=True)}
+            data |= {"values": named, "warnings": list(outcome.warnings)}
+        path = self.folder / (f"{key}.failed.json" if outcome.failed else f"{key}.json")
+        temporary = self.folder / f".{key}.{uuid.uuid4().hex}.tmp"
+        try:
+            temporary.write_text(json.dumps(data), encoding="utf-8")
+            os.replace(temporary, path)
+        except OSError as error:
+            reason = (error.strerror or type(error).__name__).lower()
+            raise InputError("store", f"cannot write into {str(self.folder)!r}: {reason}", "make room; what is done is kept") from None
+        finally:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+        if not outcome.failed:
+            (self.folder / f"{key}.failed.json").unlink(missing_ok=True)  # an accident that has been made good
+
+
+def _read(path: Path) -> dict[str, Any] | None:
+    """Return the table of a JSON file; None if it is not there or cut short (after a power cut a new file may be empty)."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError):
+        return None
+    return data if isinstance(data, dict) else None

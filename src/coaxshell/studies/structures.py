@@ -1,0 +1,65 @@
+"""Systems solved one after another, each structure prepared only once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from coaxshell.model.system import System
+from coaxshell.response import PreparedSystem, Response, prepare, simulate
+from coaxshell.studies.resolution import Resolution
+
+Report = Callable[[float, str], None]
+
+
+def structure_of(system: System) -> System:
+    """Return all of a system but its absorbers: what its prepared kernels depend on."""
+    return system.replace(absorbers=())
+
+
+class Structures:
+    """Solve systems at one resolution; neighbours that differ only in their absorbers share one prepared structure.
+
+    An answer depends on its own system alone, to the last bit, whatever was solved before: what is shared is the same whoever
+    prepared it, and a system that has no use for the kernels is solved by itself.
+
+    Parameters
+    ----------
+    resolution : Resolution
+    """
+
+    def __init__(self, resolution: Resolution) -> None:
+        self.resolution = resolution
+        self._structure: System | None = None
+        self._prepared: PreparedSystem | None = None
+
+    def response(self, system: System) -> Response:
+        """Return the response of a system; InputError as :func:`coaxshell.response.simulate`."""
+        settings = self.resolution.arguments()
+        saturates = system.control is not None and system.control.saturation
+        if self.resolution.engine != "spectral" or not (system.absorber_list or saturates):
+            return simulate(system, **settings)
+        structure = structure_of(system)
+        if self._prepared is None or self._structure != structure:
+            del settings["engine"]
+            self._prepared = None  # let go of the old kernels before new ones are made
+            self._prepared, self._structure = prepare(structure, **settings), structure
+        return self._prepared.simulate(system.absorbers)
+
+
+def solve_each(systems: Mapping[str, System], resolution: Resolution, progress: Report | None = None) -> Iterator[tuple[str, Response]]:
+    """Yield (name, response) of each system in turn. Neighbours that differ only in their absorbers share one prepared structure.
+
+    Parameters
+    ----------
+    systems : mapping of str to System
+    resolution : Resolution
+    progress : callable, optional
+        Called with the fraction done and the name of the stage.
+    """
+    structures = Structures(resolution)
+    for number, (name, system) in enumerate(systems.items()):
+        if progress:
+            progress(number / len(systems), "solving")
+        yield name, structures.response(system)
+    if progress:
+        progress(1.0, "solving")

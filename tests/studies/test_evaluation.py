@@ -1,0 +1,99 @@
+"""An outcome depends on its case alone; structures are prepared once; failures carry reasons."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.studies import structures
+from coaxshell.studies.evaluation import Case, batches, evaluate, forget
+from coaxshell.studies.executors import WorkerDiedError, completed
+from coaxshell.studies.metrics import metrics_of
+from coaxshell.studies.paths import varied
+from coaxshell.studies.store import Store
+
+ASKED = ["inner.peak_stress", "outer.rms_stress", "absorbers.peak_force"]
+
+
+@pytest.fixture
+def cases(hybrid):
+    systems = [varied(hybrid, {"absorbers.count": n, "source.peak_pressure": p}) for n in (0, 3, 7) for p in (1e4, 2e4)]
+    return [Case(i, system) for i, system in enumerate(systems)]
+
+
+def outcomes(batch_list):
+    return {case.number: outcome for batch in batch_list for case, outcome in zip(batch.cases, evaluate(batch), strict=True)}
+
+
+def test_grouping_changes_nothing_and_prepares_each_structure_once(hybrid, cases, resolution, monkeypatch):
+    metrics = metrics_of(ASKED, hybrid)
+    prepared = []
+
+    def counted(*arguments, **options):
+        prepared.append(arguments)
+        return cx.prepare(*arguments, **options)
+
+    monkeypatch.setattr(structures, "prepare", counted)
+    forget()
+    together = outcomes(batches(cases, metrics, resolution, 1))
+    assert len(prepared) == 2  # the two sources
+    for case in reversed(cases):
+        forget()
+        alone = outcomes(batches([case], metrics, resolution, 1))
+        assert alone[case.number].values == together[case.number].values
+        response = cx.simulate(case.system, **resolution.arguments())
+        np.testing.assert_allclose(together[case.number].values[0], response.summary().shells[0].stress.value, rtol=1e-9)
+
+
+def test_a_batch_pickles(hybrid, cases, resolution):
+    batch = batches(cases, metrics_of(ASKED, hybrid), resolution, 1)[0]
+    copy = pickle.loads(pickle.dumps(batch))
+    assert copy == batch
+    assert [o.values for o in evaluate(copy)] == [o.values for o in evaluate(batch)]
+
+
+def test_a_refused_case_is_nan_with_its_reason(hybrid, resolution):
+    unstable = varied(hybrid, {"control.proportional": 1e6, "control.derivative": 1e4})
+    (batch,) = batches([Case(0, unstable)], metrics_of(ASKED, hybrid), resolution, 1)
+    (outcome,) = evaluate(batch)
+    assert outcome.failed
+    assert outcome.expected
+    assert "control" in outcome.reason
+    assert np.isnan(outcome.values).all()
+
+
+def test_a_store_keeps_outcomes_to_the_last_bit(hybrid, cases, resolution, tmp_path):
+    metrics = metrics_of(ASKED, hybrid)
+    store = Store(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics)
+    for number, outcome in outcomes(batches(cases, metrics, resolution, 1)).items():
+        key = store.key(cases[number].system, resolution)
+        assert store.load(key) is None
+        store.save(key, outcome)
+        assert store.load(key).values == outcome.values
+    with pytest.raises(cx.InputError, match="already holds 6 cases of this study; use resume"):
+        Store(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics)
+    with pytest.raises(cx.InputError, match="holds another study: its scenario differ"):
+        Store(tmp_path / "store", {"scenario": 1}, metrics, resume=True)
+    (tmp_path / "store" / f"{key}.json").write_text("")  # as after a power cut
+    assert Store(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics, resume=True).load(key) is None
+
+
+def square(x):
+    import os
+    import signal
+
+    if x == 5:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if x == 6:
+        raise ValueError("six")
+    return x * x
+
+
+def test_a_pool_survives_the_death_of_its_workers():
+    found = dict(completed(range(12), square, workers=2))
+    assert isinstance(found.pop(5), WorkerDiedError)
+    assert isinstance(found.pop(6), ValueError)
+    assert found == {x: x * x for x in range(12) if x not in (5, 6)}

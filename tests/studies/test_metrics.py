@@ -1,0 +1,115 @@
+"""A metric is the number that the summary, or another reading of the response, gives."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.studies.metrics import metric_names, metrics_of
+from coaxshell.studies.reading import Reading
+
+SUMMARY = {
+    "peak_stress": lambda shell: shell.stress.value,
+    "peak_stress_head": lambda shell: shell.stress_head.value,
+    "peak_stress_tail": lambda shell: shell.stress_tail.value,
+    "rms_stress": lambda shell: shell.stress_rms,
+    "peak_displacement_head": lambda shell: shell.displacement_head.value,
+    "peak_displacement_tail": lambda shell: shell.displacement_tail.value,
+    "peak_sensor_voltage": lambda shell: shell.sensor_voltage.value,
+    "peak_actuator_voltage": lambda shell: shell.actuator_voltage.value,
+    "actuator_field_ratio": lambda shell: shell.actuator_voltage.value / shell.actuator_limit,
+    "stress_truncation": lambda shell: shell.stress_truncation,
+}
+
+
+@pytest.fixture(scope="module")
+def response(hybrid, quick):
+    return cx.simulate(hybrid, **quick)
+
+
+@pytest.fixture(scope="module")
+def value(response):
+    return lambda name: metrics_of([name], response.system)[0](Reading(response))
+
+
+@pytest.mark.parametrize("quantity", SUMMARY)
+@pytest.mark.parametrize("place", [("inner", 0), ("outer", 1), ("shells[1]", 1), ("shells.0", 0)], ids=lambda place: place[0])
+def test_shell_metrics_are_those_of_the_summary(response, value, place, quantity):
+    name, shell = place
+    np.testing.assert_allclose(value(f"{name}.{quantity}"), SUMMARY[quantity](response.summary().shells[shell]), rtol=1e-12)
+
+
+def test_absorber_metrics(response, value):
+    summary = response.summary()
+    assert value("absorbers.count") == 25
+    assert value("absorbers.mass") == 250
+    np.testing.assert_allclose(value("absorbers.peak_displacement"), summary.absorber_displacement, rtol=1e-14)
+    np.testing.assert_allclose(value("absorbers.peak_force"), summary.absorber_force, rtol=1e-14)
+    np.testing.assert_allclose(value("absorbers.dissipated_energy"), response.energy(1)["damper_dissipation"][-1], rtol=1e-9)
+
+
+def test_masses(value):
+    layers = [(7500, 0.494, 0.497), (2700, 0.497, 0.503), (7500, 0.503, 0.506)]
+    inner = sum(density * math.pi * (outside**2 - inside**2) for density, inside, outside in layers)
+    np.testing.assert_allclose(value("inner.mass"), inner, rtol=1e-12)
+    np.testing.assert_allclose(value("system.mass"), value("inner.mass") + value("outer.mass") + 250, rtol=1e-12)
+
+
+def test_pressure_is_the_mean_square_over_time(response, value):
+    history = response.pressure_rms("interior")
+    squares = np.trapezoid(history.to_numpy() ** 2, history["time"].to_numpy())
+    np.testing.assert_allclose(value("interior.rms_pressure"), np.sqrt(squares / history["time"].to_numpy()[-1]), rtol=1e-12)
+
+
+def test_every_listed_name_is_a_metric(hybrid):
+    names = metric_names(hybrid)
+    found = metrics_of(names, hybrid)
+    assert [metric.name for metric in found] == names
+    assert len({metric.identity for metric in found}) == len(names)
+    assert all(metric.units and metric.long_name for metric in found)
+
+
+def head_to_tail(response):
+    """Return the ratio of the head's stress to the tail's."""
+    head, tail = np.abs(response.stress("inner")).max("time").to_numpy()
+    return head / tail
+
+
+def test_functions_of_the_user(response, tmp_path):
+    (tmp_path / "mine.py").write_text('def twice(response):\n    """Twice two."""\n    return 4\n\n\ntwice.units = "Pa"\n')
+    asked = {"ratio": head_to_tail, "four": f"{tmp_path / 'mine.py'}:twice", "stress": "inner.peak_stress"}
+    ratio, four, stress = metrics_of(asked, response.system)
+    reading = Reading(response)
+    assert ratio(reading) == head_to_tail(response)
+    assert ratio.long_name == "Return the ratio of the head's stress to the tail's"
+    assert (four(reading), four.units, four.long_name) == (4.0, "Pa", "Twice two")
+    assert stress.name == "stress"
+    with pytest.raises(cx.InputError, match="ZeroDivisionError"):
+        metrics_of({"bad": lambda response: 1 / 0}, response.system)[0](reading)
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (["inner.peak_stres"], r"metrics\[0\]: 'inner.peak_stres' is not a known metric; did you mean 'inner.peak_stress'\?"),
+        (["inner.rms_stress", "iner.rms_stress"], r"metrics\[1\].*did you mean 'inner.rms_stress'"),
+        (["shells[2].peak_stress"], "not a known metric"),
+        (["fluids[7].rms_pressure"], "not a metric of this system"),
+        ([], "the list is empty"),
+        (["inner.mass", "inner.mass"], "asked for twice"),
+        ([3], "is not a metric"),
+        ([lambda response: 0.0], "has no name"),
+        (["missing.py:f"], "there is no Python file"),
+    ],
+)
+def test_bad_metrics(hybrid, asked, message):
+    with pytest.raises(cx.InputError, match=message):
+        metrics_of(asked, hybrid)
+
+
+def test_a_metric_needs_its_layer():
+    with pytest.raises(cx.InputError, match="needs a shell that has a layer with the role 'actuator'"):
+        metrics_of(["inner.peak_actuator_field"], cx.presets.load("iakovlev-double"))
