@@ -2,11 +2,29 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
+
 from docutils import nodes
-from latex2mathml.converter import convert
+from latex2mathml.converter import convert as to_mathml
 from sphinx.application import Sphinx
 from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
+
+# Browsers know no mathvariant but "normal": other letters are characters of their own.
+ALPHABETS = {"bold": "MATHEMATICAL BOLD", "script": "MATHEMATICAL SCRIPT", "double-struck": "MATHEMATICAL DOUBLE-STRUCK"}
+LETTERLIKE = {"MATHEMATICAL SCRIPT CAPITAL R": "\N{SCRIPT CAPITAL R}", "MATHEMATICAL SCRIPT CAPITAL L": "\N{SCRIPT CAPITAL L}"}
+STYLED = re.compile(r'<mi mathvariant="(bold|script|double-struck)">([A-Za-z]+)</mi>')
+
+
+def convert(text: str, display: str = "inline") -> str:
+    """Return LaTeX as MathML."""
+    return STYLED.sub(lambda found: f"<mi>{''.join(_letter(found[1], one) for one in found[2])}</mi>", to_mathml(text, display=display))
+
+
+def _letter(alphabet: str, letter: str) -> str:
+    name = f"{ALPHABETS[alphabet]} {'CAPITAL' if letter.isupper() else 'SMALL'} {letter.upper()}"
+    return LETTERLIKE.get(name) or unicodedata.lookup(name)
 
 
 def inline(writer: HTML5Translator, node: nodes.math) -> None:
