@@ -6,13 +6,21 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
+from scipy.special import ive
 
 import coaxshell as cx
+from coaxshell.acoustics.incident import SphericalGeometry
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.paper import Resolution
-from coaxshell.paper.slips import SLIPS, SWITCHED, simulate, solve_each
+from coaxshell.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
+from coaxshell.paper.slips.switches import slipped
+from coaxshell.paper.slips.waves import PrintedPotential
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.spectral import linear_spectra
 
 TINY = Resolution(duration=2.5, time_step=1e-2, modes=16)
 BARE = cx.presets.load("bare")
@@ -131,6 +139,138 @@ def test_every_switch_has_words():
     assert all(key == slip.key for key, slip in SLIPS.items())
 
 
+def test_massless_shells_move_as_the_wave_but_for_the_radius_factor():
+    # The proof that the factor is a slip: one fluid, shells without mass and stiffness, a plane wave. The wave's own motion is exact.
+    def ghost(radius):
+        nothing = cx.Elastic(name="nothing", density=1e-9, youngs_modulus=1e-3, poisson_ratio=0.3)
+        return cx.Shell(radius=radius, layers=[cx.Layer(nothing, 1e-3)])
+
+    water = cx.Fluid(density=1000, sound_speed=1400)
+    source = cx.PlaneShock(peak_pressure=2.5e4, decay_time=1.314e-4)
+    system = cx.System(shells=[ghost(0.5), ghost(1.0)], fluids=[water] * 3, source=source)
+    grid, orders = LaplaceGrid(5e-2, 60), np.arange(13)[:, None]
+    s = grid.nodes
+    inner, outer = (_plane_wave_motion(orders, s, radius) for radius in (0.5, 1.0))
+    for slips, factor in ((frozenset(), 1.0), (frozenset({"radius-factor"}), 4.0)):
+        problem = slipped(system, slips)
+        pulse = 2.5e4 / problem.scales.pressure / (s + problem.scales.time / 1.314e-4)
+        moved = linear_spectra(problem, grid, 12).normal[:, 0] / pulse
+        np.testing.assert_allclose(moved[0], factor * inner, rtol=0, atol=1e-8 * abs(inner).max())
+        np.testing.assert_allclose(moved[1], outer, rtol=0, atol=1e-8 * abs(outer).max())
+
+
+def _plane_wave_motion(orders, s, radius):
+    """Return w of a plane wave's own motion at a radius per unit pulse, dp/dr/s^2 with p = eps_m e^{-s} I_m(s r)."""
+    slope = (ive(abs(orders - 1), s * radius) + ive(orders + 1, s * radius)) / 2 * np.exp(s.real * radius - s)
+    return np.where(orders == 0, 1, 2) * slope / s
+
+
+def test_the_printed_potential_gives_the_velocity_of_its_derivative():
+    # v0 at r = 1 by finite differences of the printed potential behind the front, projected by brute force at one Laplace node.
+    distance, decay, s, order = 5.0, 0.18, 1.3 + 2.1j, 3
+    theta, when = 2 * np.pi * (np.arange(400) + 0.5) / 400, np.linspace(0.0, 14.0, 28001)[:, None]
+
+    def potential(r, since):
+        reach = np.sqrt(distance**2 + r * r - 2 * r * distance * np.cos(theta))
+        return -decay * (distance - 1) / reach * np.exp(-(since - (reach - at)) / decay)
+
+    at = np.sqrt(distance**2 + 1 - 2 * distance * np.cos(theta))
+    velocity = (potential(1 + 1e-5, when) - potential(1 - 1e-5, when)) / 2e-5
+    transform = np.trapezoid(velocity * np.exp(-s * when), when[:, 0], axis=0) * np.exp(-s * (at - distance + 1))
+    expected = 2 / 400 * np.sum(transform * np.cos(order * theta))
+    front = (distance - 1) / at * (1 - distance * np.cos(theta)) / at * np.exp(-s * (at - distance + 1))
+    front, afterflow = (2 / 400 * np.sum(shape * np.cos(order * theta)) for shape in (front, front / at))
+    found = PrintedPotential(distance, decay, impulse=False).acceleration(front, afterflow, s) / s / (s + 1 / decay)
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+    whole = PrintedPotential(distance, decay, impulse=True).acceleration(front, afterflow, s)
+    np.testing.assert_allclose(whole, decay * s * SphericalGeometry(distance).acceleration(front, afterflow, s), rtol=1e-14)
+
+
+def test_reversed_diffraction_takes_the_load_from_a_rigid_head():
+    grid, orders = LaplaceGrid(1e-2, 50), np.arange(81.0)
+    surface = RadialFunctions(grid.nodes, 1.0, orders)
+
+    def load(slips):
+        problem = slipped(BARE, slips)
+        wave = incident_wave(problem, BARE.source)
+        return grid.invert(wave.prepare(grid, orders)(surface, slice(None)) / (grid.nodes + 1.0), grid.lanczos()).sum(axis=0)
+
+    doubled, cancelled = load(frozenset()), load(frozenset({"diffraction-sign"}))
+    incident = SphericalGeometry(5.0).projections(grid, orders)[0] / (grid.nodes + 1.0)
+    np.testing.assert_allclose(doubled + cancelled, 2 * grid.invert(incident, grid.lanczos()).sum(axis=0), atol=1e-9)
+    assert abs(doubled[5] - 2.0) < 0.2
+    assert abs(cancelled[5]) < 0.2
+
+
+@pytest.mark.parametrize(("preset", "key", "modes"), [("active", "control-sign", 40), ("bare", "radiation-sign", 12)])
+def test_growth_is_that_of_a_root(preset, key, modes):
+    system = cx.presets.load(preset)
+    found = growth(system, frozenset({key}), modes)
+    problem, order = slipped(system.replace(absorbers=()), frozenset({key})), np.array([float(found.order)])
+
+    def determinant(s):
+        return complex(ModalSystem(problem, np.array([s]), order).determinant()[0, 0])
+
+    # Newton's method from the fastest of many starts on the line Re s = rate.
+    best = None
+    for start in found.rate + 1j * np.concatenate([[0.0], np.geomspace(0.1, 60.0, 60)]):
+        s = start
+        for _ in range(60):
+            step = 1e-6 * max(abs(s), 1.0)
+            slope = (determinant(s + step) - determinant(s - step)) / (2 * step)
+            change = determinant(s) / slope
+            s = s - change
+            if s.real <= 0.01 or abs(change) < 1e-10 * abs(s):
+                break
+        if s.real > 0.01 and abs(change) < 1e-8 * abs(s) and (best is None or s.real > best.real):
+            best = s
+    np.testing.assert_allclose(found.rate, best.real, rtol=1e-6)
+
+
+def test_what_is_stable_does_not_grow():
+    assert growth(BARE, frozenset({"radius-factor"}), 12) is None
+    assert growth(cx.presets.load("active"), frozenset({"permittivity"}), 12) is None
+
+
+def test_effects_are_those_of_the_runs():
+    studies = ((("radius-factor",), ("bare",)), (("control-sign",), ("active",)), (("permittivity",), ("active, standard permittivity",)))
+    shell, sign, permittivity = effects(TINY, studies)
+    plain, other = solved(BARE), simulate(BARE, TINY, frozenset({"radius-factor"}))
+    assert shell.corrected.inner == plain.summary().shells[0].stress.value
+    assert shell.slipped.outer_tail == other.summary().shells[-1].stress_tail.value
+    around = np.arange(0.0, 360.0, 360.0 / 40)  # exact for 16 orders
+    before, after = (np.asarray(r.stress("inner", angle=around)) for r in (plain, other))
+    np.testing.assert_allclose(shell.inner_change, np.linalg.norm(after - before) / np.linalg.norm(before), rtol=1e-10)
+    assert shell.change("inner") == pytest.approx(shell.slipped.inner / shell.corrected.inner - 1)
+    assert sign.slipped is None
+    assert sign.growth.rate > 1.0
+    assert permittivity.slipped.inner == pytest.approx(solved(cx.presets.load("active")).summary().shells[0].stress.value, rel=1e-12)
+    assert permittivity.corrected.inner != permittivity.slipped.inner
+    text = table([shell, sign])
+    assert f"{shell.slipped.inner / 1e6:.3f}" in text
+    assert "grows" in text
+    assert len({line.count("|") for line in text.splitlines()}) == 1
+
+
+def test_with_the_radius_factor_the_inner_tail_follows_the_papers_text():
+    # Extrema at t = 1.2, 1.7 and 3.1, and the inner shell stressed over twice as much as the outer; neither without it.
+    resolution = Resolution(duration=3.5, time_step=4e-3, modes=48)
+    ratios, instants = [], []
+    for slips in (frozenset(), frozenset({"radius-factor"})):
+        response = simulate(BARE, resolution, slips)
+        inner, outer = response.summary().shells
+        ratios.append(inner.stress.value / outer.stress.value)
+        tail = np.asarray(response.stress("inner", angle=[180.0]))[:, 0]
+        turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(tail))))
+        instants.append(response.time[turns[np.abs(tail[turns]) > 0.28 * np.abs(tail).max()]])
+    assert ratios[0] < 1.2
+    assert ratios[1] > 2.0
+    for expected in (1.21, 1.73, 3.10):
+        assert np.abs(instants[1] - expected).min() < 0.015
+    assert np.abs(instants[0] - 1.73).min() > 0.05
+    assert np.abs(instants[0] - 3.10).min() > 0.05
+
+
 def test_a_response_with_slips_is_not_saved(tmp_path):
     with pytest.raises(cx.InputError, match="other formulas"):
         simulate(BARE, TINY, frozenset({"control-sign"})).save(tmp_path / "run.nc")
@@ -145,6 +285,7 @@ def test_a_response_with_slips_is_not_saved(tmp_path):
         ({"radius-factor"}, cx.presets.load("iakovlev-filled"), "slips"),
         ({"incident-potential"}, BARE.replace(source=cx.PlaneShock(peak_pressure=1e4, decay_time=1e-4)), "source"),
         ({"control-sign"}, cx.presets.load("active"), "control"),
+        ({"radiation-sign"}, BARE, "order"),
     ],
 )
 def test_bad_input_is_refused(slips, system, where):

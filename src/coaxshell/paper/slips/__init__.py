@@ -3,7 +3,24 @@
 from __future__ import annotations
 
 from coaxshell.paper.slips.catalogue import SLIPS, Slip
+from coaxshell.paper.slips.effects import CASES, STUDIES, Effect, Stresses, effects, table
+from coaxshell.paper.slips.growth import Growth, growth
 from coaxshell.paper.slips.solving import CORRECTED, simulate, solve_each
 from coaxshell.paper.slips.switches import SWITCHED
 
-__all__ = ["CORRECTED", "SLIPS", "SWITCHED", "Slip", "simulate", "solve_each"]
+__all__ = [
+    "CASES",
+    "CORRECTED",
+    "SLIPS",
+    "STUDIES",
+    "SWITCHED",
+    "Effect",
+    "Growth",
+    "Slip",
+    "Stresses",
+    "effects",
+    "growth",
+    "simulate",
+    "solve_each",
+    "table",
+]

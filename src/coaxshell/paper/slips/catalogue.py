@@ -61,18 +61,17 @@ _ALL = (
         "Eqs. A.11, 5, 14, 20",
         "1/(R + z)^2 within the integral for zeta22, and 1/R^2 once more where zeta22 is used",
         "once",
-        "possible",
-        "It touches only how the sensors see high orders, on the inner shell alone (R = 0.5 m; the outer one has R = 1 m), and changes "
-        "the results by less than the paper's curves can show.",
+        "no effect",
+        "It touches only how piezoelectric layers see high orders, and on the inner shell alone (R = 0.5 m; the outer one has R = 1 m).",
     ),
     Slip(
         "printed-strain",
         "Eqs. A.1, A.3",
         "strain ((1 - z/R) dv/dtheta - w)/R: no curvature from w",
         "(dv/dtheta - w)/R - z (d2w/dtheta2 + dv/dtheta)/R^2, which Eqs. 3, 4, 18 and 19 have",
-        "implausible",
-        "The equations of motion that were integrated carry the full curvature, and a shell without bending stiffness in w is not stiff "
-        "enough at high orders.",
+        "no effect",
+        "The equations of motion that are said to be integrated have the full curvature; and shocks stretch these shells more than they "
+        "bend them, so that no curve would show it.",
     ),
     Slip(
         "radius-factor",
@@ -89,7 +88,7 @@ _ALL = (
         "I_m'(s) in the denominator of Xi^(i)",
         "I_m'(r1 s): the wall that moves is at r1",
         "implausible",
-        "The interior then answers its own wall only after the time 1 - r1, so its shell feels no water inside at first.",
+        "The water inside then answers its own wall only after the time 1 - r1, and feeds energy into the shell: the motion grows.",
     ),
     Slip(
         "interior-function",
@@ -132,8 +131,8 @@ _ALL = (
         "cos(m theta_n) outside the sum over n; read with n left at the last absorber, N",
         "inside the sum",
         "implausible",
-        "All absorbers would act where one of them sits. A loop that accumulates term by term, the natural way to program the sum, has "
-        "the cosine inside.",
+        "All forces would act where one absorber sits, while each reads the motion where it is: many undamped absorbers then feed energy "
+        "into the shells, and stresses grow far beyond what the paper shows for N = 25. For one absorber both readings agree.",
     ),
     Slip(
         "outside-sum-first",

@@ -60,3 +60,12 @@ def interior_function(ingredients: Ingredients) -> Ingredients:
         return factor * ingredients.felt_motion(problem, region, wall, radial)
 
     return replace(ingredients, felt_motion=felt)
+
+
+def radiation_sign(ingredients: Ingredients) -> Ingredients:
+    """Return the ingredients with the printed signs of P^(r,e) (B.13) and Xi_e (B.7) together: the radiated pressure changes its own."""
+
+    def felt(problem: Problem, region: int, wall: int, radial: Radial) -> Factor:
+        return (-1.0 if region == 2 else 1.0) * ingredients.felt_motion(problem, region, wall, radial)
+
+    return replace(ingredients, felt_motion=felt)

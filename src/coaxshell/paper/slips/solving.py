@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from coaxshell.errors import InputError
 from coaxshell.paper.runs import Report, Resolution
 from coaxshell.paper.runs import solve_each as solve_each_corrected
+from coaxshell.paper.slips.growth import growth
 from coaxshell.paper.slips.switches import slipped
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 CORRECTED: frozenset[str] = frozenset()
 """No slips: the theory manual's equations."""
 
+SELF_EXCITED = frozenset({"interior-derivative", "interior-function", "radiation-sign"})
+"""Slips under which a fluid need not be passive, so that growth is looked for; feedback is checked by the solver itself."""
+
 
 def simulate(system: System, resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Report | None = None) -> Response:
     """Return the response of a system with some slips turned on; without any, exactly :func:`coaxshell.simulate`'s.
@@ -26,7 +30,7 @@ def simulate(system: System, resolution: Resolution, slips: frozenset[str] = COR
     ------
     InputError
         If a slip is not known, the system is not the paper's kind, the engine is not the spectral one, or the slip makes the
-        feedback unstable within the duration.
+        system grow within the duration.
     """
     ((_, response),) = solve_each({"": system}, resolution, slips, progress)
     return response
@@ -67,4 +71,14 @@ def _prepared(system: System, resolution: Resolution, slips: frozenset[str]) -> 
     settings = Settings(**asdict(resolution))
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} knows no slips", 'use engine="spectral"')
-    return PreparedSystem(Prepared(slipped(system, slips), settings))
+    prepared = Prepared(slipped(system, slips), settings)
+    if slips & SELF_EXCITED:
+        assert isinstance(prepared.settings.modes, int)
+        fastest = growth(system, slips, prepared.settings.modes, 1.0 / settings.duration)
+        if fastest is not None:
+            raise InputError(
+                "slips",
+                f"{', '.join(sorted(slips))}: order {fastest.order} grows without bound, by e^({fastest.rate:.3g} t)",
+                f"use a duration below {1.0 / fastest.rate:.2g}",
+            )
+    return PreparedSystem(prepared)

@@ -44,6 +44,7 @@ _SWITCHES: Mapping[str, Callable[[Problem], Problem]] = MappingProxyType(
         "radius-factor": _formula(fluids.radius_factor),
         "interior-derivative": _formula(fluids.interior_derivative),
         "interior-function": _formula(fluids.interior_function),
+        "radiation-sign": _formula(fluids.radiation_sign),
         "incident-potential": _formula(partial(waves.printed_potential, impulse=False)),
         "incident-potential-impulse": _formula(partial(waves.printed_potential, impulse=True)),
         "diffraction-sign": _formula(waves.reversed_diffraction),
