@@ -105,6 +105,19 @@ def test_an_absorber_without_projection_is_one_whose_force_is_larger():
     same(response.solution.normal[:, 0], grid.invert(normal), 1e-9)
 
 
+@pytest.mark.parametrize("slips", [{"missing-projection"}, {"outside-sum"}, {"radius-factor", "missing-projection"}])
+def test_exact_and_marched_rings_agree(slips):
+    # A negligible cubic stiffness sends the ring through the interface march; without it the Laplace domain solves it exactly.
+    resolution = Resolution(duration=1.2, time_step=2e-3, modes=16)
+    law = {"mass": 10.0, "damping": 1e5, "linear_stiffness": 1e9}
+    exact, marched = (
+        simulate(BARE.replace(absorbers=cx.absorber_ring(5, **law, cubic_stiffness=cubic)), resolution, frozenset(slips))
+        for cubic in (0.0, 1.0)
+    )
+    for shell in ("inner", "outer"):
+        same(stress(marched, shell), stress(exact, shell), 2e-4)
+
+
 @pytest.mark.parametrize("cubic", [0.0, 1e20])
 def test_cosines_only_are_two_halves_of_an_absorber(cubic):
     law = {"mass": 10.0, "damping": 1e4, "linear_stiffness": 1e9, "cubic_stiffness": cubic}
