@@ -5,6 +5,7 @@ from __future__ import annotations
 from coaxshell.paper.slips.catalogue import SLIPS, Slip
 from coaxshell.paper.slips.effects import CASES, STUDIES, Effect, Stresses, effects, table
 from coaxshell.paper.slips.growth import Growth, growth
+from coaxshell.paper.slips.scattering import scattering_delay
 from coaxshell.paper.slips.solving import CORRECTED, simulate, solve_each
 from coaxshell.paper.slips.switches import SWITCHED
 
@@ -20,6 +21,7 @@ __all__ = [
     "Stresses",
     "effects",
     "growth",
+    "scattering_delay",
     "simulate",
     "solve_each",
     "table",

@@ -165,8 +165,9 @@ _ALL = (
         "Eq. B.13, P^(d)",
         "b_m(t)/sqrt(r)",
         "b_m(t - (r - 1))/sqrt(r)",
-        "no effect",
-        "At the shell, r = 1, both are the same: no load, displacement or stress depends on it, only pictures of the exterior field.",
+        "implausible",
+        "At the shell, r = 1, both are the same: no load, displacement or stress depends on it. Outside, the diffracted wave would be "
+        "everywhere at once, far ahead of the reflected front that the paper's snapshots are said to show.",
     ),
     Slip(
         "radiation-sign",
