@@ -1,0 +1,176 @@
+"""Runs of the reproduction: solved when first asked for, kept in memory and in a store, shared by figures and claims."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coaxshell.paper.fields import Fields, fields_of
+from coaxshell.paper.observed import Observed, observe
+from coaxshell.paper.runs import Report, Resolution, solve_each
+from coaxshell.paper.store import Store, key_of
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import Response
+
+Solver = Callable[["Mapping[str, System]", Resolution, "Report | None"], "Iterator[tuple[str, Response]]"]
+"""Solves systems in turn; :func:`coaxshell.paper.runs.solve_each` or one with slips turned on."""
+
+
+CORRECTED = "corrected"
+
+
+class NoFieldsError(Exception):
+    """Fields were asked of a variant that has none."""
+
+
+class Runs:
+    """Runs by system and resolution.
+
+    Parameters
+    ----------
+    resolution : Resolution
+        Of every run that is not asked for at another one.
+    solver : callable
+        From systems by name, a resolution and a report of progress to pairs of (name, response).
+    variant : str
+        Name of the model that the solver computes; "corrected" or another one in the store.
+    store : Store, optional
+        Where finished runs are kept.
+    has_fields : bool
+        Whether the pressure fields of its responses obey the model that was solved.
+    """
+
+    def __init__(
+        self,
+        resolution: Resolution | None = None,
+        *,
+        solver: Solver = solve_each,
+        variant: str = CORRECTED,
+        store: Store | None = None,
+        has_fields: bool = True,
+    ) -> None:
+        self.resolution = resolution or Resolution()
+        self.variant = variant
+        self._solver = solver
+        self._has_fields = has_fields
+        self._store = store
+        self._known: dict[str, Observed] = {}
+        self._fields: dict[str, Fields] = {}
+
+    def __call__(self, system: System, resolution: Resolution | None = None) -> Observed:
+        """Return the run of one system."""
+        return next(observed for _, observed in self.each({system.name or "run": system}, resolution=resolution))
+
+    def each(
+        self,
+        systems: Mapping[str, System],
+        progress: Report | None = None,
+        *,
+        resolution: Resolution | None = None,
+        peaks_only: bool = False,
+    ) -> Iterator[tuple[str, Observed]]:
+        """Yield (name, run) of each system in turn; those not known yet are solved.
+
+        Parameters
+        ----------
+        systems : mapping of str to System
+        progress : callable, optional
+            Called with the fraction done and "solving".
+        resolution : Resolution, optional
+        peaks_only : bool
+            Whether runs without histories will do.
+        """
+        settings = resolution or self.resolution
+        keys = {name: self._key(system, settings) for name, system in systems.items()}
+        missing = {name: systems[name] for name, key in keys.items() if self._find(key, peaks_only) is None}
+        solved = self._solver(missing, settings, progress) if missing else iter(())
+        for name, key in keys.items():
+            if name in missing:
+                named, response = next(solved)
+                if named != name:
+                    raise AssertionError(f"the solver gave {named!r} where {name!r} was due")
+                self._keep(key, observe(response, peaks_only=peaks_only))
+            yield name, self._known[key]
+        for _ in solved:  # lets the solver report that it is through
+            pass
+
+    def fields(self, system: System, progress: Report | None = None) -> Fields:
+        """Return what is kept of the fields of a system (:func:`coaxshell.paper.fields.fields_of`).
+
+        Raises
+        ------
+        NoFieldsError
+            The variant has none.
+        """
+        if not self._has_fields:
+            raise NoFieldsError(self.variant)
+        key = key_of("fields", self.variant, system.canonical(), asdict(self.resolution))
+        if key not in self._fields:
+            piece = self._store.get(key) if self._store else None
+            if piece is None:
+                ((_, response),) = self._solver({system.name: system}, self.resolution, None)
+                piece = fields_of(response, progress), {}
+                if self._store:
+                    self._store.put(key, *piece)
+            self._fields[key] = piece[0]
+        return self._fields[key]
+
+    def _key(self, system: System, resolution: Resolution) -> str:
+        return key_of("run", self.variant, system.canonical(), asdict(resolution))
+
+    def _find(self, key: str, peaks_only: bool) -> Observed | None:
+        found = self._known.get(key) or (self._load(key) if self._store else None)
+        if found is None or not (peaks_only or found.histories):
+            return None
+        self._known[key] = found
+        return found
+
+    def _keep(self, key: str, observed: Observed) -> None:
+        self._known[key] = observed
+        if self._store:
+            self._store.put(key, *packed(observed))
+
+    def _load(self, key: str) -> Observed | None:
+        piece = self._store.get(key) if self._store else None
+        return unpacked(*piece) if piece else None
+
+
+def packed(observed: Observed) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return a run as arrays by name and plain values."""
+    arrays = {"time": observed.time, "absorber": observed.absorber}
+    arrays |= {" ".join(name): values for name, values in observed.histories.items()}
+    arrays |= {f"circle {name}": values for name, values in observed.circle.items()}
+    values = {
+        "transit_time": observed.transit_time,
+        "modes": observed.modes,
+        "shells": {name: asdict(shell) for name, shell in observed.shells.items()},
+        "warnings": list(observed.warnings),
+    }
+    return arrays, values
+
+
+def unpacked(arrays: Mapping[str, Any], values: Mapping[str, Any]) -> Observed:
+    """Return the run that :func:`packed` took apart."""
+    from coaxshell.response.peaks import Peak
+    from coaxshell.response.summary import ShellSummary
+
+    def shell(plain: Mapping[str, Any]) -> ShellSummary:
+        whole: dict[str, Any] = {name: Peak(**value) if isinstance(value, dict) else value for name, value in plain.items()}
+        return ShellSummary(**whole)
+
+    split = {tuple(name.split()): np.asarray(array, dtype=np.float64) for name, array in arrays.items()}
+    return Observed(
+        time=split["time",],
+        transit_time=values["transit_time"],
+        modes=values["modes"],
+        shells={name: shell(plain) for name, plain in values["shells"].items()},
+        histories={(q, s, p): array for (q, s, p), array in ((k, a) for k, a in split.items() if len(k) == 3)},
+        circle={name[1]: array for name, array in split.items() if name[0] == "circle"},
+        absorber=split["absorber",],
+        warnings=tuple(values["warnings"]),
+    )

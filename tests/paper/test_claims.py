@@ -1,0 +1,156 @@
+"""The claims: every one gives finite numbers and a verdict, and the verdicts turn when the runs say otherwise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coaxshell.paper import Resolution
+from coaxshell.paper.claims import claims, judge
+from coaxshell.paper.claims.systems import preset
+from coaxshell.paper.known_runs import CORRECTED, Runs, packed, unpacked
+from coaxshell.paper.store import Store
+
+SMALL = Resolution(duration=2.5, time_step=1e-2, modes=16)
+BY_NAME = {claim.name: claim for claim in claims()}
+
+
+@pytest.fixture(scope="session")
+def runs(tmp_path_factory):
+    return Runs(SMALL, store=Store(tmp_path_factory.mktemp("runs")))
+
+
+class Changed:
+    """Runs of which some are changed: *how* gets (name, run) and returns the run that is told instead."""
+
+    def __init__(self, runs, how):
+        self.runs, self.how, self.resolution, self.variant = runs, how, runs.resolution, CORRECTED
+
+    def __call__(self, system, resolution=None):
+        return self.how(system.name, self.runs(system, resolution))
+
+    def each(self, systems, progress=None, **options):
+        for name, run in self.runs.each(systems, progress, **options):
+            yield name, self.how(name, run)
+
+
+def found(name, runs):
+    return judge(BY_NAME[name], {CORRECTED: runs}).corrected
+
+
+def test_there_are_many_claims_with_names_places_and_criteria():
+    assert len(BY_NAME) == len(claims()) >= 45
+    assert [claim.number for claim in claims()] == list(range(1, len(BY_NAME) + 1))
+    for claim in claims():
+        assert claim.place
+        assert claim.statement.endswith(".")
+        assert claim.criterion
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_a_claim_gives_finite_numbers_a_verdict_and_a_reason(runs, name):
+    finding = found(name, runs)
+    assert finding.verdict in ("holds", "holds in part", "does not hold")
+    assert finding.measured
+    assert all(math.isfinite(value) for value in finding.measured.values())
+    assert finding.why.endswith(".")
+
+
+def scaled(run, factor, shell=None):
+    histories = {key: values * (factor if shell in (None, key[1]) else 1.0) for key, values in run.histories.items()}
+    return replace(run, histories=histories)
+
+
+def with_shell(run, shell, **changes):
+    return replace(run, shells={**run.shells, shell: replace(run.shells[shell], **changes)})
+
+
+def test_the_peak_at_the_head_turns_the_claim_about_the_tail(runs):
+    def swap(name, run):
+        inner = run.shells["inner"]
+        return with_shell(run, "inner", stress_head=inner.stress_tail, stress_tail=inner.stress_head)
+
+    assert found("tail-bears-the-peak", runs).verdict == "holds"
+    assert found("tail-bears-the-peak", Changed(runs, swap)).verdict == "holds in part"
+
+
+def test_an_effect_of_a_soft_link_turns_the_claim_that_there_is_none(runs):
+    finding = found("soft-link-has-no-effect", Changed(runs, lambda name, run: run if name == "bare" else scaled(run, 1.2)))
+    assert finding.verdict == "does not hold"
+    assert min(finding.measured.values()) > 15.0
+
+
+def test_a_fifth_less_stress_makes_the_claim_about_25_hold(runs):
+    bare = runs(preset("bare")).shells["inner"]
+
+    def lowered(name, run):
+        stress = replace(bare.stress, value=0.8 * bare.stress.value)
+        return with_shell(run, "inner", stress=stress, stress_rms=0.8 * bare.stress_rms) if name == "25" else run
+
+    finding = found("twenty-per-cent-at-25", Changed(runs, lowered))
+    assert finding.verdict == "holds"
+    np.testing.assert_allclose(list(finding.measured.values()), 20.0, rtol=1e-12)
+
+
+def test_voltages_within_the_limit_make_the_claim_hold(runs):
+    def weak(name, run):
+        for shell, summary in run.shells.items():
+            if summary.actuator_voltage:
+                run = with_shell(run, shell, actuator_voltage=replace(summary.actuator_voltage, value=100.0))
+        return run
+
+    assert found("voltage-is-within-the-limit", runs).verdict == "does not hold"
+    assert found("voltage-is-within-the-limit", Changed(runs, weak)).verdict == "holds"
+
+
+def test_a_stronger_outer_shell_turns_the_claim_about_the_inner_one(runs):
+    assert found("inner-shell-is-stressed-more", Changed(runs, lambda name, run: scaled(run, 2.0, "outer"))).verdict == "does not hold"
+
+
+def test_a_late_start_turns_the_claim_about_arrival(runs):
+    late = Changed(runs, lambda name, run: replace(run, time=run.time + 0.3))
+    assert found("inner-head-begins-at-0-5", late).verdict == "does not hold"
+
+
+def test_runs_are_solved_once_and_read_back_alike(tmp_path):
+    from coaxshell.paper.runs import solve_each
+
+    solved = []
+
+    def solver(systems, resolution, progress):
+        solved.extend(systems)
+        return solve_each(systems, resolution, progress)
+
+    first = Runs(SMALL, solver=solver, store=Store(tmp_path))
+    systems = {"bare": preset("bare"), "absorbers": preset("absorbers")}
+    peaks = dict(first.each(systems, peaks_only=True))
+    assert not peaks["bare"].histories
+    whole = dict(first.each(systems))
+    assert whole["bare"].histories
+    again = dict(Runs(SMALL, solver=solver, store=Store(tmp_path)).each(systems))
+    assert solved == [*systems, *systems]
+    for name, run in whole.items():
+        assert again[name].shells == run.shells
+        assert again[name].warnings == run.warnings
+        for kept in (unpacked(*packed(run)), again[name]):
+            np.testing.assert_array_equal(kept.absorber, run.absorber)
+            assert kept.histories.keys() == run.histories.keys()
+            for key, values in run.histories.items():
+                np.testing.assert_array_equal(kept.histories[key], values)
+    Runs(replace(SMALL, modes=8), solver=solver, store=Store(tmp_path))(preset("bare"))
+    assert len(solved) == 5
+
+
+def test_a_broken_piece_counts_as_absent(tmp_path):
+    store = Store(tmp_path)
+    store.put("a", {"x": np.arange(3.0)}, {"y": 1})
+    arrays, values = store.get("a")
+    assert values == {"y": 1}
+    np.testing.assert_array_equal(arrays["x"], np.arange(3.0))
+    (tmp_path / "a.npz").write_bytes(b"PK\x03\x04 cut off")
+    assert store.get("a") is None
+    assert store.get("b") is None
+    assert not list(tmp_path.glob(".*"))
