@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         presets,
     )
     from coaxshell.response import PreparedSystem, Response, load_response, prepare, simulate
+    from coaxshell.studies import sweep
 
 _ROOMS = {
     "coaxshell.model": (
@@ -59,6 +60,7 @@ _ROOMS = {
         "Vacuum absorber_ring fluids materials presets"
     ),
     "coaxshell.response": "PreparedSystem Response load_response prepare simulate",
+    "coaxshell.studies": "sweep",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 
@@ -100,6 +102,7 @@ __all__ = [
     "prepare",
     "presets",
     "simulate",
+    "sweep",
 ]
 
 

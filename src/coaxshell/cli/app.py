@@ -18,6 +18,7 @@ from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
 from coaxshell.cli.snapshots import snapshots
 from coaxshell.cli.studio import studio
+from coaxshell.cli.sweep import sweep
 from coaxshell.cli.verify import verify
 
 app = typer.Typer(
@@ -49,5 +50,5 @@ def coaxshell(
         typer.echo(context.get_help())
 
 
-for _command in (run, presets, init, info, figure, snapshots, animate, export, verify, response_function, studio):
+for _command in (run, presets, init, info, figure, snapshots, animate, export, sweep, verify, response_function, studio):
     app.command()(_command)

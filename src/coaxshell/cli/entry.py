@@ -10,6 +10,7 @@ import traceback
 from collections.abc import Sequence
 from typing import Any
 
+from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.usage import is_usage_error, usage_text
 from coaxshell.cli.warnings import plain_physics_warnings
 from coaxshell.errors import InputError
@@ -54,6 +55,9 @@ def _explain(error: BaseException, debug: bool) -> int:
         traceback.print_exception(error)
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else FAILED
+    if isinstance(error, Interrupted):
+        _complain(str(error))
+        return INTERRUPTED
     if isinstance(error, InputError):
         _complain(str(error))
         return BAD_INPUT

@@ -23,3 +23,8 @@ RefinementOption = Annotated[
     str, typer.Option("--refinement", metavar="N", help="Solve at time-step/N and keep every N-th instant: for stiff absorbers.")
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]
+WorkersOption = Annotated[str | None, typer.Option("--workers", metavar="N", help="Processes; one a core unless given.")]
+DaskOption = Annotated[
+    str | None,
+    typer.Option("--dask", metavar="ADDRESS", help="Work on the Dask cluster whose scheduler is here, as in tcp://10.0.0.1:8786."),
+]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -12,23 +13,25 @@ _LINES = 10
 
 
 @contextmanager
-def progress(quiet: bool = False) -> Iterator[Report | None]:
-    """Yield a function of (fraction done, stage) that shows them, or None when nothing is to be shown."""
+def progress(quiet: bool = False, *, left: bool = False) -> Iterator[Report | None]:
+    """Yield a function of (fraction done, stage) that shows them, with the time *left* if asked; None when nothing is to be shown."""
     if quiet:
         yield None
     elif sys.stderr.isatty():
-        with _bar() as report:
+        with _bar(left) as report:
             yield report
     else:
-        yield _lines()
+        yield _lines(left)
 
 
 @contextmanager
-def _bar() -> Iterator[Report]:
+def _bar(left: bool) -> Iterator[Report]:
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (TextColumn("{task.description:<20}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    columns: tuple[ProgressColumn, ...] = (TextColumn("{task.description:<20}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    if left:
+        columns = (*columns, TextColumn("left"), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("solving", total=1.0)
 
@@ -38,15 +41,25 @@ def _bar() -> Iterator[Report]:
         yield report
 
 
-def _lines() -> Report:
+def _lines(left: bool) -> Report:
     """Return a report that writes a line whenever a stage passes another tenth."""
     last: dict[str, int] = {}
+    begun: dict[str, tuple[float, float]] = {}
 
     def report(fraction: float, stage: str) -> None:
+        begun.setdefault(stage, (time.monotonic(), fraction))
         tenth = int(min(max(fraction, 0.0), 1.0) * _LINES + 1e-9)
         if tenth > last.get(stage, 0):
             last[stage] = tenth
-            sys.stderr.write(f"{stage}: {100 * tenth // _LINES} %\n")
+            told = f", {_time_left(*begun[stage], fraction)} left" if left and fraction > begun[stage][1] else ""
+            sys.stderr.write(f"{stage}: {100 * tenth // _LINES} %{told}\n")
             sys.stderr.flush()
 
     return report
+
+
+def _time_left(begun: float, done_then: float, done: float) -> str:
+    """Return how long the rest takes at the pace so far; what was done before the start (a resumed study) does not count."""
+    seconds = round((time.monotonic() - begun) / (done - done_then) * (1.0 - done))
+    hours, minutes = seconds // 3600, seconds % 3600 // 60
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {seconds % 60} s" if minutes else f"{seconds} s"

@@ -16,6 +16,7 @@ from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
 from coaxshell.plotting.style import COLOURS, style
+from coaxshell.plotting.sweep import figure_sweep, plot_sweep
 
 __all__ = [
     "COLOURS",
@@ -36,12 +37,14 @@ __all__ = [
     "figure_named_curves",
     "figure_pressure_rms",
     "figure_snapshots",
+    "figure_sweep",
     "mark_peak",
     "plot_comparison",
     "plot_energy",
     "plot_field",
     "plot_history",
     "plot_named_curves",
+    "plot_sweep",
     "save_figure",
     "save_film",
     "style",

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from coaxshell.studies.cluster import dask_executor
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.structures import solve_each
+from coaxshell.studies.study_file import SweepStudy, read_study
+from coaxshell.studies.sweeping import sweep, sweep_design
 
-__all__ = ["Resolution", "solve_each"]
+__all__ = ["Resolution", "SweepStudy", "dask_executor", "read_study", "solve_each", "sweep", "sweep_design"]

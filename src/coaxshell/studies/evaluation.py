@@ -17,8 +17,8 @@ from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.structures import Structures, structure_of
 from coaxshell.studies.threads import one_blas_thread
 
-LARGEST_BATCH = 16
-"""Cases in one batch at most: what a killed worker has to do again."""
+LARGEST_BATCH = 4
+"""Cases in one batch at most: what is done again when a worker or the study is killed."""
 
 
 @dataclass(frozen=True)

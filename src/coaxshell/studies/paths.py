@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, get_args
 
@@ -59,7 +59,8 @@ def varied(system: System, changes: Mapping[str, Any]) -> System:
     """Return a system with the fields at the given paths changed, all at once; InputError says which and why not.
 
     Beyond :meth:`System.with_overrides`: a gain may be set where there is no control yet (the other one is then 0), and a property
-    of absorbers that are listed one by one (``absorbers.mass``) is set on each of them.
+    of absorbers that are listed one by one (``absorbers.mass``) is set on each of them; where there are none, ``absorbers.count``,
+    ``absorbers.mass`` and so on together describe a ring.
     """
     plain_changes: dict[str, Any] = {}
     controls: dict[str, Any] = {}
@@ -68,7 +69,7 @@ def varied(system: System, changes: Mapping[str, Any]) -> System:
         head, _, field = path.partition(".")
         if head == "control" and system.control is None and field:
             controls[field] = value
-        elif head == "absorbers" and isinstance(system.absorbers, tuple) and field in Absorber.model_fields:
+        elif head == "absorbers" and isinstance(system.absorbers, tuple) and field in _settable(system.absorbers):
             absorbers[field] = value
         else:
             plain_changes[path] = value
@@ -141,11 +142,17 @@ def _new_control(entries: Mapping[str, Any]) -> PDControl:
         raise InputError(f"control.{error.where}", error.problem, error.remedy) from None
 
 
-def _each(system: System, entries: Mapping[str, Any]) -> tuple[Absorber, ...]:
+def _settable(absorbers: tuple[Absorber, ...]) -> Collection[str]:
+    return Absorber.model_fields if absorbers else AbsorberRing.model_fields
+
+
+def _each(system: System, entries: Mapping[str, Any]) -> AbsorberRing | tuple[Absorber, ...]:
     assert not isinstance(system.absorbers, AbsorberRing)
-    if not system.absorbers:
-        raise InputError(f"absorbers.{next(iter(entries))}", "this system has no absorbers", "describe a ring of them first")
     try:
+        if not system.absorbers and "count" in entries:
+            return AbsorberRing(**entries)
+        if not system.absorbers:
+            raise InputError(next(iter(entries)), "this system has no absorbers", "give absorbers.count and absorbers.mass too, at least")
         return tuple(absorber.replace(**entries) for absorber in system.absorbers)
     except InputError as error:
         raise InputError(f"absorbers.{error.where}", error.problem, error.remedy) from None

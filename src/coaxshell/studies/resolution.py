@@ -19,6 +19,11 @@ class Resolution:
     engine: str = "spectral"
     refinement: int = 1
 
+    def __post_init__(self) -> None:
+        for name in ("duration", "time_step", "tolerance"):  # 1 and 1.0 are one resolution, also to a hash of its text
+            if type(getattr(self, name)) is int:
+                object.__setattr__(self, name, float(getattr(self, name)))
+
     def up_to(self, duration: float) -> Resolution:
         """Return the same, but no longer than *duration* transits."""
         return replace(self, duration=min(self.duration, duration))

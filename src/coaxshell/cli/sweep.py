@@ -1,0 +1,115 @@
+"""``coaxshell sweep``: a study file, computed."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from coaxshell.cli import options
+from coaxshell.cli.files import replacing, writable
+from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.progress import progress
+from coaxshell.cli.values import whole
+from coaxshell.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def sweep(
+    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what to vary, what to read: see docs/studies.md.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF. [default: STUDY.nc in this folder]")
+    ] = None,
+    csv: Annotated[Path | None, typer.Option("--csv", metavar="FILE.csv", help="Write a table too, one case a line.")] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", metavar="FILE", help="Draw it too (over one or two fields); .png, .pdf or .svg.")
+    ] = None,
+    store: Annotated[
+        Path | None,
+        typer.Option(
+            "--store", metavar="DIR", help="Keep every finished case here. [default: STUDY.store in this folder, removed when all is done]"
+        ),
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with what the store holds.")] = False,
+    workers: options.WorkersOption = None,
+    dask: options.DaskOption = None,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Compute a system at many points of some of its fields.
+
+    Interrupted, by Ctrl-C or anything else, it goes on with --resume.
+    """
+    target = writable(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
+    if csv is not None:
+        writable(csv, "--csv", (".csv",))
+    if figure is not None:
+        from coaxshell.plotting import FIGURE_SUFFIXES
+
+        writable(figure, "--figure", FIGURE_SUFFIXES)
+    number = None if workers is None else whole("--workers", workers)
+    if number is not None and dask is not None:
+        raise InputError("--workers", "has no effect with --dask, whose cluster has its own", "give one or the other")
+
+    from coaxshell.studies import SweepStudy, read_study, sweep_design
+
+    system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent)
+    if figure is not None and len(design.fields) > 2:
+        raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
+    folder = store or Path(f"{study.stem}.store")
+    with _kept(folder, len(design.cases)), _executor(dask) as executor, progress(quiet, left=True) as report:
+        dataset = sweep_design(
+            system, design, metrics, resolution, executor=executor, workers=number, store=folder, resume=resume, progress=report
+        )
+    _write(dataset, target, csv, figure)
+    if store is None:
+        shutil.rmtree(folder, ignore_errors=True)
+    _tell(dataset, target, csv, figure)
+
+
+@contextmanager
+def _executor(address: str | None) -> Iterator[Executor | None]:
+    if address is None:
+        yield None
+        return
+    from coaxshell.studies import dask_executor
+
+    with dask_executor(address) as executor:
+        yield executor
+
+
+@contextmanager
+def _kept(folder: Path, cases: int) -> Iterator[None]:
+    """Turn Ctrl-C into a sentence that says what is kept."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        done = sum(1 for path in folder.glob("*.json") if path.name != "study.json")
+        raise Interrupted(f"interrupted; {done} of {cases} cases are kept in {str(folder)!r}: go on with --resume") from None
+
+
+def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | None) -> None:
+    with replacing(target) as partial:
+        dataset.to_netcdf(partial, engine="h5netcdf")
+    if csv is not None:
+        from coaxshell.studies.table import write_csv
+
+        with replacing(csv) as partial:
+            write_csv(dataset, partial)
+    if figure is not None:
+        from coaxshell.plotting import figure_sweep, save_figure
+
+        save_figure(figure_sweep(dataset), figure)
+
+
+def _tell(dataset: xr.Dataset, *paths: Path | None) -> None:
+    from coaxshell.studies.table import best_cases
+
+    typer.echo(best_cases(dataset))
+    typer.echo("wrote " + ", ".join(str(path) for path in paths if path is not None))

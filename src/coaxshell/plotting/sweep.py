@@ -1,0 +1,158 @@
+"""A sweep drawn: curves over one field, maps over two, points of a sampled one."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.model.naming import suggestion
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.response.summary_text import PREFIXES
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_PREFIXED = ("Pa", "m", "V", "V/m", "N/m", "J/m", "s")
+_COLUMNS = 2
+_LARGEST = 6
+_TITLE = 42
+CASE = "case"
+
+
+def figure_sweep(dataset: xr.Dataset, metrics: Sequence[str] = ()) -> Figure:
+    """Draw every metric of a sweep in a panel of its own.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        What :func:`coaxshell.sweep` returned, over one or two fields (``dataset.sel(...)`` takes a slice of more).
+    metrics : sequence of str
+        Which ones; all, six at most, when left out.
+
+    Raises
+    ------
+    InputError
+        A metric is not there, or there are more than two fields.
+    """
+    known = json.loads(dataset.attrs.get("metrics", "[]"))
+    names = list(metrics) or known[:_LARGEST]
+    rows, columns = -(-len(names) // _COLUMNS), min(_COLUMNS, len(names))
+    with style():
+        figure = new_figure(PAGE_WIDTH if columns > 1 else 0.62 * PAGE_WIDTH, 2.7 * rows)
+        axes = figure.subplots(rows, columns, squeeze=False).flat
+        for ax, name in zip(axes, names, strict=False):
+            plot_sweep(dataset, name, ax=ax)
+        for ax in list(axes)[len(names) :]:
+            ax.remove()
+    return figure
+
+
+def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes:
+    """Draw one metric of a sweep and return the axes: a curve or points over one field, a map or coloured points over two.
+
+    Failed cases are left out of curves and points, and grey in maps.
+
+    Raises
+    ------
+    InputError
+        The metric is not there, or there are more than two fields.
+    """
+    known = json.loads(dataset.attrs.get("metrics", "[]"))
+    if metric not in known or metric not in dataset:
+        raise InputError("metric", f"{metric!r} is not in this sweep", suggestion(metric, known))
+    values = dataset[metric]
+    fields = [str(name) for name, coordinate in dataset.coords.items() if coordinate.ndim]
+    if not 1 <= len(fields) <= 2:
+        raise InputError("sweep", f"{len(fields)} fields vary", "one or two can be drawn: take a slice, as in dataset.sel(...)")
+    if ax is None:
+        with style():
+            ax = new_figure(0.62 * PAGE_WIDTH, 2.9).subplots()
+    factor, unit = _scale(values.to_numpy(), str(values.attrs.get("units", "")))
+    scaled = factor * values.to_numpy()
+    label = f"{metric} ({unit})" if unit else metric
+    if len(fields) == 1:
+        x = _axis(ax.xaxis, dataset[fields[0]])
+        order = np.argsort(x, kind="stable")
+        whole = values.dims == (CASE,)
+        ax.plot(x[order], scaled[order], color=COLOURS["blue"], marker="o", markersize=2.6, linestyle="none" if whole else "solid")
+        ax.set_ylabel(label)
+    else:
+        _two(ax, dataset, fields, scaled, label, mapped=values.dims != (CASE,))
+    ax.set_title(textwrap.fill(str(values.attrs.get("long_name", "")), _TITLE), loc="left")
+    return ax
+
+
+def _two(ax: Axes, dataset: xr.Dataset, fields: list[str], scaled: npt.NDArray[np.float64], label: str, *, mapped: bool) -> None:
+    if mapped:
+        fields = [str(name) for name in dataset[fields[0]].dims] + [str(name) for name in dataset[fields[1]].dims]
+    x, y = _axis(ax.xaxis, dataset[fields[0]]), _axis(ax.yaxis, dataset[fields[1]])
+    if mapped:
+        ax.set_facecolor("#BDBDBD")
+        right = np.argsort(x, kind="stable"), np.argsort(y, kind="stable")
+        table = np.ma.masked_invalid(scaled[np.ix_(*right)].T)
+        drawn = ax.pcolormesh(_edges(x[right[0]]), _edges(y[right[1]]), table, cmap="cividis")
+        ax.grid(visible=False)
+    else:
+        drawn = ax.scatter(x, y, c=scaled, cmap="cividis", s=12)  # type: ignore[assignment]
+    figure = ax.get_figure()
+    if figure is not None:
+        figure.colorbar(drawn, ax=ax, label=label)
+
+
+def _edges(centres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return the edges of cells about the centres, halfway between neighbours on the scale of the axis."""
+    logarithmic = _logarithmic(centres)
+    at = np.log(centres) if logarithmic else centres
+    if at.size == 1:
+        return np.array([centres[0] - 0.5, centres[0] + 0.5])
+    middle = 0.5 * (at[:-1] + at[1:])
+    edges = np.concatenate([[2 * at[0] - middle[0]], middle, [2 * at[-1] - middle[-1]]])
+    return np.exp(edges) if logarithmic else edges
+
+
+def _axis(axis: object, coordinate: xr.DataArray) -> npt.NDArray[np.float64]:
+    """Label an axis with a field; return its values, those that are no numbers as 0, 1, ... with their names at the ticks."""
+    unit = _pretty(str(coordinate.attrs.get("units", "1")))
+    raw = coordinate.to_numpy()
+    if raw.dtype.kind in "OUb":
+        names = list(dict.fromkeys(str(value) for value in raw))
+        axis.set_ticks(range(len(names)), names)  # type: ignore[attr-defined]
+        axis.set_label_text(str(coordinate.name))  # type: ignore[attr-defined]
+        return np.array([names.index(str(value)) for value in raw], dtype=np.float64)
+    values = raw.astype(np.float64)
+    axis.set_label_text(str(coordinate.name) if unit == "1" else f"{coordinate.name} ({unit})")  # type: ignore[attr-defined]
+    if _logarithmic(values):
+        axis._set_axes_scale("log")  # type: ignore[attr-defined]
+    return values
+
+
+def _logarithmic(values: npt.NDArray[np.float64]) -> bool:
+    """Return whether values are spread over decades rather than evenly."""
+    if values.min() <= 0 or values.max() < 30 * values.min():
+        return False
+    steps = np.diff(np.unique(values))
+    return bool(steps.size and steps.max() > 4 * steps.min())
+
+
+def _pretty(unit: str) -> str:
+    for plain, drawn in (("*", " "), ("^2", "²"), ("^3", "³"), ("^4", "⁴")):
+        unit = unit.replace(plain, drawn)
+    return unit
+
+
+def _scale(values: npt.NDArray[np.float64], unit: str) -> tuple[float, str]:
+    """Return the factor and the unit with an SI prefix that suit the largest magnitude."""
+    finite = np.abs(values[np.isfinite(values)])
+    largest = float(finite.max()) if finite.size else 0.0
+    if unit not in _PREFIXED or not largest:
+        return 1.0, "" if unit == "1" else _pretty(unit)
+    exponent = next((e for e in PREFIXES if largest >= 10.0**e), 0)
+    return 10.0**-exponent, f"{PREFIXES[exponent]}{unit}"

@@ -1,0 +1,79 @@
+"""The outcomes of a sweep as one labelled dataset, and what is to be said of its failures."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from coaxshell._version import __version__
+from coaxshell.model.system import System
+from coaxshell.studies.design import Design
+from coaxshell.studies.evaluation import Outcome
+from coaxshell.studies.metrics import Metric
+from coaxshell.studies.resolution import Resolution
+from coaxshell.studies.store import numerics
+
+CASE = "case"
+FAILURE, WARNINGS = "failure", "physics_warnings"
+
+
+def labelled(system: System, design: Design, metrics: Sequence[Metric], resolution: Resolution, outcomes: Sequence[Outcome]) -> xr.Dataset:
+    """Return one variable a metric, one coordinate a varied field, both with units; failed cases are NaN, ``failure`` says why.
+
+    The dimensions are the paths for a grid, else ``case``. It holds nothing of when or by whom it was computed: the same study
+    gives an identical dataset.
+    """
+    shape = design.shape
+    grid = design.points == "grid"
+    dims = tuple(field.path for field in design.fields) if grid else (CASE,)
+    coordinates = {
+        field.path: xr.Variable((field.path,) if grid else (CASE,), _column(values), {"units": field.units, "long_name": field.long_name})
+        for field, values in zip(design.fields, design.values, strict=True)
+    }
+    variables: dict[str, xr.Variable] = {}
+    table = np.array([outcome.values for outcome in outcomes], dtype=np.float64)
+    for metric, column in zip(metrics, table.T, strict=True):
+        variables[metric.name] = xr.Variable(dims, column.reshape(shape), {"units": metric.units, "long_name": metric.long_name})
+    for name, texts, long_name in (
+        (FAILURE, [outcome.reason for outcome in outcomes], "why a case has no values; empty where it has"),
+        (WARNINGS, ["; ".join(outcome.warnings) for outcome in outcomes], "physics warnings of a case"),
+    ):
+        variables[name] = xr.Variable(dims, np.array(texts, dtype=object).reshape(shape), {"long_name": long_name})
+    attributes = {
+        "title": f"sweep of {system.name or 'a system'} over {', '.join(field.path for field in design.fields)}",
+        "source": f"coaxshell {__version__}",
+        "numerics": numerics(),
+        "scenario": system.to_toml_string(),
+        "settings": json.dumps(resolution.arguments()),
+        "points": design.points,
+        "metrics": json.dumps([metric.name for metric in metrics]),
+    }
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _column(values: Sequence[Any]) -> np.ndarray[Any, Any]:
+    kinds = {type(value) for value in values}
+    if kinds <= {float, int}:
+        return np.array(values, dtype=np.int64 if kinds == {int} else np.float64)
+    if kinds == {bool}:
+        return np.array(values, dtype=bool)
+    return np.array([value if isinstance(value, str) else repr(value) for value in values], dtype=object)
+
+
+def failures_text(outcomes: Sequence[Outcome]) -> str:
+    """Return what is to be said of the failed cases, alike ones together, in one sentence; "" if there are none."""
+    groups: dict[str, list[int]] = {}
+    for number, outcome in enumerate(outcomes):
+        if outcome.failed:
+            groups.setdefault(re.sub(r"[-+]?\d[\d.e+-]*", "#", outcome.reason), []).append(number)
+    if not groups:
+        return ""
+    total = sum(len(numbers) for numbers in groups.values())
+    parts = [f"{len(numbers)} like case {numbers[0]}: {outcomes[numbers[0]].reason}" for numbers in groups.values()]
+    shown = parts[:5] + ([f"and {len(parts) - 5} other reasons"] if len(parts) > 5 else [])
+    return f"{total} of {len(outcomes)} cases failed and are NaN, the variable {FAILURE!r} says why; {'; '.join(shown)}"

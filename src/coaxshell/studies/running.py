@@ -1,0 +1,105 @@
+"""Evaluate the cases of a study: those that a store holds already are read, the others are worked on and kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+
+from coaxshell.errors import InputError
+from coaxshell.model.system import System
+from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
+from coaxshell.studies.executors import capacity, completed
+from coaxshell.studies.metrics import Metric
+from coaxshell.studies.resolution import Resolution
+from coaxshell.studies.store import Store
+
+Report = Callable[[float, str], None]
+
+
+def run_cases(
+    systems: Sequence[System | InputError],
+    metrics: tuple[Metric, ...],
+    resolution: Resolution,
+    *,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    store: Store | None = None,
+    progress: Report | None = None,
+) -> list[Outcome]:
+    """Return the outcome of every case, in order.
+
+    Parameters
+    ----------
+    systems : sequence of System, or of the InputError for which there is none
+    metrics : tuple of Metric
+    resolution : Resolution
+    executor : concurrent.futures.Executor, optional
+    workers : int, optional
+        Processes of a pool of our own, one a core by default; 1 works in this process.
+    store : Store, optional
+        Where finished cases are kept, and looked for first.
+    progress : callable, optional
+        Called with the fraction of cases done and a word.
+
+    Raises
+    ------
+    InputError
+        A function of the user's cannot be sent to another process.
+    KeyboardInterrupt
+        As it came; what was finished is in the store.
+    """
+    workers_at_once = capacity(executor, workers)
+    if executor is not None or workers_at_once > 1:
+        _sendable(metrics)
+    outcomes: dict[int, Outcome] = {}
+    keys: dict[int, str] = {}
+    for number, system in enumerate(systems):
+        if isinstance(system, InputError):
+            outcomes[number] = failure(metrics, str(system))
+        elif store is not None:
+            keys[number] = store.key(system, resolution)
+            found = store.load(keys[number])
+            if found is not None:
+                outcomes[number] = found
+    report = progress or (lambda fraction, stage: None)
+    report(len(outcomes) / len(systems), "cases")
+    waiting = [Case(i, system) for i, system in enumerate(systems) if i not in outcomes and isinstance(system, System)]
+    planned = batches(waiting, metrics, resolution, workers_at_once)
+    processes = 1 if executor is None and len(planned) == 1 else workers
+    try:
+        for batch, result in completed(_still_needed(planned, store, keys, outcomes), evaluate, executor=executor, workers=processes):
+            for case, outcome in zip(batch.cases, _told(result, batch), strict=True):
+                outcomes[case.number] = outcome
+                if store is not None:
+                    store.save(keys[case.number], outcome)
+            report(len(outcomes) / len(systems), "cases")
+    finally:
+        forget()
+    return [outcomes[number] for number in range(len(systems))]
+
+
+def _still_needed(planned: Sequence[Batch], store: Store | None, keys: dict[int, str], outcomes: dict[int, Outcome]) -> Iterator[Batch]:
+    """Yield batches without the cases that another writer has finished in the meantime."""
+    for batch in planned:
+        if store is not None:
+            for case in batch.cases:
+                found = store.load(keys[case.number])
+                if found is not None:
+                    outcomes[case.number] = found
+        left = tuple(case for case in batch.cases if case.number not in outcomes)
+        if left:
+            yield Batch(left, batch.metrics, batch.resolution)
+
+
+def _told(result: list[Outcome] | Exception, batch: Batch) -> list[Outcome]:
+    if isinstance(result, Exception):
+        reason = f"{type(result).__name__}: {result}"
+        return [failure(batch.metrics, reason, expected=False) for _ in batch.cases]
+    return result
+
+
+def _sendable(metrics: Sequence[Metric]) -> None:
+    for metric in metrics:
+        if metric.function is not None and not metric.function.pickles:
+            remedy = "define it at the top of a module, or use workers=1"
+            raise InputError(f"metrics.{metric.name}", "this function cannot be sent to another process", remedy)

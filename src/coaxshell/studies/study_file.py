@@ -1,0 +1,126 @@
+"""Study files: a base scenario, what to vary, what to read, at which resolution, as TOML. Sweeps here; other studies extend it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+from pydantic import Field
+
+from coaxshell.errors import InputError
+from coaxshell.model import presets, toml
+from coaxshell.model.base import Described, within
+from coaxshell.model.naming import suggestion
+from coaxshell.model.system import System
+from coaxshell.studies.design import Design, design_of
+from coaxshell.studies.metrics import Metric, metrics_of
+from coaxshell.studies.paths import varied
+from coaxshell.studies.resolution import Resolution
+
+MetricTexts = list[str] | dict[str, str]
+
+
+class ResolutionEntry(Described):
+    """Describe the resolution of every run of a study; entries as the options of ``coaxshell run``."""
+
+    duration: float = 5.0
+    """How long, in transits a/c_e."""
+    time_step: float = 1e-3
+    """Time step, in the same unit."""
+    modes: int | Literal["auto"] = 150
+    """Highest circumferential order."""
+    tolerance: float = 1e-3
+    """Relative error that "auto" aims at."""
+    engine: str = "spectral"
+    """"spectral" or "direct"."""
+    refinement: int = 1
+    """Each run is made at time_step/refinement."""
+
+    def checked(self) -> Resolution:
+        """Return it as the resolution of runs; InputError if no run accepts it."""
+        resolution = Resolution(**self.model_dump())
+        try:
+            resolution.check()
+        except InputError as error:
+            raise within("resolution", error) from None
+        return resolution
+
+
+class Study(Described):
+    """Describe what every study has: a base system and a resolution. Kinds of studies are subclasses."""
+
+    scenario: str
+    """A preset, or a .toml file beside the study."""
+    changes: dict[str, Any] = Field(default_factory=dict, alias="set")
+    """Changes of the scenario by dotted path."""
+    resolution: ResolutionEntry = ResolutionEntry()
+    """Of every run."""
+
+    def system(self, folder: Path) -> System:
+        """Return the base system; InputError if there is none, or a change is not allowed. Files are relative to *folder*."""
+        if self.scenario in presets.names():
+            base = presets.load(self.scenario)
+        elif Path(self.scenario).suffix.lower() == ".toml":
+            try:
+                base = System.from_toml(folder / self.scenario)
+            except InputError as error:
+                raise within("scenario", error) from None
+        else:
+            remedy = suggestion(self.scenario, presets.names())
+            raise InputError("scenario", f"there is no preset {self.scenario!r}", f"{remedy}, or a .toml file")
+        try:
+            return varied(base, flat(self.changes))
+        except InputError as error:
+            raise within("set", error) from None
+
+
+class SweepStudy(Study):
+    """Describe a sweep."""
+
+    over: dict[str, Any]
+    """What to vary: values by dotted path."""
+    metrics: MetricTexts
+    """What to read: names, or a table of names of your own."""
+    points: str = "grid"
+    """"grid", "zip", "latin-hypercube" or "sobol"."""
+    samples: int | None = None
+    """Number of sampled points."""
+    seed: int = 0
+    """Makes sampled points repeatable."""
+
+    def parts(self, folder: Path) -> tuple[System, Design, tuple[Metric, ...], Resolution]:
+        """Return system, design, metrics and resolution, all checked; InputError names what is wrong."""
+        system = self.system(folder)
+        design = design_of(system, flat(self.over), self.points, self.samples, self.seed)
+        return system, design, metrics_of(self.metrics, system, str(folder)), self.resolution.checked()
+
+
+S = TypeVar("S", bound=Study)
+
+
+def read_study(path: str | Path, kind: type[S]) -> S:
+    """Return the study of a file.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not TOML, or has an entry that is missing, unknown or of the wrong kind.
+    """
+    try:
+        data = tomllib.loads(toml.read(Path(path)))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(str(path), str(error), "the text must be valid TOML") from None
+    return kind.model_validate(data)
+
+
+def flat(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return {path: value} of nested tables: ``absorbers.count = 3`` and ``"absorbers.count" = 3`` are the same to a reader."""
+    found: dict[str, Any] = {}
+    for key, value in tables.items():
+        if isinstance(value, Mapping) and not {"from", "to"} & set(value) and "type" not in value:
+            found |= {f"{key}{inner if inner.startswith('[') else '.' + inner}": item for inner, item in flat(value).items()}
+        else:
+            found[key] = value
+    return found

@@ -1,0 +1,133 @@
+"""Sweeps: a system at many points of some of its fields, read by some metrics."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import Any, Literal
+
+import xarray as xr
+
+from coaxshell.errors import InputError, PhysicsWarning
+from coaxshell.model.system import System
+from coaxshell.studies.design import Design, Points, design_of
+from coaxshell.studies.labelled import failures_text, labelled
+from coaxshell.studies.metrics import Metric, Metrics, metrics_of
+from coaxshell.studies.paths import varied
+from coaxshell.studies.resolution import Resolution
+from coaxshell.studies.running import run_cases
+from coaxshell.studies.store import Store
+
+
+def sweep(
+    system: System,
+    over: Mapping[str, Any],
+    metrics: Metrics = ("inner.peak_stress", "outer.peak_stress"),
+    *,
+    points: Points = "grid",
+    samples: int | None = None,
+    seed: int = 0,
+    duration: float = 5.0,
+    time_step: float = 1e-3,
+    modes: int | Literal["auto"] = 150,
+    tolerance: float = 1e-3,
+    refinement: int = 1,
+    engine: str = "spectral",
+    executor: Executor | None = None,
+    workers: int | None = None,
+    store: str | Path | None = None,
+    resume: bool = False,
+    progress: Callable[[float, str], None] | None = None,
+) -> xr.Dataset:
+    """Return metrics of a system at many points of some of its fields.
+
+    Cases that differ only in their absorbers share their kernels, prepared once a worker. A case that fails is NaN, with its
+    reason in the variable ``failure``, and all failures are told in one warning at the end.
+
+    Parameters
+    ----------
+    system : System
+        The base of all cases.
+    over : mapping of dotted path to values
+        See :func:`coaxshell.studies.design.design_of`: ``{"absorbers.count": range(51), "source.peak_pressure": ["10 kPa", "20 kPa"]}``.
+    metrics : sequence, or mapping of name to metric
+        Names such as ``inner.peak_stress`` (:mod:`coaxshell.studies.metrics`), and functions from a Response to a number.
+    points : str
+        "grid" (every combination), "zip" (lists side by side), "latin-hypercube" or "sobol" (*samples* points between two ends).
+    samples, seed : int
+        Number of sampled points, and what makes them repeatable.
+    duration, time_step, modes, tolerance, refinement, engine
+        As those of :func:`coaxshell.simulate`.
+    executor : concurrent.futures.Executor, optional
+        Where the work is done; a pool of processes of our own otherwise.
+    workers : int, optional
+        Processes of that pool, one a core by default; 1 works in this process.
+    store : str or Path, optional
+        Folder in which every finished case is kept; safe to kill at any moment, safe for several writers.
+    resume : bool
+        Go on with what the store holds.
+    progress : callable, optional
+        Called with the fraction of cases done and a word.
+
+    Returns
+    -------
+    Dataset
+        One variable a metric, units and long names in the attributes; dims are the paths for a grid, else ``case``.
+
+    Raises
+    ------
+    InputError
+        Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``, ``Store``.
+    """
+    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement)
+    resolution.check()
+    design = design_of(system, over, points, samples, seed)
+    asked = metrics_of(metrics, system)
+    return sweep_design(
+        system, design, asked, resolution, executor=executor, workers=workers, store=store, resume=resume, progress=progress
+    )
+
+
+def sweep_design(
+    system: System,
+    design: Design,
+    metrics: tuple[Metric, ...],
+    resolution: Resolution,
+    *,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    store: str | Path | None = None,
+    resume: bool = False,
+    progress: Callable[[float, str], None] | None = None,
+) -> xr.Dataset:
+    """Return the dataset of a sweep whose parts have been checked; see :func:`sweep`."""
+    systems = [_case(system, changes) for changes in design.cases]
+    refused = [item for item in systems if isinstance(item, InputError)]
+    if len(refused) == len(systems):
+        raise InputError(f"over.{refused[0].where}", f"no case is possible: {refused[0].problem}", refused[0].remedy)
+    kept = Store(Path(store), study_parts(system, design, metrics, resolution), metrics, resume=resume) if store is not None else None
+    outcomes = run_cases(systems, metrics, resolution, executor=executor, workers=workers, store=kept, progress=progress)
+    message = failures_text(outcomes)
+    if message:
+        warnings.warn(message, PhysicsWarning, stacklevel=3)
+    return labelled(system, design, metrics, resolution, outcomes)
+
+
+def study_parts(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Resolution) -> dict[str, Any]:
+    """Return what tells one sweep from another, as plain data by part."""
+    over = {field.path: [repr(value) for value in values] for field, values in zip(design.fields, design.values, strict=True)}
+    return {
+        "scenario": system.canonical(),
+        "points": [design.points, over],
+        "metrics": {metric.name: metric.identity for metric in metrics},
+        "resolution": resolution.arguments(),
+    }
+
+
+def _case(system: System, changes: Mapping[str, Any]) -> System | InputError:
+    try:
+        return varied(system, changes)
+    except InputError as error:
+        return error
