@@ -158,7 +158,14 @@ def _tidied(unit: str) -> str:
     return re.sub(r"(?<=[A-Za-z])(-?\d)", r"**\1", plain)  # "m2" and "m-2" are powers; pint wants them spelt out
 
 
+_LONGEST_UNIT = 64
+# pint computes the numbers in a unit exactly: "9**9**9**9" would take it for ever. Units need no powers of numbers, nor large exponents.
+_ENDLESS = re.compile(r"[\d⁰¹²³⁴-⁹]{3,}|[\d⁰¹²³⁴-⁹]\s*\)*\s*(\*\*|\^)")
+
+
 def _parsed(unit: str) -> Any | None:
+    if len(unit) > _LONGEST_UNIT or _ENDLESS.search(unit):
+        return None
     try:
         return _registry().parse_units(_tidied(unit), as_delta=True)
     except Exception:  # noqa: BLE001 - pint raises many kinds, down to the tokenizer's own; all mean "not a unit"

@@ -7,6 +7,7 @@ import os
 import uuid
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -14,6 +15,8 @@ from coaxshell.errors import InputError
 from coaxshell.response.dataset import ARRAYS, format_problem, from_dataset, to_dataset
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution
+
+_LONGEST_SCENARIO = 8_000_000
 
 UNREADABLE = (OSError, ValueError, KeyError, TypeError, RuntimeError)
 """What HDF5 and xarray raise on files that are cut short, damaged, or something else altogether."""
@@ -95,6 +98,27 @@ def load_solution(path: str | Path) -> ModalSolution:
             return from_dataset(dataset.load())
         except InputError as error:
             raise InputError(str(path), f"holds a scenario that this version does not accept: {error}") from error
+        except UNREADABLE as error:
+            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
+
+
+def scenario(path: str | Path) -> tuple[str, dict[str, Any]]:
+    """Return the description (TOML) and the settings of a file, without reading its arrays.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_solution`.
+    """
+    with _opened(path) as dataset:
+        try:
+            text = dataset["scenario"]
+            if text.size != 1 or text.nbytes > _LONGEST_SCENARIO:
+                raise ValueError(f"a scenario of {text.nbytes} bytes")
+            settings = json.loads(dataset.attrs["settings"])
+            if not isinstance(settings, dict):
+                raise TypeError("settings that are not a table")
+            return str(text.item()), settings
         except UNREADABLE as error:
             raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import logging
 
+from starlette.applications import Starlette
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import Message, Receive, Scope, Send
 
 from coaxshell.studio.refusals import RefusedError
 
@@ -35,12 +36,12 @@ class Guard:
 
     Parameters
     ----------
-    app : ASGI application
+    app : Starlette
     hosts : tuple of str
         What the header Host may be, with the port.
     """
 
-    def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
+    def __init__(self, app: Starlette, hosts: tuple[str, ...]) -> None:
         self.app, self.hosts = app, hosts
         self.origins = tuple(f"http://{host}" for host in hosts)
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import errno
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 
 import uvicorn
 
 from coaxshell.errors import InputError
 from coaxshell.studio.app import create_app
+from coaxshell.studio.guard import Guard
 
 ADDRESS = "127.0.0.1"
 
@@ -31,8 +33,10 @@ def serve(port: int, ready: Callable[[str], None]) -> None:
     """
     with listening(port) as listener:
         port = listener.getsockname()[1]
-        config = uvicorn.Config(create_app(port), log_level="warning", lifespan="on", server_header=False, timeout_graceful_shutdown=2)
-        _Server(config, lambda: ready(f"http://{ADDRESS}:{port}/")).run(sockets=[listener])
+        app = create_app(port)
+        config = uvicorn.Config(app, log_level="warning", lifespan="on", server_header=False, timeout_graceful_shutdown=2)
+        with suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
+            _Server(config, app, lambda: ready(f"http://{ADDRESS}:{port}/")).run(sockets=[listener])
 
 
 def listening(port: int) -> socket.socket:
@@ -53,13 +57,17 @@ def listening(port: int) -> socket.socket:
 
 
 class _Server(uvicorn.Server):
-    """Tells when it is ready."""
+    """Tells when it is ready, and ends the streams of events first of all, since they would never end by themselves."""
 
-    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+    def __init__(self, config: uvicorn.Config, guard: Guard, ready: Callable[[], None]) -> None:
         super().__init__(config)
-        self._ready = ready
+        self._guard, self._ready = guard, ready
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
             self._ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        self._guard.app.state.studio.close_streams()
+        await super().shutdown(sockets)

@@ -1,0 +1,115 @@
+"""Bodies of requests, read within bounds, and their entries, checked."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, NoReturn
+
+from starlette.requests import Request
+
+from coaxshell.studio import limits
+from coaxshell.studio.refusals import RefusedError
+
+NAME_LENGTH = 64
+
+
+async def read_body(request: Request, most: int = limits.BODY_BYTES) -> bytes:
+    """Return the body; RefusedError as soon as it is longer than allowed."""
+    announced = request.headers.get("content-length", "0")
+    if announced.isdigit() and int(announced[:20]) > most:
+        raise _too_large(most)
+    parts, total = [], 0
+    async for part in request.stream():
+        total += len(part)
+        if total > most:
+            raise _too_large(most)
+        parts.append(part)
+    return b"".join(parts)
+
+
+async def read_table(request: Request) -> dict[str, Any]:
+    """Return a JSON body, which must be an object; RefusedError otherwise."""
+    if request.headers.get("content-type", "").split(";")[0].strip().lower() != "application/json":
+        raise RefusedError(415, "wrong-type", "Content-Type", "is not JSON", "send application/json")
+    return parse_table(await read_body(request))
+
+
+def parse_table(body: bytes) -> dict[str, Any]:
+    """Return JSON text as a dict; RefusedError for anything that is not a JSON object of finite numbers and moderate depth."""
+    try:
+        if depth_of(body) > limits.NESTING:
+            raise ValueError(f"nested deeper than {limits.NESTING} levels")
+        data = json.loads(body.decode("utf-8"), parse_constant=_constant)
+    except (ValueError, RecursionError) as error:
+        raise RefusedError(400, "malformed", "body", f"is not JSON: {str(error)[:120]}", "send one JSON object in UTF-8") from None
+    if not isinstance(data, dict):
+        raise RefusedError(400, "malformed", "body", "is not a JSON object", "send one JSON object in UTF-8")
+    return data
+
+
+def depth_of(text: bytes) -> int:
+    """Return an upper bound of the depth of nesting: the largest number of brackets open at once, those in texts counted too."""
+    depth = most = 0
+    for byte in text:
+        if byte in b"[{":
+            depth += 1
+            most = max(most, depth)
+        elif byte in b"]}":
+            depth -= 1
+    return most
+
+
+def name_of(data: dict[str, Any], entry: str) -> str:
+    """Return a short name such as a client's; RefusedError otherwise."""
+    value = data.get(entry)
+    if not isinstance(value, str) or not is_name(value):
+        raise bad(entry, value, f"give 1 to {NAME_LENGTH} letters, digits, - or _")
+    return value
+
+
+def is_name(value: str) -> bool:
+    """Tell whether a text is a short name."""
+    return 0 < len(value) <= NAME_LENGTH and value.isascii() and value.replace("-", "a").replace("_", "a").isalnum()
+
+
+def whole_of(data: dict[str, Any], entry: str, least: int, most: int, default: int | None = None) -> int:
+    """Return a whole number within bounds, also from a text of digits; RefusedError otherwise."""
+    value = data.get(entry, default)
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 18:
+        value = int(value)
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise bad(entry, value, f"give a whole number from {least} to {most}")
+    return value
+
+
+def number_of(data: dict[str, Any], entry: str, least: float, most: float, default: float | None = None) -> float:
+    """Return a number within bounds, also from a text; RefusedError otherwise."""
+    value = data.get(entry, default)
+    try:
+        number = float("nan") if isinstance(value, bool) or value is None else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = float("nan")
+    if not least <= number <= most:
+        raise bad(entry, value, f"give a number from {least:g} to {most:g}")
+    return number
+
+
+def one_of(data: dict[str, Any], entry: str, allowed: tuple[str, ...], default: str | None = None) -> str:
+    """Return one of some texts; RefusedError otherwise."""
+    value = data.get(entry, default)
+    if not isinstance(value, str) or value not in allowed:
+        raise bad(entry, value, f"must be one of {', '.join(allowed)}")
+    return value
+
+
+def bad(where: str, value: object, remedy: str) -> RefusedError:
+    """Return the refusal of an entry."""
+    return RefusedError(400, "bad-request", where, f"{value!r:.60} is not allowed" if value is not None else "is missing", remedy)
+
+
+def _constant(text: str) -> NoReturn:
+    raise ValueError(f"{text} is not a finite number")
+
+
+def _too_large(most: int) -> RefusedError:
+    return RefusedError(413, "too-large", "body", "is too large", f"at most {most / 1e6:g} MB")

@@ -1,0 +1,68 @@
+"""A bounded cache: the least recently used go first when the bytes run out."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+T = TypeVar("T")
+
+
+class Cache(Generic[T]):
+    """Keep values by key up to a number of bytes in all.
+
+    Parameters
+    ----------
+    most : int
+        Bytes.
+    size : callable
+        Bytes of a value; asked again at every use, because prepared structures grow with it.
+    """
+
+    def __init__(self, most: int, size: Callable[[T], int]) -> None:
+        self.most, self.size = most, size
+        self._held: OrderedDict[Hashable, tuple[T, int]] = OrderedDict()
+
+    def get(self, key: Hashable) -> T | None:
+        """Return a value, or None."""
+        found = self._held.get(key)
+        if found is None:
+            return None
+        self._held.move_to_end(key)
+        return found[0]
+
+    def put(self, key: Hashable, value: T) -> None:
+        """Keep a value, or weigh it again; the oldest others leave for it. One that is too large alone is not kept."""
+        self._held[key] = (value, self.size(value))
+        self._held.move_to_end(key)
+        while self.bytes > self.most:
+            self._held.popitem(last=False)
+
+    @property
+    def bytes(self) -> int:
+        """Bytes of all that is kept."""
+        return sum(size for _, size in self._held.values())
+
+    def __len__(self) -> int:
+        return len(self._held)
+
+
+def held_bytes(thing: Any, seen: set[int] | None = None) -> int:
+    """Return the bytes of all arrays that an object holds, directly or through its parts; views count as what they view."""
+    seen = set() if seen is None else seen
+    if id(thing) in seen or isinstance(thing, str | bytes | int | float | complex | type) or thing is None:
+        return 0
+    seen.add(id(thing))
+    if isinstance(thing, np.ndarray):
+        return held_bytes(thing.base, seen) if isinstance(thing.base, np.ndarray) else thing.nbytes
+    if isinstance(thing, dict):
+        return sum(held_bytes(part, seen) for part in thing.values())
+    if isinstance(thing, list | tuple):
+        return sum(held_bytes(part, seen) for part in thing)
+    if type(thing).__module__.startswith("coaxshell.") and not callable(thing):
+        slots = [getattr(thing, name, None) for name in getattr(type(thing), "__slots__", ())]
+        return held_bytes([*vars(thing).values(), *slots] if hasattr(thing, "__dict__") else slots, seen)
+    return 0

@@ -1,0 +1,155 @@
+"""A response as the arrays and bars that the page draws."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.model import RigidShell, Shell
+from coaxshell.response import Response
+from coaxshell.response.labels import shell_name
+from coaxshell.response.peaks import Peak
+from coaxshell.response.summary import Summary
+from coaxshell.studio.arrays import Item, Packed, packed
+
+QUANTITIES = {
+    "stress": ("hoop stress", "Pa"),
+    "displacement": ("displacement, inward", "m"),
+    "sensor_voltage": ("sensor voltage", "V"),
+    "actuator_voltage": ("actuator voltage", "V"),
+    "absorber_force": ("absorber force, inward", "N/m"),
+}
+"""What is given at head and tail of each shell: label and unit."""
+
+BARS = {
+    "stress_head": ("peak stress at the head", "Pa"),
+    "stress_tail": ("peak stress at the tail", "Pa"),
+    "stress": ("peak stress anywhere", "Pa"),
+    "stress_rms": ("RMS stress", "Pa"),
+    "displacement_head": ("peak displacement at the head", "m"),
+    "displacement_tail": ("peak displacement at the tail", "m"),
+    "sensor_voltage": ("peak sensor voltage", "V"),
+    "actuator_voltage": ("peak actuator voltage asked for", "V"),
+}
+
+
+def curves(response: Response, seconds: float) -> Packed:
+    """Return header and arrays of a run as docs/studio-api.md says."""
+    system, count = response.system, len(response.system.shells)
+    summary = response.summary()
+    absorbers = _absorbers(response)
+    settings = response.settings
+    limits = {shell.name: shell.actuator_limit for shell in summary.shells}
+    header = {
+        "ok": True,
+        "resolution": {name: getattr(settings, name) for name in ("duration", "time_step", "modes", "refinement")},
+        "seconds": seconds,
+        "transit_time_seconds": summary.transit_time,
+        "name": system.name,
+        "shells": [
+            {
+                "index": index,
+                "name": shell_name(index, count),
+                "radius": shell.radius,
+                "rigid": isinstance(shell, RigidShell),
+                "actuator_limit": limits.get(shell_name(index, count)),
+            }
+            for index, shell in enumerate(system.shells)
+        ],
+        "absorbers": absorbers,
+        "bars": _bars(response, summary),
+        "estimates": {
+            "stress": [_finite(value) for value in response.estimates.modal_stress],
+            "displacement": [_finite(value) for value in response.estimates.modal_displacement],
+            "time_window": _finite(response.estimates.time_window),
+        },
+        "warnings": list(response.warnings),
+    }
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
+
+
+def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]:
+    head = response.system.sources[0].angle
+    ends = [head, head + 180.0]
+    items: dict[str, Item] = {}
+    for index in range(len(response.system.shells)):
+        for quantity in _given(response, index):
+            values = np.asarray(getattr(response, quantity)(index, angle=ends), dtype=np.float32).T
+            items[f"{quantity}/{index}"] = Item(values, QUANTITIES[quantity][1])
+    if response.system.absorber_list:
+        forces = np.asarray(response.absorber_force())
+        for index in range(len(response.system.shells)):
+            for side, first in ((0, index), (1, index - 1)):  # a shell is the inner one of the gap outside it, the outer one of that inside
+                pair = _nearest(response, head, first)
+                if pair is not None and f"absorber_force/{index}" not in items:
+                    items[f"absorber_force/{index}"] = Item(forces[list(pair), side], "N/m")
+    return items
+
+
+def _given(response: Response, index: int) -> list[str]:
+    shell = response.system.shells[index]
+    if not isinstance(shell, Shell):
+        return []
+    found = ["stress", "displacement"]
+    if shell.sensor is not None:
+        found.append("sensor_voltage")
+    if index in response.system.controlled_shells and shell.sensor is not None and shell.actuator is not None:
+        found.append("actuator_voltage")
+    return found
+
+
+def _absorbers(response: Response) -> dict[str, Any]:
+    listed = response.system.absorber_list
+    pair = _nearest(response, response.system.sources[0].angle, None)
+    return {
+        "count": len(listed),
+        "angles": [absorber.angle for absorber in listed],
+        "inner_shells": [absorber.inner_shell for absorber in listed],
+        "head": None if pair is None else pair[0],
+        "tail": None if pair is None else pair[1],
+    }
+
+
+def _nearest(response: Response, head: float, inner_shell: int | None) -> tuple[int, int] | None:
+    """Return the numbers of the absorbers nearest to head and tail, of one gap or of all; None without any."""
+    numbers = [n for n, one in enumerate(response.system.absorber_list) if inner_shell in (None, one.inner_shell)]
+    if not numbers:
+        return None
+    listed = response.system.absorber_list
+
+    def nearest(angle: float) -> int:
+        return min(numbers, key=lambda n: round(abs((listed[n].angle - angle + 180.0) % 360.0 - 180.0), 9))
+
+    return nearest(head), nearest(head + 180.0)
+
+
+def _bars(response: Response, summary: Summary) -> list[dict[str, Any]]:
+    count = len(response.system.shells)
+    numbers = {shell_name(index, count): index for index in range(count)}
+    bars: list[dict[str, Any]] = []
+    for shell in summary.shells:
+        for name, (label, unit) in BARS.items():
+            value: Peak | float | None = getattr(shell, name)
+            if value is None:
+                continue
+            told = _peak(value) if isinstance(value, Peak) else {"value": _finite(value), "time": None, "angle": None}
+            bars.append({"shell": numbers[shell.name], "name": name, "label": label, "unit": unit, **told})
+    for name, label, unit in (
+        ("absorber_displacement", "peak absorber displacement", "m"),
+        ("absorber_force", "peak absorber force", "N/m"),
+    ):
+        largest = getattr(summary, name)
+        if largest is not None:
+            bars.append({"shell": None, "name": name, "label": label, "unit": unit, "value": largest, "time": None, "angle": None})
+    return bars
+
+
+def _peak(peak: Peak) -> dict[str, Any]:
+    return {"value": _finite(peak.value), "time": peak.time, "angle": peak.angle}
+
+
+def _finite(value: float | npt.NDArray[np.float64]) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None

@@ -1,0 +1,106 @@
+"""From what a page sends to a system, and back: JSON or TOML, normalised, with the numbers that follow from it at once."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from coaxshell.errors import InputError
+from coaxshell.model import RigidShell, Shell, System
+from coaxshell.model.toml import loads
+from coaxshell.studio import limits
+
+
+def system_of(data: dict[str, Any]) -> System:
+    """Return the system of a request's ``system`` (table) or ``toml`` (text); InputError when it is not one or too large."""
+    text = data.get("toml")
+    if isinstance(text, str):
+        return _checked(_parsed(text))
+    table = data.get("system")
+    if not isinstance(table, dict):
+        raise InputError("system", "is missing" if table is None else f"{table!r:.60} is not a system", "give a table of its entries")
+    return _checked(table)
+
+
+def _parsed(text: str) -> dict[str, Any]:
+    if max(text.count("["), text.count("{")) > 4_000 or _deepest(text) > limits.NESTING:
+        raise InputError("TOML", "is nested too deeply", f"at most {limits.NESTING} levels")
+    try:
+        return loads(text)
+    except RecursionError:
+        raise InputError("TOML", "is nested too deeply", f"at most {limits.NESTING} levels") from None
+
+
+def _deepest(text: str) -> int:
+    depth = most = 0
+    for letter in text:
+        depth += (letter in "[{") - (letter in "]}")
+        most = max(most, depth)
+    return max(most, max((line.count(".") for line in text.splitlines() if line.lstrip().startswith("[")), default=0))
+
+
+def _checked(table: dict[str, Any]) -> System:
+    limits.check_raw(table)
+    try:
+        system = System.model_validate(table)
+    except InputError:
+        raise
+    except (OverflowError, ValueError, RecursionError, ArithmeticError) as error:
+        raise InputError("system", f"cannot be read ({type(error).__name__})", "give finite numbers of usual size") from None
+    limits.check_system(system)
+    return system
+
+
+def normalised(system: System) -> dict[str, Any]:
+    """Return a system as plain JSON in SI, from which an equal one is read."""
+    return dict(system.model_dump(mode="json"))
+
+
+def told(system: System) -> dict[str, Any]:
+    """Return the answer to a valid description."""
+    return {"ok": True, "system": normalised(system), "toml": system.to_toml_string(), "derived": derived(system)}
+
+
+def derived(system: System) -> list[dict[str, Any]]:
+    """Return what follows from a description without solving it: name, label, value, unit."""
+    transit = system.reference_radius / system.exterior.sound_speed
+    rows = [("transit_time", "transit time a/c", transit, "s")]
+    count = len(system.shells)
+    names = {0: "inner shell", count - 1: "outer shell"} if count > 1 else {0: "shell"}
+    shell_mass = 0.0
+    for index, shell in enumerate(system.shells):
+        name = names.get(index, f"shell {index}")
+        if isinstance(shell, RigidShell):
+            continue
+        mass = _mass(shell)
+        shell_mass += mass
+        rows += [
+            (f"mass/{index}", f"mass of the {name}", mass, "kg/m"),
+            (f"thickness/{index}", f"thickness of the {name}", shell.thickness, "m"),
+        ]
+        rows += [(f"slenderness/{index}", f"radius by thickness of the {name}", shell.radius / shell.thickness, "")]
+    added = sum(absorber.mass for absorber in system.absorber_list)
+    rows += [("shell_mass", "mass of all shells", shell_mass, "kg/m"), ("absorber_mass", "mass of all absorbers", added, "kg/m")]
+    if shell_mass:
+        rows.append(("absorber_share", "absorbers by shells", added / shell_mass, ""))
+    for index, source in enumerate(system.sources):
+        of = "" if len(system.sources) == 1 else f" of source {index}"
+        rows.append((f"peak_pressure/{index}", f"free-field peak at the head{of}", _peak(source.pulse), "Pa"))
+        distance = system.source_distance(source)
+        if distance is not None:
+            rows.append((f"distance/{index}", f"distance from the axis{of}", distance, "m"))
+    return [{"name": name, "label": label, "value": value, "unit": unit} for name, label, value, unit in rows if math.isfinite(value)]
+
+
+def _mass(shell: Shell) -> float:
+    """Return the mass of a shell (kg/m): sum of rho pi (r_o^2 - r_i^2) over the layers."""
+    inner, total = shell.inner_radius, 0.0
+    for layer in shell.layers:
+        outer = inner + layer.thickness
+        total += layer.material.density * math.pi * (outer**2 - inner**2)
+        inner = outer
+    return total
+
+
+def _peak(pulse: Any) -> float:
+    return float(pulse.peak)

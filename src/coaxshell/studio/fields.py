@@ -1,0 +1,107 @@
+"""The pressure around the shells over a whole run: computed once by a worker into a file, and served from there in slices."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.model import System
+from coaxshell.plotting.field import absorber_places, ring_radii
+from coaxshell.plotting.field_scales import field_scales
+from coaxshell.plotting.frames import FieldView, Frames, field_frames, gathered
+from coaxshell.solver.settings import Settings
+from coaxshell.studio import worker
+from coaxshell.studio.arrays import Item, Packed, packed
+
+Rings = dict[int, npt.NDArray[np.float32]]
+"""Stress by number of the shell."""
+
+LEVELS = 127
+"""Steps of a byte on either side of no pressure."""
+
+
+def film(system: System, settings: Settings, every: int, size: int, half_width: float, path: Path) -> tuple[dict[str, Any], Rings]:
+    """Write the field at every so many instants of a run to a file; return what the page needs to play it, and the shells' stress.
+
+    The file is a .npy of the pressure over ``scale`` as float16, shape (K, size, size); the stress is in Pa, shape (K, 360) each.
+    """
+    response = worker.answer(system, settings)
+    view = FieldView(half_width, size)
+    frames = gathered(field_frames(response, response.time[::every], view, progress=worker.report))
+    scales = field_scales([frames])
+    largest = float(np.max(np.abs(frames.pressure), initial=0.0)) or 1.0
+    pressure = np.empty((len(frames), size, size), np.float16)
+    for index in range(len(frames)):
+        pressure[index] = frames.field(index) / largest
+    with path.open("wb") as file:
+        np.save(file, pressure, allow_pickle=False)
+    rings = {i: ring.astype(np.float32) for i, ring in enumerate(frames.stress) if ring is not None}
+    about = {
+        **_told(system, frames, scales.pressure, scales.stress),
+        "every": every,
+        "size": size,
+        "half_width": half_width,
+        "scale": largest,
+    }
+    return about, rings
+
+
+def _told(system: System, frames: Frames, pressure: float, stress: float) -> dict[str, Any]:
+    milliseconds = frames.milliseconds
+    transit = 1e-3 * float(milliseconds[-1] / frames.time[-1]) if len(frames) > 1 else 0.0
+    x, y = absorber_places(system) if system.absorber_list else (np.empty(0), np.empty(0))
+    return {
+        "frames": len(frames),
+        "time": [float(time) for time in frames.time],
+        "transit_time_seconds": transit,
+        "pressure_limit": float(pressure),
+        "stress_limit": float(stress),
+        "radii": [float(radius) for radius in ring_radii(system)],
+        "absorbers": [[float(a), float(b)] for a, b in zip(x, y, strict=True)],
+    }
+
+
+def frames_of(path: Path, about: dict[str, Any], rings: Rings, start: int, count: int, kind: str) -> Packed:
+    """Return a slice of a film as ``uint8`` or ``float16``."""
+    chosen = slice(start, min(start + count, about["frames"]))
+    held: npt.NDArray[np.float16] = np.load(path, mmap_mode="r", allow_pickle=False)[chosen]
+    scale = about["scale"]
+    pressure: npt.NDArray[Any] = np.array(held)
+    if kind == "uint8":
+        scale = about["pressure_limit"] / LEVELS
+        pressure = bytes_of(np.asarray(held, dtype=np.float32) * (about["scale"] / scale))
+    time = np.asarray(about["time"][chosen])
+    items = {"pressure": Item(pressure, "Pa", {"scale": scale}), "time": Item(time, "transits")}
+    items |= {f"stress/{i}": Item(ring[chosen], "Pa") for i, ring in rings.items()}
+    return packed({"start": start, "frames": len(time), "half_width": about["half_width"]}, items)
+
+
+def bytes_of(levels: npt.NDArray[np.floating[Any]]) -> npt.NDArray[np.uint8]:
+    """Return q = 128 + level, rounded and kept within 1 to 255."""
+    return np.asarray(np.clip(np.rint(levels), -LEVELS, LEVELS) + 128, dtype=np.uint8)
+
+
+def point(system: System, settings: Settings, x: float, y: float) -> Packed:
+    """Return the pressure history at a point, lengths in a."""
+    response = worker.answer(system, settings)
+    pressure = np.asarray(response.pressure(x=[x], y=[y], time=response.time, progress=worker.report)).reshape(-1)
+    radius = float(np.hypot(x, y))
+    inside = sum(radius >= ring for ring in ring_radii(system))
+    count = len(system.shells)
+    region = "exterior" if inside == count else "interior" if inside == 0 else "gap" if count == 2 else f"gap {inside}"
+    return packed({"x": x, "y": y, "region": region}, {"time": Item(response.time, "transits"), "pressure": Item(pressure, "Pa")})
+
+
+def energy(system: System, settings: Settings, every: int) -> Packed:
+    """Return the energy balance of a run."""
+    balance = worker.answer(system, settings).energy(every, worker.report)
+    entries = [
+        {"name": str(name), "label": str(values.attrs["long_name"]), "role": values.attrs["role"], "group": values.attrs["group"]}
+        for name, values in balance.data_vars.items()
+    ]
+    items = {str(name): Item(np.asarray(values), str(values.attrs["units"])) for name, values in balance.data_vars.items()}
+    closure = float(np.max(np.abs(balance["closure_relative"])))
+    return packed({"entries": entries, "closure": closure}, {"time": Item(np.asarray(balance["time"]), "transits"), **items})

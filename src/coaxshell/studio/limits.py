@@ -1,0 +1,122 @@
+"""What one request may ask for: above it, a clear answer instead of a machine that is brought to its knees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from coaxshell.errors import InputError
+from coaxshell.model import Sampled, Shell, System
+from coaxshell.solver.settings import Settings
+
+BODY_BYTES = 1_000_000
+UPLOAD_BYTES = 64_000_000
+NESTING = 24
+
+SHELLS, LAYERS, ABSORBERS, SOURCES, SAMPLES = 6, 12, 200, 8, 20_000
+PREVIEW = {"duration": 5.0, "time_step": 4e-3, "modes": 60, "refinement": 1}
+FULL = {"duration": 5.0, "time_step": 1e-3, "modes": 150, "refinement": 1}
+PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
+MODES, STEPS, REFINEMENT = 300, 20_000, 8
+MODE_STEPS = 3_000_000
+"""Orders times steps times refinement: memory and time of a run grow with it."""
+
+FIELD_VALUES, FRAME_VALUES, FIELD_BYTES = 30_000_000, 8_000_000, 500_000_000
+LIVE_WAITING, JOBS_WAITING, JOBS_OF_CLIENT, JOBS_KEPT, STREAMS = 120, 24, 6, 64, 200
+RUNS, SLOTS = 4_000, 4_000
+
+
+def table() -> dict[str, int]:
+    """Return the limits that a page needs to know."""
+    return {
+        "shells": SHELLS,
+        "layers": LAYERS,
+        "absorbers": ABSORBERS,
+        "sources": SOURCES,
+        "samples": SAMPLES,
+        "modes": MODES,
+        "steps": STEPS,
+        "refinement": REFINEMENT,
+        "mode_steps": MODE_STEPS,
+        "preview_modes": PREVIEW_MODES,
+        "preview_steps": PREVIEW_STEPS,
+        "body_bytes": BODY_BYTES,
+        "upload_bytes": UPLOAD_BYTES,
+    }
+
+
+def check_raw(data: Mapping[str, Any]) -> None:
+    """Raise InputError for a description that is too large to be read, or that names a file of this machine."""
+    absorbers = data.get("absorbers")
+    for index, item in enumerate(absorbers if isinstance(absorbers, list) else [absorbers]):
+        count = item.get("count") if isinstance(item, dict) else None
+        if isinstance(count, int) and count > ABSORBERS:
+            path = f"absorbers[{index}].count" if isinstance(absorbers, list) else "absorbers.count"
+            raise _above(path, count, ABSORBERS, "absorbers")
+    for name, most in (("absorbers", ABSORBERS), ("shells", SHELLS), ("source", SOURCES)):
+        value = data.get(name)
+        if isinstance(value, list) and len(value) > most:
+            raise _above(name, len(value), most, name)
+    source = data.get("source")
+    for index, item in enumerate(source if isinstance(source, list) else [source]):
+        pulse = item.get("pulse") if isinstance(item, dict) else None
+        where = f"source[{index}].pulse" if isinstance(source, list) else "source.pulse"
+        if isinstance(pulse, dict) and "file" in pulse:
+            raise InputError(f"{where}.file", "is not read here", "give the samples themselves, as time and pressure")
+
+
+def check_system(system: System) -> None:
+    """Raise InputError for a system larger than the studio solves."""
+    if len(system.shells) > SHELLS:
+        raise _above("shells", len(system.shells), SHELLS, "shells")
+    for index, shell in enumerate(system.shells):
+        if isinstance(shell, Shell) and len(shell.layers) > LAYERS:
+            raise _above(f"shells[{index}].layers", len(shell.layers), LAYERS, "layers")
+    if len(system.absorber_list) > ABSORBERS:
+        raise _above("absorbers", len(system.absorber_list), ABSORBERS, "absorbers")
+    if len(system.sources) > SOURCES:
+        raise _above("source", len(system.sources), SOURCES, "sources")
+    for index, source in enumerate(system.sources):
+        if isinstance(source.pulse, Sampled) and len(source.pulse.time) > SAMPLES:
+            path = f"source[{index}]" if isinstance(system.source, tuple) else "source"
+            raise _above(f"{path}.pulse.time", len(source.pulse.time), SAMPLES, "samples")
+
+
+def settings_of(given: object, *, live: bool) -> Settings:
+    """Return the settings of a resolution, ``"preview"``, ``"full"`` or a table; InputError if it is not allowed or too fine."""
+    if given in ("preview", "full"):
+        given = PREVIEW if given == "preview" else FULL
+    if not isinstance(given, dict):
+        raise InputError("resolution", f"{given!r:.60} is not allowed", "must be 'preview', 'full' or a table")
+    for name in given:
+        if name not in PREVIEW:
+            raise InputError(f"resolution.{name}", "is not an entry of the resolution", f"allowed: {', '.join(PREVIEW)}")
+    wanted = {**PREVIEW, **given}
+    for name in ("duration", "time_step"):
+        if isinstance(wanted[name], int) and not isinstance(wanted[name], bool) and abs(wanted[name]) < 1e15:
+            wanted[name] = float(wanted[name])
+        if not isinstance(wanted[name], float):
+            raise InputError(
+                f"resolution.{name}", f"{wanted[name]!r:.60} is not allowed", "give a finite number greater than 0 (transits a/c_e)"
+            )
+    if wanted["modes"] == "auto":
+        raise InputError("resolution.modes", "'auto' is not allowed", f"give a whole number from 1 to {MODES}")
+    try:
+        settings = Settings(**wanted)
+    except InputError as error:
+        raise InputError(f"resolution.{error.where}", error.problem, error.remedy) from None
+    modes, steps = int(wanted["modes"]), settings.steps * settings.refinement
+    most_modes, most_steps = (PREVIEW_MODES, PREVIEW_STEPS) if live else (MODES, STEPS)
+    if modes > most_modes:
+        raise _above("resolution.modes", modes, most_modes, "orders")
+    if steps > most_steps:
+        raise _above("resolution.time_step", steps, most_steps, "time steps")
+    if settings.refinement > REFINEMENT:
+        raise _above("resolution.refinement", settings.refinement, REFINEMENT, "steps a step")
+    if modes * steps > MODE_STEPS:
+        raise _above("resolution", modes * steps, MODE_STEPS, "orders times steps")
+    return settings
+
+
+def _above(where: str, found: int, most: int, what: str) -> InputError:
+    return InputError(where, f"{found:,} {what} are too many here", f"at most {most:,}")

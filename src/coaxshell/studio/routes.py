@@ -1,0 +1,178 @@
+"""Descriptions and live solves."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from coaxshell.errors import InputError
+from coaxshell.model import System
+from coaxshell.solver.settings import Settings
+from coaxshell.studio import arrays, bodies, descriptions, limits, links, refusals, worker
+from coaxshell.studio.downloads import described
+from coaxshell.studio.refusals import RefusedError
+from coaxshell.studio.state import Run, Studio
+
+MOST_REVISION = 2**53
+
+
+def studio_of(request: Request) -> Studio:
+    """Return the server's state."""
+    studio: Studio = request.app.state.studio
+    if studio.closing:
+        raise RefusedError(503, "closing", "server", "is ending", "start it again")
+    return studio
+
+
+async def schema(request: Request) -> Response:
+    """Answer with all that a form is made from."""
+    from coaxshell.studio.schema import schema as content
+
+    return JSONResponse(await run_in_threadpool(content))
+
+
+async def validate(request: Request) -> Response:
+    """Answer with the normalised description or its first problem."""
+    return await conversation(await bodies.read_table(request))
+
+
+async def conversation(data: dict[str, Any], **more: Any) -> Response:
+    """Return the answer to a description, valid or not, with further entries."""
+    try:
+        answer = await run_in_threadpool(lambda: descriptions.told(descriptions.system_of(data)))
+    except InputError as error:
+        return JSONResponse(refusals.told(error))
+    return JSONResponse({**answer, **more})
+
+
+def wanted(data: dict[str, Any], *, live: bool) -> tuple[System, Settings]:
+    """Return system and settings of a request; InputError when they are not allowed."""
+    settings = limits.settings_of(data.get("resolution", "preview"), live=live)
+    return descriptions.system_of(data), settings
+
+
+async def solve(request: Request) -> Response:
+    """Answer with the curves of a system, or 204 when a newer revision has come."""
+    studio, data = studio_of(request), await bodies.read_table(request)
+    client, name = bodies.name_of(data, "client"), bodies.name_of(data, "slot")
+    revision = bodies.whole_of(data, "revision", 0, MOST_REVISION)
+    slot = studio.slot(client, name)
+    if revision < slot.revision:
+        return Response(status_code=204)
+    slot.revision = revision
+    if slot.work is not None:
+        studio.workers.drop(slot.work)
+        slot.work = None
+    try:
+        run = studio.run_of(*await run_in_threadpool(lambda: wanted(data, live=True)))
+        if revision < slot.revision:
+            return Response(status_code=204)
+        content = studio.curves.get(run.name)
+        if content is None:
+            slot.work = work = studio.workers.submit(worker.solve, *run.pair, place=run.place)
+            content = await work.future
+            studio.curves.put(run.name, content)
+    except InputError as error:
+        return JSONResponse(refusals.told(error))
+    except asyncio.CancelledError:
+        if slot.revision == revision and not studio.closing:
+            raise
+        return Response(status_code=204)
+    if revision < slot.revision:
+        return Response(status_code=204)
+    return arrays.answer(content, client=client, slot=name, revision=revision, run=run.name)
+
+
+async def run(request: Request) -> Response:
+    """Answer with the curves of a run."""
+    studio = studio_of(request)
+    found = studio.run(request.path_params["run"])
+    return await of_run(found, studio.curves_of(found))
+
+
+async def of_run(run: Run, content: Any) -> Response:
+    """Return what a worker makes of a run, or why it cannot."""
+    try:
+        return arrays.answer(await content, run=run.name)
+    except InputError as error:
+        raise RefusedError.of(error) from None
+
+
+async def energy(request: Request) -> Response:
+    """Answer with the energy balance of a run."""
+    from coaxshell.studio import fields
+
+    studio = studio_of(request)
+    found = studio.run(request.path_params["run"])
+    every = bodies.whole_of(dict(request.query_params), "every", 1, limits.STEPS, 10)
+    return await of_run(found, studio.workers.submit(fields.energy, *found.pair, every, place=found.place, live=False).future)
+
+
+async def point(request: Request) -> Response:
+    """Answer with the pressure history at a point."""
+    from coaxshell.studio import fields
+
+    studio = studio_of(request)
+    found = studio.run(request.path_params["run"])
+    query = dict(request.query_params)
+    x, y = (bodies.number_of(query, name, -20.0, 20.0) for name in ("x", "y"))
+    return await of_run(found, studio.workers.submit(fields.point, *found.pair, x, y, place=found.place).future)
+
+
+async def link(request: Request) -> Response:
+    """Answer with the fragment of a link that holds a description."""
+    data = await bodies.read_table(request)
+    unknown = [name for name in data if name not in links.ENTRIES]
+    if unknown or data.get("v") != links.VERSION:
+        raise bodies.bad(unknown[0] if unknown else "v", data.get("v"), f"give {', '.join(links.ENTRIES)}, with v = {links.VERSION}")
+    return JSONResponse({"fragment": await run_in_threadpool(lambda: links.fragment(data))})
+
+
+async def open_link(request: Request) -> Response:
+    """Answer with the description in a link, checked as any other."""
+    data = await bodies.read_table(request)
+    content = await run_in_threadpool(lambda: links.opened(data.get("fragment")))
+    return await conversation(content, resolution=content.get("resolution"), view=content.get("view"))
+
+
+async def upload(request: Request) -> Response:
+    """Answer with the description in an uploaded file."""
+    studio = studio_of(request)
+    kind = request.headers.get("content-type", "").split(";")[0].strip().lower()
+    if kind == "application/toml":
+        try:
+            return await conversation({"toml": (await bodies.read_body(request)).decode("utf-8")})
+        except UnicodeDecodeError:
+            return JSONResponse(refusals.told(InputError("file", "is not text in UTF-8", "give a TOML file")))
+    if kind != "application/x-netcdf":
+        raise RefusedError(415, "wrong-type", "Content-Type", "is neither TOML nor NetCDF", "send application/toml or application/x-netcdf")
+    path = studio.file("nc")
+    try:
+        await run_in_threadpool(path.write_bytes, await bodies.read_body(request, limits.UPLOAD_BYTES))
+        text, settings = await studio.workers.submit(described, path).future
+    except InputError as error:
+        return JSONResponse(refusals.told(error))
+    finally:
+        path.unlink(missing_ok=True)
+    resolution = {name: settings[name] for name in limits.PREVIEW if name in settings}
+    return await conversation({"toml": text}, resolution=resolution)
+
+
+def routes() -> list[BaseRoute]:
+    """Return these routes."""
+    return [
+        Route("/api/schema", schema),
+        Route("/api/validate", validate, methods=["POST"]),
+        Route("/api/solve", solve, methods=["POST"]),
+        Route("/api/link", link, methods=["POST"]),
+        Route("/api/link/open", open_link, methods=["POST"]),
+        Route("/api/upload", upload, methods=["POST"]),
+        Route("/api/runs/{run}", run),
+        Route("/api/runs/{run}/energy", energy),
+        Route("/api/runs/{run}/point", point),
+    ]

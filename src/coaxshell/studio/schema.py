@@ -1,0 +1,57 @@
+"""What a form is generated from: the description's own schema, presets, libraries, limits."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+from coaxshell._version import __version__
+from coaxshell.model import EXPLOSIVES, Elastic, System, fluids, materials, presets
+from coaxshell.studio import limits
+from coaxshell.studio.curves import QUANTITIES
+from coaxshell.studio.descriptions import normalised
+
+# The limit that JSON Schema has no word for.
+_NOT_ZERO = {("peak_pressure", "Pa"), ("pressure", "Pa")}
+
+
+@cache
+def schema() -> dict[str, Any]:
+    """Return all of ``/api/schema``."""
+    return {
+        "version": __version__,
+        "schema": _with_nonzero(System.model_json_schema()),
+        "presets": [
+            {"name": name, "title": _title(presets.text(name)), "system": normalised(presets.load(name)), "toml": presets.text(name)}
+            for name in presets.names()
+        ],
+        "materials": [_material(name) for name in materials.names()],
+        "fluids": [
+            {"name": name, "fluid": fluids.get(name).model_dump(mode="json"), "reference": fluids.REFERENCES[name]}
+            for name in fluids.names()
+        ],
+        "explosives": list(EXPLOSIVES),
+        "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in QUANTITIES.items()],
+        "resolutions": {"preview": limits.PREVIEW, "full": limits.FULL},
+        "limits": limits.table(),
+    }
+
+
+def _material(name: str) -> dict[str, Any]:
+    material = materials.get(name)
+    kind = "elastic" if isinstance(material, Elastic) else "piezoelectric"
+    return {"name": name, "kind": kind, "material": material.model_dump(mode="json"), "reference": material.reference}
+
+
+def _with_nonzero(full: dict[str, Any]) -> dict[str, Any]:
+    for part in full["$defs"].values():
+        for name, field in part.get("properties", {}).items():
+            if (name, field.get("unit")) in _NOT_ZERO:
+                field["nonzero"] = True
+    return full
+
+
+def _title(text: str) -> str:
+    comment = " ".join(line.lstrip("# ").strip() for line in text.split("\n\n")[0].splitlines() if line.startswith("#"))
+    return re.split(r"(?<!Fig\.)(?<!Figs\.)(?<=\.) ", comment, maxsplit=1)[0]

@@ -1,0 +1,115 @@
+"""What the server knows while it runs: runs by name, the newest revision of each slot, jobs, workers, one temporary folder."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+import shutil
+import tempfile
+from collections import OrderedDict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from coaxshell.model import System
+from coaxshell.solver.settings import Settings
+from coaxshell.studio import limits, worker
+from coaxshell.studio.arrays import Packed
+from coaxshell.studio.cache import Cache
+from coaxshell.studio.jobs import Jobs
+from coaxshell.studio.refusals import RefusedError
+from coaxshell.studio.workers import Work, Workers
+
+CURVE_BYTES = 100_000_000
+
+
+@dataclass(frozen=True)
+class Run:
+    """A system at a resolution, and its name."""
+
+    name: str
+    system: System
+    settings: Settings
+
+    @property
+    def pair(self) -> tuple[System, Settings]:
+        """What a worker needs."""
+        return self.system, self.settings
+
+    @property
+    def place(self) -> Any:
+        """What names the structure that it needs."""
+        return worker.structure_key(*self.pair)
+
+
+@dataclass
+class Slot:
+    """The newest revision of a place of a page, and the work for it."""
+
+    revision: int = -1
+    work: Work | None = None
+
+
+class Studio:
+    """All of it; made when the server starts, closed when it ends."""
+
+    def __init__(self) -> None:
+        self.id = secrets.token_urlsafe(9)
+        self.folder = Path(tempfile.mkdtemp(prefix="coaxshell-studio-"))
+        self.workers = Workers()
+        self.jobs = Jobs(self.workers)
+        self.curves: Cache[Packed] = Cache(CURVE_BYTES, lambda content: len(content.data) + 4_000)
+        self.closing = False
+        self._runs: OrderedDict[str, Run] = OrderedDict()
+        self._slots: OrderedDict[tuple[str, str], Slot] = OrderedDict()
+        self._secret = secrets.token_bytes(32)
+
+    def run_of(self, system: System, settings: Settings) -> Run:
+        """Return the run of a system at a resolution; its name cannot be guessed, so that no other site can ask for it."""
+        text = f"{system.model_dump_json()}{settings}".encode()
+        name = hashlib.blake2b(text, key=self._secret, digest_size=16).hexdigest()
+        run = self._runs.setdefault(name, Run(name, system, settings))
+        self._runs.move_to_end(name)
+        if len(self._runs) > limits.RUNS:
+            self._runs.popitem(last=False)
+        return run
+
+    def run(self, name: str) -> Run:
+        """Return a run by its name; RefusedError when it is not known."""
+        found = self._runs.get(name)
+        if found is None:
+            raise RefusedError(
+                404, "unknown-run", "run", "is not known here", "solve again: it was forgotten, or the server has started anew"
+            )
+        return found
+
+    def slot(self, client: str, name: str) -> Slot:
+        """Return the slot of a client; the ones not used for longest are forgotten."""
+        found = self._slots.setdefault((client, name), Slot())
+        self._slots.move_to_end((client, name))
+        if len(self._slots) > limits.SLOTS:
+            self._slots.popitem(last=False)
+        return found
+
+    async def curves_of(self, run: Run) -> Packed:
+        """Return the curves of a run, kept or solved now."""
+        found = self.curves.get(run.name)
+        if found is None:
+            found = await self.workers.submit(worker.solve, *run.pair, place=run.place).future
+            self.curves.put(run.name, found)
+        return found
+
+    def file(self, suffix: str) -> Path:
+        """Return the name of a new file in the server's own folder."""
+        return self.folder / f"{secrets.token_hex(8)}.{suffix}"
+
+    def close_streams(self) -> None:
+        """End the streams of events, so that the server can end."""
+        self.closing = True
+        self.jobs.wake_all()
+
+    def close(self) -> None:
+        """End the workers and remove the folder."""
+        self.close_streams()
+        self.workers.close()
+        shutil.rmtree(self.folder, ignore_errors=True)

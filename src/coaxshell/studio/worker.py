@@ -1,0 +1,124 @@
+"""What runs in a worker process: systems solved, with structures and answers kept; all else is made from the answers."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing import parent_process
+from multiprocessing.process import BaseProcess
+from typing import Any, NamedTuple
+
+from coaxshell.errors import InputError
+from coaxshell.model import System
+from coaxshell.response import PreparedSystem, Response, prepare
+from coaxshell.solver.settings import Settings
+from coaxshell.studio.cache import Cache, held_bytes
+
+STRUCTURE_BYTES, ANSWER_BYTES = 600_000_000, 200_000_000
+STOP, FRACTION = 0, 1
+"""Places on the shared board: the number of the task to be stopped, and how far the present one is."""
+
+
+class Stopped(BaseException):
+    """The task is no longer wanted; no except clause for mistakes may catch it."""
+
+
+class Outcome(NamedTuple):
+    """How a task ended: "done" with a value, "input" with (where, problem, remedy), or "stopped"."""
+
+    state: str
+    value: Any
+
+
+class _Here:
+    """The state of this process."""
+
+    number = 0
+    board: Any = None
+    stage: Any = None
+    structures: Cache[PreparedSystem] = Cache(STRUCTURE_BYTES, held_bytes)
+    answers: Cache[Response] = Cache(ANSWER_BYTES, held_bytes)
+
+
+def begin(board: Any, stage: Any) -> None:
+    """Set up a worker process: Ctrl-C is the server's to handle, and a worker whose server is gone goes too."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _Here.board, _Here.stage = board, stage
+    parent = parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: BaseProcess) -> None:
+    parent.join()
+    os._exit(0)
+
+
+def ready() -> int:
+    """Import what every task needs, and return the process's number."""
+    import coaxshell.plotting.frames  # noqa: F401 - so that the first request need not wait for it
+
+    return os.getpid()
+
+
+def perform(number: int, task: Callable[..., Any], arguments: tuple[Any, ...]) -> Outcome:
+    """Carry out one task; what is wrong with its input comes back as a value, since InputError cannot travel."""
+    _Here.number = number
+    _Here.board[FRACTION] = 0.0
+    _Here.stage.value = b""
+    try:
+        return Outcome("done", task(*arguments))
+    except Stopped:
+        return Outcome("stopped", None)
+    except InputError as error:
+        return Outcome("input", (error.where, error.problem, error.remedy))
+
+
+def report(fraction: float, stage: str) -> None:
+    """Tell the server how far the task is; Stopped when it is no longer wanted."""
+    if _Here.board is None:
+        return
+    if _Here.board[STOP] == _Here.number:
+        raise Stopped
+    _Here.board[FRACTION] = fraction
+    _Here.stage.value = stage.encode()[:60]
+
+
+def structure_key(system: System, settings: Settings) -> tuple[str, Settings]:
+    """Return what names all that does not depend on the absorbers."""
+    return system.replace(absorbers=()).model_dump_json(), settings
+
+
+def answer(system: System, settings: Settings) -> Response:
+    """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``."""
+    key = (system.model_dump_json(), settings)
+    found = _Here.answers.get(key)
+    if found is not None:
+        return found
+    place = structure_key(system, settings)
+    prepared = _Here.structures.get(place)
+    if prepared is None:
+        prepared = prepare(
+            system.replace(absorbers=()),
+            duration=settings.duration,
+            time_step=settings.time_step,
+            modes=settings.modes,
+            refinement=settings.refinement,
+            progress=report,
+        )
+    response = prepared.simulate(system.absorbers, progress=report)
+    _Here.structures.put(place, prepared)
+    _Here.answers.put(key, response)
+    return response
+
+
+def solve(system: System, settings: Settings) -> Any:
+    """Return the curves of a run."""
+    from coaxshell.studio.curves import curves
+
+    start = time.perf_counter()
+    response = answer(system, settings)
+    return curves(response, time.perf_counter() - start)

@@ -1,0 +1,181 @@
+"""Worker processes, and who is served next: what a person waits for before what may take its time.
+
+Everything here runs in the event loop; only :func:`coaxshell.studio.worker.perform` runs elsewhere.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+from collections import OrderedDict, deque
+from collections.abc import Callable, Hashable
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Any
+
+from coaxshell.errors import InputError
+from coaxshell.studio import limits, worker
+from coaxshell.studio.refusals import RefusedError
+
+REMEMBERED = 4
+"""Structures that a worker is taken to have at hand."""
+
+
+@dataclass(eq=False)
+class Work:
+    """A task that waits, runs or is done.
+
+    Attributes
+    ----------
+    task, arguments
+        What is called in the worker; it must be importable there.
+    place : hashable
+        The structure it needs; a worker that has it is preferred.
+    live : bool
+        A person waits for it.
+    future : asyncio.Future
+        Its value; InputError, RefusedError, or cancelled.
+    """
+
+    number: int
+    task: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    place: Hashable
+    live: bool
+    future: asyncio.Future[Any]
+    process: _Process | None = None
+    started: Callable[[], None] | None = None
+
+
+@dataclass(eq=False)
+class _Process:
+    board: Any
+    stage: Any
+    executor: ProcessPoolExecutor
+    work: Work | None = None
+    recent: OrderedDict[Hashable, None] = field(default_factory=OrderedDict)
+
+
+class Workers:
+    """A few worker processes with two queues; of more than one worker, one is always left for what is live.
+
+    Parameters
+    ----------
+    processes : int
+    """
+
+    def __init__(self, processes: int = 2) -> None:
+        self._context = multiprocessing.get_context("spawn")
+        self._numbers = count(1)
+        self._processes = [self._started() for _ in range(processes)]
+        self._queues: dict[bool, deque[Work]] = {True: deque(), False: deque()}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def _started(self) -> _Process:
+        board, stage = self._context.RawArray("d", [0.0, 0.0]), self._context.RawArray("c", 64)
+        executor = ProcessPoolExecutor(1, mp_context=self._context, initializer=worker.begin, initargs=(board, stage))
+        executor.submit(worker.ready)
+        return _Process(board, stage, executor)
+
+    def submit(
+        self,
+        task: Callable[..., Any],
+        *arguments: Any,
+        place: Hashable = None,
+        live: bool = True,
+        started: Callable[[], None] | None = None,
+    ) -> Work:
+        """Queue a task; RefusedError when too many wait."""
+        queue = self._queues[live]
+        if len(queue) >= (limits.LIVE_WAITING if live else limits.JOBS_WAITING):
+            raise RefusedError(429, "busy", "server", f"{len(queue)} tasks are waiting", "try again in a moment")
+        work = Work(next(self._numbers), task, arguments, place, live, asyncio.get_running_loop().create_future(), started=started)
+        queue.append(work)
+        self._feed()
+        return work
+
+    def drop(self, work: Work) -> None:
+        """Take a task out of its queue, or stop it at its next report."""
+        if work.process is not None:
+            work.process.board[worker.STOP] = work.number
+        elif work in self._queues[work.live]:
+            self._queues[work.live].remove(work)
+            work.future.cancel()
+
+    def progress(self, work: Work) -> tuple[float, str]:
+        """Return fraction and stage of a task."""
+        if work.process is None:
+            return 0.0, "waiting"
+        return float(work.process.board[worker.FRACTION]), work.process.stage.value.decode(errors="replace")
+
+    def _feed(self) -> None:
+        for live in (True, False):
+            queue = self._queues[live]
+            while queue:
+                process = self._free_for(queue[0])
+                if process is None:
+                    break
+                work = queue.popleft()
+                process.work, work.process = work, process
+                task = asyncio.get_running_loop().create_task(self._carried_out(process, work))
+                self._tasks.add(task)
+                task.add_done_callback(self._tasks.discard)
+
+    def _free_for(self, work: Work) -> _Process | None:
+        free = [process for process in self._processes if process.work is None]
+        behind = sum(process.work is not None and not process.work.live for process in self._processes)
+        if not free or (not work.live and behind >= max(1, len(self._processes) - 1)):
+            return None
+        return next((process for process in free if work.place in process.recent), free[0])
+
+    async def _carried_out(self, process: _Process, work: Work) -> None:
+        if work.started is not None:
+            work.started()
+        process.recent[work.place] = None
+        process.recent.move_to_end(work.place)
+        if len(process.recent) > REMEMBERED:
+            process.recent.popitem(last=False)
+        try:
+            future = process.executor.submit(worker.perform, work.number, work.task, work.arguments)
+            outcome: worker.Outcome = await asyncio.wrap_future(future)
+        except BrokenProcessPool:
+            process.executor.shutdown(wait=False)
+            if process in self._processes:
+                self._processes[self._processes.index(process)] = self._started()
+            _settle(work, InputError("system", "the worker that solved it has died", "most likely for want of memory: ask for less"))
+        except BaseException as error:
+            if work.future.done():
+                raise
+            work.future.set_exception(error)
+            if not isinstance(error, Exception):
+                raise
+        else:
+            if outcome.state == "done" and not work.future.done():
+                work.future.set_result(outcome.value)
+            elif outcome.state == "input":
+                _settle(work, InputError(*outcome.value))
+            else:
+                work.future.cancel()
+        finally:
+            process.work = None
+            self._feed()
+
+    def close(self) -> None:
+        """Stop everything now."""
+        for queue in self._queues.values():
+            while queue:
+                queue.pop().future.cancel()
+        for process in self._processes:
+            running = list((process.executor._processes or {}).values())
+            process.executor.shutdown(wait=False, cancel_futures=True)
+            for child in running:
+                child.terminate()
+            for child in running:
+                child.join(2)
+
+
+def _settle(work: Work, error: Exception) -> None:
+    if not work.future.done():
+        work.future.set_exception(error)

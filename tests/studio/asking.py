@@ -1,0 +1,47 @@
+"""Requests as the page makes them."""
+
+from __future__ import annotations
+
+import itertools
+import time
+
+from coaxshell.model import presets
+from coaxshell.studio.arrays import decoded
+
+SMALL = {"duration": 2.0, "time_step": 0.02, "modes": 12}
+"""A resolution that takes hundredths of a second."""
+
+_revisions = itertools.count()
+
+
+def described(name="hybrid"):
+    return presets.load(name).model_dump(mode="json")
+
+
+def solve(client, system, *, who="tab", slot="current", revision=None, resolution=None):
+    revision = next(_revisions) if revision is None else revision
+    body = {"client": who, "slot": slot, "revision": revision, "system": system, "resolution": resolution or SMALL}
+    return client.post("/api/solve", json=body)
+
+
+def solved(client, system, **options):
+    answer = solve(client, system, **options)
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "application/x-coaxshell-arrays", answer.text
+    return decoded(answer.content)
+
+
+def start(client, **entries):
+    answer = client.post("/api/jobs", json={"client": "tab", **entries})
+    assert answer.status_code == 202, answer.text
+    return answer.json()["job"]
+
+
+def ended(client, job, seconds=60):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        job = client.get(f"/api/jobs/{job['id']}").json()["job"]
+        if job["state"] in ("done", "failed", "cancelled"):
+            return job
+        time.sleep(0.02)
+    raise AssertionError(f"still {job['state']} after {seconds} s")

@@ -1,0 +1,133 @@
+"""Schema, validation, links and uploads."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from asking import described
+
+from coaxshell.errors import InputError
+from coaxshell.model import System, presets
+from coaxshell.studio import limits
+
+
+def validated(client, **body):
+    answer = client.post("/api/validate", json=body)
+    assert answer.status_code == 200, answer.text
+    return answer.json()
+
+
+def test_the_schema_tells_units_limits_and_documentation(client):
+    content = client.get("/api/schema").json()
+    shell = content["schema"]["$defs"]["Shell"]["properties"]["radius"]
+    assert (shell["unit"], shell["exclusiveMinimum"]) == ("m", 0)
+    assert "mid-surface" in shell["description"]
+    assert content["schema"]["$defs"]["SphericalShock"]["properties"]["peak_pressure"]["nonzero"] is True
+    assert [preset["name"] for preset in content["presets"]] == list(presets.names())
+    for preset in content["presets"]:
+        assert System.model_validate(preset["system"]) == presets.load(preset["name"]) == System.from_toml_string(preset["toml"])
+    assert {"pzt-4", "aluminium"} <= {material["name"] for material in content["materials"]}
+    assert content["limits"]["absorbers"] == limits.ABSORBERS
+
+
+@pytest.mark.parametrize("name", presets.names())
+def test_json_and_toml_come_back_as_equal_systems(client, name):
+    system = presets.load(name)
+    by_table, by_text = validated(client, system=described(name)), validated(client, toml=system.to_toml_string())
+    assert by_table == by_text
+    assert System.model_validate(by_table["system"]) == system == System.from_toml_string(by_table["toml"])
+
+
+def test_units_are_understood_and_numbers_derived(client):
+    system = described()
+    system["shells"][1]["radius"] = "100 cm"
+    answer = validated(client, system=system)
+    assert answer["system"]["shells"][1]["radius"] == 1.0
+    derived = {row["name"]: row for row in answer["derived"]}
+    assert derived["transit_time"] == {"name": "transit_time", "label": "transit time a/c", "value": 1.0 / 1400, "unit": "s"}
+    assert derived["absorber_mass"]["value"] == pytest.approx(250.0, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("shells[0].radius", -1.0),
+        ("source.peak_pressure", 0),
+        ("absorbers.count", -3),
+        ("control.shells", "middle"),
+        ("fluids", ["tea"] * 3),
+    ],
+)
+def test_a_problem_is_told_in_the_words_of_the_library(client, path, value):
+    system = described()
+    *owner, last = path.replace("[0]", ".0").split(".")
+    place = system
+    for step in owner:
+        place = place[int(step) if step.isdigit() else step]
+    place[last] = value
+    with pytest.raises(InputError) as refused:
+        System.model_validate(system)
+    problem = validated(client, system=system)["problem"]
+    assert problem == {"where": refused.value.where, "problem": refused.value.problem, "remedy": refused.value.remedy}
+
+
+@pytest.mark.parametrize(
+    ("change", "where"),
+    [
+        ({"absorbers": {"count": 10**9, "mass": 1}}, "absorbers.count"),
+        ({"absorbers": [{"mass": 1, "angle": 0}] * 201}, "absorbers"),
+        ({"shells": [{"radius": 1, "rigid": True}] * 7}, "shells"),
+        ({"source": {"type": "plane-wave", "pulse": {"type": "sampled", "file": "/etc/passwd"}}}, "source.pulse.file"),
+        ({"source": [{"type": "plane-wave", "pulse": {"type": "sampled", "file": "../x"}}]}, "source[0].pulse.file"),
+    ],
+)
+def test_what_is_too_large_or_a_file_is_refused_before_it_is_read(client, change, where):
+    assert validated(client, system={**described(), **change})["problem"]["where"] == where
+
+
+def test_a_link_holds_the_whole_system(client):
+    content = {"v": 1, "system": described(), "resolution": {"modes": 80}, "view": {"tab": "field"}}
+    fragment = client.post("/api/link", json=content).json()["fragment"]
+    assert len(fragment) < 1200
+    opened = client.post("/api/link/open", json={"fragment": "#" + fragment}).json()
+    assert opened["ok"]
+    assert System.model_validate(opened["system"]) == presets.load("hybrid")
+    assert (opened["resolution"], opened["view"]) == ({"modes": 80}, {"tab": "field"})
+    for broken in (fragment[:-9], "s=!!", "x", "s=", fragment[:9] + "A" + fragment[10:]):
+        assert client.post("/api/link/open", json={"fragment": broken}).status_code == 400
+
+
+def test_a_link_that_unpacks_to_too_much_is_refused(client):
+    from coaxshell.studio.links import fragment
+
+    bomb = fragment({"v": 1, "system": {"name": "a" * 50_000_000}})
+    assert len(bomb) < 200_000
+    assert client.post("/api/link/open", json={"fragment": bomb}).status_code == 400
+
+
+def test_files_are_uploaded(client, tmp_path):
+    import coaxshell as cx
+
+    system = presets.load("absorbers")
+    toml = client.post("/api/upload", content=system.to_toml_string(), headers={"Content-Type": "application/toml"}).json()
+    assert System.model_validate(toml["system"]) == system
+    path = cx.simulate(system, duration=1.0, time_step=0.02, modes=8).save(tmp_path / "run.nc")
+    header = {"Content-Type": "application/x-netcdf"}
+    opened = client.post("/api/upload", content=path.read_bytes(), headers=header).json()
+    assert System.model_validate(opened["system"]) == system
+    assert opened["resolution"] == {"duration": 1.0, "time_step": 0.02, "modes": 8, "refinement": 1}
+    for damaged in (b"", b"CDF\x01", path.read_bytes()[:3000], path.read_bytes()[:200] + b"\xff" * 4000):
+        assert client.post("/api/upload", content=damaged, headers=header).json()["problem"]["where"] == "file"
+    assert client.post("/api/upload", content=b"x", headers={"Content-Type": "application/x-pickle"}).status_code == 415
+    assert (
+        client.post("/api/upload", content=b"\xff\xfe", headers={"Content-Type": "application/toml"}).json()["problem"]["where"] == "file"
+    )
+
+
+def test_bodies_are_bounded(client):
+    header = {"Content-Type": "application/json"}
+    assert client.post("/api/validate", content=b"x" * (limits.BODY_BYTES + 1), headers=header).status_code == 413
+    parts = (b"x" * 100_000 for _ in range(20))
+    assert client.post("/api/validate", content=parts, headers=header).status_code == 413
+    assert client.post("/api/validate", content=json.dumps({"toml": "x"})).status_code == 415
