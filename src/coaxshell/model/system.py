@@ -136,6 +136,11 @@ class System(Described):
             return tuple(range(len(self.shells)))
         return tuple(sorted(self.shell_index(shell) for shell in self.control.shells))
 
+    def _repr_html_(self) -> str:
+        from coaxshell.model.display import system_card
+
+        return system_card(self)
+
     def shell_index(self, shell: int | str) -> int:
         """Return the number of a shell given as a number, a text of digits, "inner" or "outer"; InputError otherwise."""
         return consistency.index_of(shell, len(self.shells))

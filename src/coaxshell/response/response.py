@@ -13,6 +13,7 @@ import xarray as xr
 
 from coaxshell.model.system import System
 from coaxshell.response import absorbers, fields, histories, storage, voltages
+from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
@@ -195,6 +196,9 @@ class Response:
 
     def _index(self, shell: int | str) -> int:
         return self.system.shell_index(shell)
+
+    def _repr_html_(self) -> str:
+        return response_card(self.solution)
 
     def __repr__(self) -> str:
         name = f"{self.system.name!r}, " if self.system.name else ""

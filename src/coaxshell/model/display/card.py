@@ -1,0 +1,134 @@
+"""The drawing beside a table, as HTML for notebooks: no script, no style sheet, nothing from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import TYPE_CHECKING
+
+from coaxshell.model.absorbers import AbsorberRing
+from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
+from coaxshell.model.fluids import Fluid, Vacuum
+from coaxshell.model.shells import RigidShell, Shell
+
+if TYPE_CHECKING:
+    from coaxshell.model.sources import Source
+    from coaxshell.model.system import System
+
+Cells = Sequence[str]
+
+
+def system_card(system: System) -> str:
+    """Return a system's drawing and a table of its parts as HTML."""
+    return card(system, system.name or "unnamed system", [("", "part", "what it is"), *_parts(system)])
+
+
+def card(system: System, heading: str, rows: Sequence[Cells], notes: Sequence[str] = ()) -> str:
+    """Return a system's drawing beside a table of plain text, the first row its headings, and notes below, as HTML.
+
+    Parameters
+    ----------
+    system : System
+        What is drawn.
+    heading : str
+    rows : sequence of sequences of str
+        Escaped here; a first cell that is a colour (``#...``) becomes a patch of it.
+    notes : sequence of str
+        Paragraphs below the table.
+    """
+    head, *body = rows
+    table = "".join(
+        [
+            '<table style="border-collapse:collapse;font-size:13px;line-height:1.35"><thead><tr>',
+            *(f'<th style="text-align:left;padding:2px 10px 2px 0">{escape(cell)}</th>' for cell in head),
+            "</tr></thead><tbody>",
+            *(f"<tr>{''.join(_cell(cell) for cell in row)}</tr>" for row in body),
+            "</tbody></table>",
+        ]
+    )
+    below = "".join(f'<p style="margin:6px 0 0;font-size:12px;max-width:46em">{escape(note)}</p>' for note in notes)
+    return (
+        '<div class="coaxshell" style="display:flex;flex-wrap:wrap;gap:18px;align-items:flex-start">'
+        f'{cross_section(system)}<div><p style="margin:2px 0 6px"><b>{escape(heading)}</b></p>{table}{below}</div></div>'
+    )
+
+
+def _cell(text: str) -> str:
+    if text.startswith("#"):
+        patch = f'<span style="display:inline-block;width:9px;height:9px;background:{escape(text)}"></span>'
+        return f'<td style="padding:1px 6px 1px 0">{patch}</td>'
+    return f'<td style="text-align:left;padding:1px 10px 1px 0;vertical-align:top">{escape(text)}</td>'
+
+
+def _parts(system: System) -> list[Cells]:
+    rows: list[Cells] = []
+    for number, shell in enumerate(system.shells):
+        rows.append(("", _fluid_name(number, len(system.shells)), _fluid(system.fluids[number])))
+        rows += _shell_rows(number, len(system.shells), shell)
+    rows.append(("", "outside", _fluid(system.fluids[-1])))
+    rows += [("", "source", _source(system, source)) for source in system.sources]
+    if system.absorber_list:
+        rows.append(("", "absorbers", _absorbers(system)))
+    if system.control is not None:
+        control = system.control
+        stop = ", stops at the field limit" if control.saturation else ""
+        shells = ", ".join(_shell_name(i, len(system.shells)) for i in system.controlled_shells)
+        rows.append(("", "control", f"k_p = {control.proportional:g}, k_d = {control.derivative:g} on {shells}{stop}"))
+    return rows
+
+
+def _fluid_name(number: int, shells: int) -> str:
+    if number == 0:
+        return "inside"
+    return "gap" if shells == 2 else f"gap {number}"
+
+
+def _shell_name(number: int, shells: int) -> str:
+    if shells == 1:
+        return "shell"
+    return {0: "inner shell", shells - 1: "outer shell"}.get(number, f"shell {number}")
+
+
+def _shell_rows(number: int, shells: int, shell: Shell | RigidShell) -> list[Cells]:
+    name = _shell_name(number, shells)
+    if isinstance(shell, RigidShell):
+        return [("", name, f"rigid, radius {_length(shell.radius)}")]
+    rows: list[Cells] = [("", name, f"radius {_length(shell.radius)}, {_length(shell.thickness)} thick")]
+    return rows + [(ROLE_COLOURS[x.role], "", f"{_length(x.thickness)} {x.material.name}, {x.role}") for x in shell.layers]
+
+
+def _fluid(fluid: Fluid | Vacuum) -> str:
+    if isinstance(fluid, Vacuum):
+        return "vacuum"
+    constants = f"{fluid.density:g} kg/m³, {fluid.sound_speed:g} m/s"
+    return f"{fluid.name}, {constants}" if fluid.name else constants
+
+
+def _source(system: System, source: Source) -> str:
+    distance = system.source_distance(source)
+    where = "" if distance is None else f" {_length(distance)} from the axis,"
+    turned = f" at {source.angle:g}°," if source.angle else ""
+    return f"{source.type.replace('-', ' ')},{where}{turned} peak {_pressure(abs(source.pulse.peak))}"
+
+
+def _absorbers(system: System) -> str:
+    many = system.absorber_list
+    first = many[0]
+    alike = len({one.replace(angle=0.0) for one in many}) == 1
+    count = "1" if len(many) == 1 else f"{len(many)}{'' if alike else ' different'}"
+    spread = f", every {360 / len(many):.4g}°" if isinstance(system.absorbers, AbsorberRing) and len(many) > 1 else ""
+    if not alike:
+        return f"{count}{spread}"
+    law = f"m = {first.mass:g} kg/m, c = {first.damping:.3g}, k_l = {first.linear_stiffness:.3g}, k_nl = {first.cubic_stiffness:.3g}"
+    return f"{count}{spread}: {law} (SI, per metre)"
+
+
+def _length(value: float) -> str:
+    return f"{1e3 * value:.4g} mm" if value < 0.1 else f"{value:.4g} m"
+
+
+def _pressure(value: float) -> str:
+    for factor, unit in ((1e6, "MPa"), (1e3, "kPa")):
+        if value >= factor:
+            return f"{value / factor:.4g} {unit}"
+    return f"{value:.4g} Pa"
