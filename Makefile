@@ -7,6 +7,7 @@ STAMP  := $(VENV)/.installed
 STAMP_ALL := $(VENV)/.installed-all
 STAMP_DOCS := $(VENV)/.installed-docs
 DEMO   := demo
+DOCS_CHECKS ?= not slow
 
 .DELETE_ON_ERROR:
 .PHONY: help demo test test-all lint types bench docs clean
@@ -54,6 +55,7 @@ test: $(STAMP)
 test-all: export OPENBLAS_NUM_THREADS = 1
 test-all: $(STAMP_ALL)
 	@$(BIN)/python -m pytest -q -n 2
+	@$(MAKE) --no-print-directory docs DOCS_CHECKS="slow or not slow"
 
 lint: $(STAMP)
 	@$(BIN)/ruff check .
@@ -74,7 +76,7 @@ docs: export OPENBLAS_NUM_THREADS = 1
 docs: $(STAMP_DOCS)
 	@rm -rf docs/built
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html -d docs/generated/doctrees docs docs/built
-	@$(BIN)/python -m pytest -q docs/checks
+	@$(BIN)/python -m pytest -q -m "$(DOCS_CHECKS)" docs/checks
 	@echo "open docs/built/index.html"
 
 clean:

@@ -70,7 +70,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": "tutorials",
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
-    "capture_repr": ("_repr_html_", "__repr__"),
+    "capture_repr": ("_repr_html_",),
     "download_all_examples": False,
     "show_memory": False,
     "write_computation_times": False,
@@ -78,7 +78,7 @@ sphinx_gallery_conf = {
     "min_reported_time": 1e6,
     "abort_on_example_error": True,
     "remove_config_comments": True,
-    "image_scrapers": ("matplotlib",),
+    "image_scrapers": ("figures.scrape",),
     "matplotlib_animations": False,
     "copyfile_regex": r".*\.(csv|toml)$",
 }

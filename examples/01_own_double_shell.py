@@ -68,7 +68,7 @@ print(stress.dims, stress.attrs["units"], float(abs(stress).max()))
 
 from coaxshell.plotting import figure_comparison
 
-figure = figure_comparison({"my double shell": response})
+figure_comparison({"my double shell": response})
 
 # %%
 # Changing one thing
@@ -78,9 +78,11 @@ figure = figure_comparison({"my double shell": response})
 
 thick = system.with_overrides({"shells.outer.layers[1].thickness": "12 mm"})
 thicker = cx.simulate(thick, duration=5.0, time_step=2e-3, modes=100)
-figure = figure_comparison({"12 mm outside": thicker, "6 mm": response})
+figure_comparison({"12 mm outside": thicker, "6 mm": response})
 
 # %%
 # A system goes to a scenario file and back without loss, for the command line or for a colleague.
 
+again = cx.System.from_toml_string(system.to_toml_string())
+print(again == system)
 print(system.to_toml_string()[:300])

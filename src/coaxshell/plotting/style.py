@@ -65,10 +65,11 @@ def style() -> Iterator[None]:
 
 
 def new_figure(width: float = PAGE_WIDTH, height: float = 4.6) -> Figure:
-    """Return an empty figure of the given size in inches that needs no screen."""
+    """Return an empty figure of the given size in inches that needs no screen and shows itself in a notebook."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
+    from coaxshell.plotting.notebook_figure import NotebookFigure
+
+    figure = NotebookFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure

@@ -1,0 +1,53 @@
+"""
+Checking a finite-element code against us
+=========================================
+
+Another code's histories on the same axes as ours, with errors: how the file looks, and what the comparison catches.
+"""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+import coaxshell as cx
+from coaxshell.verification.against import against
+
+# %%
+# The file
+# --------
+#
+# ``coaxshell verify --template my_fem.csv --case iakovlev-double`` writes one to start from. It is a table with a time column, in
+# transits or seconds, and columns named after quantity, shell and place, each with its unit. Here a coarse run by the direct engine
+# plays the other code.
+
+system = cx.presets.load("iakovlev-double")
+other = cx.simulate(system, duration=2.0, time_step=4e-3, modes=20, engine="direct")
+columns = {
+    "time [ms]": other.time_seconds * 1e3,
+    "stress_outer_head [MPa]": other.stress("outer", angle=0).values / 1e6,
+    # finite elements count the displacement outward: the sign is wrong here on purpose
+    "displacement_outer_tail [um]": -other.displacement("outer", angle=180).values * 1e6,
+}
+text = "\n".join([", ".join(columns), *(", ".join(f"{value:.8g}" for value in row) for row in zip(*columns.values(), strict=True))])
+print("\n".join(text.splitlines()[:4]))
+
+# %%
+# The comparison
+# --------------
+#
+# In a terminal it is ``coaxshell verify --against my_fem.csv --case iakovlev-double``, which also writes a report with plots.
+
+with TemporaryDirectory() as folder:
+    file = Path(folder) / "my_fem.csv"
+    file.write_text(text)
+    report = against(file, system, time_step=2e-3, modes=60)
+
+for row in report.rows:
+    print(f"{row.what:45s} {row.found:55s} {row.error:.2g}")
+
+# %%
+# The reversed sign is named; what is left of the stress is the error of the coarse run. The usual suspects are on the page
+# "Conventions against other codes": the sign of w, the unit and the zero of time, the depth at which stress is taken.
+
+assert np.isfinite([row.error for row in report.rows]).all()

@@ -1,0 +1,17 @@
+"""A figure that needs no screen and yet shows itself in a notebook."""
+
+from __future__ import annotations
+
+from io import BytesIO
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+
+class NotebookFigure(Figure):
+    """A matplotlib figure outside pyplot: as the last line of a notebook's cell it appears as an image."""
+
+    def _repr_png_(self) -> bytes:
+        target = BytesIO()
+        FigureCanvasAgg(self).print_png(target)
+        return target.getvalue()
