@@ -35,16 +35,20 @@ SPELLINGS = {
 
 def licence(found: Distribution) -> str:
     """Return a package's licence as an SPDX expression where its metadata lets us tell, else what it says in one line."""
-    stated = found.metadata["License-Expression"]
+    stated = _field(found, "License-Expression")
     if stated:
-        return str(stated)
+        return stated
     classifiers = [line.rsplit(" :: ", 1)[-1] for line in found.metadata.get_all("Classifier") or () if line.startswith("License ::")]
     named = [SPELLINGS.get(name, name) for name in classifiers if name != "OSI Approved"]
-    field = (found.metadata["License"] or "").strip().splitlines()
+    field = _field(found, "License").strip().splitlines()
     text = SPELLINGS.get(field[0].strip(), field[0].strip()) if field else ""
     if text in ALLOWED or not named:
         return text or "not stated"
     return " AND ".join(sorted(set(named)))
+
+
+def _field(found: Distribution, name: str) -> str:
+    return str((found.metadata.get_all(name) or [""])[0])
 
 
 def parts(expression: str) -> set[str]:
