@@ -2,7 +2,7 @@
 A sweep
 =======
 
-How many absorbers, and how stiff? A grid of cases, read by names, resumable.
+How many absorbers, and how much damping? A grid of cases, read by names, resumable.
 """
 
 from tempfile import TemporaryDirectory
@@ -18,7 +18,7 @@ from coaxshell.plotting.style import COLOURS, new_figure, style
 # response. Cases that differ only in their absorbers share everything else, which is solved once.
 
 system = cx.presets.load("absorbers")
-over = {"absorbers.count": [0, 5, 10, 15, 20, 25, 30], "absorbers.cubic_stiffness": [1e18, 1e20]}
+over = {"absorbers.count": [0, 5, 10, 15, 20, 25, 30], "absorbers.damping": [0, 1e5, 1e6]}
 metrics = ["inner.rms_stress", "outer.rms_stress"]
 resolution = {"duration": 3.0, "time_step": 4e-3, "modes": 50}
 
@@ -46,11 +46,9 @@ print((inner / 1e3).round(2).to_pandas())
 with style():
     figure = new_figure(width=6.4, height=3.2)
     ax = figure.subplots()
-    for stiffness, colour in zip(over["absorbers.cubic_stiffness"], ("blue", "orange"), strict=True):
-        one = inner.sel({"absorbers.cubic_stiffness": stiffness})
-        ax.plot(
-            one["absorbers.count"], one / 1e3, marker="o", color=COLOURS[colour], label=f"cubic stiffness {stiffness:.0e} N/m$^3$ per metre"
-        )
+    for damping, colour in zip(over["absorbers.damping"], ("blue", "orange", "green"), strict=True):
+        one = inner.sel({"absorbers.damping": damping})
+        ax.plot(one["absorbers.count"], one / 1e3, marker="o", color=COLOURS[colour], label=f"damping {damping:g} N s/m$^2$")
     ax.set_xlabel("number of absorbers")
     ax.set_ylabel("RMS stress, inner shell (kPa)")
     ax.legend()
