@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from io import BytesIO
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 
@@ -13,5 +12,5 @@ class NotebookFigure(Figure):
 
     def _repr_png_(self) -> bytes:
         target = BytesIO()
-        FigureCanvasAgg(self).print_png(target)
+        self.savefig(target, format="png", dpi=self.dpi)
         return target.getvalue()
