@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from benchmarks import bare, engines, march, scaling
+from benchmarks import bare, engines, march, scaling, sweep
 
 
 def main() -> None:
     """Run them one after another."""
-    for benchmark in (bare, scaling, march, engines):
+    for benchmark in (bare, scaling, march, sweep, engines):
         benchmark.main()
 
 
