@@ -29,6 +29,20 @@ def planned(workers: int) -> list[Batch]:
     return batches(cases, metrics_of(ASKED, base), RESOLUTION, workers)
 
 
+def timed(batch: Batch) -> tuple[int, float]:
+    """Return the number of cases of a batch and the processor time that they took."""
+    start = time.process_time()
+    return len(evaluate(batch)), time.process_time() - start
+
+
+def processor_seconds(workers: int) -> float:
+    """Return the processor time a case with so many workers at once: free of what else the machine does, but for shared caches."""
+    with process_pool(workers) as pool:
+        list(pool.map(evaluate, planned(workers)[: 2 * workers]))
+        done = list(pool.map(timed, planned(workers)))
+    return sum(seconds for _, seconds in done) / sum(count for count, _ in done)
+
+
 def seconds_of(workers: int) -> float:
     """Return the time of the whole sweep with a warm pool of so many workers."""
     base = cx.presets.load("hybrid")
@@ -43,15 +57,18 @@ def seconds_of(workers: int) -> float:
 
 def main() -> None:
     """Print cases per second with one and with two workers, and the ratio of turns side by side."""
-    ratios, one, two = [], [], []
+    ratios, one, two, share = [], [], [], []
     for _ in range(TURNS):
         one.append(seconds_of(1))
         two.append(seconds_of(2))
         ratios.append(one[-1] / two[-1])
+        share.append([processor_seconds(1), processor_seconds(2)])
     for name, seconds in (("one worker", one), ("two workers", two)):
         print(
             f"absorber sweep of {CASES} cases, N = 25, M = 60, dt = 4e-3, T = 5, {name}: {CASES / statistics.median(seconds):.1f} cases/s"
         )
+    alone, beside = (statistics.median(column) for column in zip(*share, strict=True))
+    print(f"processor time a case: {alone:.3f} s with one worker, {beside:.3f} s with two")
     print(f"two workers over one: {statistics.median(ratios):.2f} (turns: {', '.join(f'{ratio:.2f}' for ratio in ratios)})")
 
 
