@@ -57,11 +57,16 @@ def ring(structure: PreparedStructure, count: int) -> AbsorberSet:
 
 def history_seconds(history: HistorySum | PlainHistorySum, steps: int, modes: int) -> float:
     """Return the time of all history sums of one march."""
+    block = 1 if isinstance(history, PlainHistorySum) else 8
     values = np.ones((2, 1, modes))
+    pushed = values if block == 1 else np.ones((2, 1, modes, block))
     start = time.perf_counter()
-    for _ in range(steps):
-        history.present()
-        history.push(values)
+    for _ in range(0, steps - block, block):
+        if isinstance(history, HistorySum):
+            history.ahead(block)
+        else:
+            history.present()
+        history.push(pushed)
     return time.perf_counter() - start
 
 

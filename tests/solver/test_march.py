@@ -9,10 +9,11 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, absorber_set
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.linked import LinkedSpectra, solve_linked
-from coaxshell.solver.newton import InterfaceNewton, StepState
+from coaxshell.solver.march import MarchResult, march
 from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.saturation import circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
 
 PAPERS = {"mass": 10, "damping": 1e6, "linear_stiffness": 1e9}
@@ -146,33 +147,56 @@ class TestForceLaw:
         assert errors[-1] < 2e-3
 
 
-@pytest.mark.parametrize("massless", [False, True])
-def test_one_step_meets_its_equations(massless: bool) -> None:
-    random = np.random.default_rng(3)
-    n, step = 3, 1e-2
-    one, zero = np.ones(n), np.zeros(n, dtype=np.int64)
-    links = AbsorberSet(
-        angle=0 * one, mass=np.array([0.0 if massless else 0.2, 0.3, 0.1]), damping=np.array([0.5, 0.0, 2.0]),
-        linear=np.array([10.0, 3.0, 30.0]), cubic=np.array([1e4, 1e5, 0.0]), inner_shell=zero, multiplicity=one,
-        member=np.arange(n), every_angle=0 * one, halves=1,
-    )  # fmt: skip
-    root = random.normal(size=(2 * n, 2 * n))
-    compliance = 1e-2 * root @ root.T
-    newton, state = InterfaceNewton(links, compliance, step), StepState.at_rest(n)
-    old = StepState.at_rest(n)
-    for _ in range(4):
-        excited, w, v = random.normal(size=(3, 2, n)) * np.array([0.3, 0.05, 0.3])[:, None, None]
-        old = state.copy()
-        newton.step(state, excited, w, v)
-        np.testing.assert_allclose(state.forced_velocity.ravel(), excited.ravel() + compliance @ state.force.ravel(), rtol=1e-12)
-        moved = old.forced_displacement + 0.5 * step * (old.forced_velocity + state.forced_velocity)
-        np.testing.assert_allclose(state.forced_displacement, moved, rtol=1e-12)
-        stretch, rate = state.mass_displacement - w - moved, state.mass_velocity - v - state.forced_velocity
-        law = links.damping * rate + links.linear * stretch + links.cubic * stretch**3
-        np.testing.assert_allclose(state.force, law, rtol=0, atol=1e-9 * abs(law).max())
-        total, before = state.force.sum(axis=0), np.where(links.mass > 0, old.force.sum(axis=0), 0.0)
-        balance = 2 * links.mass / step * (state.mass_velocity - old.mass_velocity) + total + before
-        np.testing.assert_allclose(balance, 0.0, rtol=0, atol=1e-9 * abs(law).max())
+class TestDiscreteLaws:
+    """A marched run put back into its own equations: forces by the law of the links, corrections by that of the actuators."""
+
+    @staticmethod
+    def answers(structure: PreparedStructure, pressure: np.ndarray) -> np.ndarray:
+        kernels, steps = structure.kernels_with_voltage.kernels, pressure.shape[-1]
+        spectra = np.einsum("ijmk,jhmk->ihmk", np.fft.rfft(kernels, 2 * steps), np.fft.rfft(pressure, 2 * steps))
+        return np.fft.irfft(spectra, 2 * steps)[..., :steps]
+
+    @pytest.mark.parametrize("angle", [0.0, 30.0])
+    @pytest.mark.parametrize("cubic", [1e20, 1e22])
+    def test_they_are_met(self, angle: float, cubic: float) -> None:
+        hybrid = cx.presets.load("hybrid")
+        control = cx.PDControl(proportional=-2e4, derivative=-150, saturation=True, field_limit=2e5)
+        shock = cx.SphericalShock(distance=5.0, peak_pressure=2.5e4, decay_time=1.314e-4, angle=angle)
+        ring = cx.absorber_ring(7, **PAPERS, cubic_stiffness=cubic)
+        problem = dimensionless(hybrid.replace(control=control, source=shock, absorbers=ring))
+        grid = LaplaceGrid(4e-3, 150)
+        structure = PreparedStructure(problem, grid, 30)
+        links = absorber_set(problem, problem.system.absorber_list, 1 if angle == 0.0 else 2)
+        found = march(structure, links, saturate=True)
+        answers = self.answers(structure, found.modal_pressure)
+        self.check_actuators(structure, links, found, answers[2:])
+        self.check_links(structure, links, found, answers[:2])
+
+    def check_actuators(self, structure: PreparedStructure, links: AbsorberSet, found: MarchResult, asked: np.ndarray) -> None:
+        evaluate, project = circle(structure.max_order + 1, links.halves)
+        linear = structure.linear_voltage
+        asked[:, : linear.shape[1]] += linear
+        assert found.correction is not None
+        for row, shell in enumerate(structure.controlled):
+            limit = voltage_limit(structure.problem, shell)
+            volts = evaluate @ asked[row].reshape(evaluate.shape[1], -1)
+            assert abs(volts).max() > 5 * limit
+            lacking = structure.problem.actuator_pressure(shell) * (project @ (np.clip(volts, -limit, limit) - volts))
+            given = found.correction[shell].reshape(lacking.shape)
+            np.testing.assert_allclose(given[:, 1:], lacking[:, 1:], rtol=0, atol=1e-9 * abs(given).max())
+
+    def check_links(self, structure: PreparedStructure, links: AbsorberSet, found: MarchResult, velocity: np.ndarray) -> None:
+        points, n = InterfacePoints(structure.problem, links, structure.max_order), links.count
+        half = 0.5 * structure.grid.time_step
+        v, pull = points.evaluate(velocity), found.force[:n] + found.force[n:]
+        w, u = np.zeros_like(v), np.zeros_like(pull)
+        w[:, 1:] = np.cumsum(half * (v[:, 1:] + v[:, :-1]), axis=1)
+        u[:, 1:] = -np.cumsum(half / links.mass[:, None] * (pull[:, 1:] + pull[:, :-1]), axis=1)
+        stretch = np.tile(found.mass_displacement, (2, 1)) - w - points.evaluate(structure.linear_displacement)
+        rate = np.tile(u, (2, 1)) - v - points.evaluate(structure.linear_velocity)
+        damping, linear, cubic = (np.tile(x, 2)[:, None] for x in (links.damping, links.linear, links.cubic))
+        law = damping * rate + linear * stretch + cubic * stretch**3
+        np.testing.assert_allclose(found.force[:, 1:], law[:, 1:], rtol=0, atol=1e-9 * abs(law).max())
 
 
 def test_linear_absorbers_are_marched_only_when_asked() -> None:

@@ -62,8 +62,8 @@ def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSp
     The fastest motions are those of a shell's own points (their mobility over one step is the kernel's weight at lag 0, about
     dt/2 over the local mass) and of the absorber's mass on the tangent stiffness reached, k_l + 3 k_nl max D^2.
     """
-    if linked.iterations == 0:
-        return []  # solved exactly
+    if linked.iterations == 0 or links.count == 0:
+        return []  # solved exactly, or none
     step = structure.grid.time_step
     points = InterfacePoints(structure.problem, links, structure.max_order)
     local = 2.0 / step * np.diag(points.immediate(structure.kernels.present)).reshape(2, links.count).max(axis=0)

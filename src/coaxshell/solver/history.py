@@ -1,7 +1,7 @@
-"""Convolution with a history that is still being made: sum_{j<n} k_{n-j} x_j, one step at a time, in O(N log^2 N).
+"""Convolution with a history that is still being made: sum_{j<n} k_{n-j} x_j, a block of steps at a time, in O(N log^2 N).
 
-The scheme of Hairer, Lubich and Schlichte (SIAM J. Sci. Stat. Comput. 6 (1985) 532): recent inputs are summed directly; each
-time a block of 2^p steps is complete, its whole contribution to the next 2^p steps is added by one FFT.
+The scheme of Hairer, Lubich and Schlichte (SIAM J. Sci. Stat. Comput. 6 (1985) 532): each time a dyadic number of blocks is complete,
+their whole contribution to as many blocks ahead is added at once, by FFT or, where few steps are concerned, by a matrix.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from coaxshell.acoustics.laplace_grid import WORKERS
 
 FloatArray = npt.NDArray[np.float64]
 
-BLOCK = 32
-"""Steps summed directly before the FFTs take over."""
+_BY_MATRIX = 16
+"""Steps up to which a product with the Toeplitz matrix is faster than FFTs."""
 
 
 class KernelTable:
-    """Kernels prepared for history sums: their transforms for every block length, computed once and shared by many marches.
+    """Kernels prepared for history sums: transforms and matrices for every length, computed once and shared by many marches.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ class KernelTable:
     def __init__(self, kernels: FloatArray) -> None:
         self.steps = kernels.shape[-1]
         self.present = kernels[..., 0].copy()
-        self.recent = np.ascontiguousarray(kernels[..., 1 : BLOCK + 1])
         self.kernels = kernels
         self._transforms: dict[int, npt.NDArray[np.complex128]] = {}
+        self._matrices: dict[tuple[int, int], FloatArray] = {}
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -52,6 +52,24 @@ class KernelTable:
             head[..., 0] = 0.0
             self._transforms[length] = fft.rfft(head, 2 * length, axis=-1, workers=WORKERS)
         return self._transforms[length]
+
+    def matrix(self, length: int, offset: int) -> FloatArray:
+        """Return k_{offset + t - j} (0 before k_0) as matrices from (input, j) to t, both below ``length``.
+
+        Returns
+        -------
+        ndarray, shape (outputs, M + 1, length, inputs * length)
+        """
+        key = (length, offset)
+        if key not in self._matrices:
+            outputs, inputs, modes = self.shape
+            head = np.zeros((outputs, inputs, modes, length + 2 * max(offset, length)))
+            reach = min(offset + length, self.steps)
+            head[..., length : length + reach] = self.kernels[..., :reach]
+            lags = length + offset + np.arange(length)[:, None] - np.arange(length)
+            spread = head[..., lags].transpose(0, 2, 3, 1, 4)
+            self._matrices[key] = np.ascontiguousarray(spread).reshape(outputs, modes, length, inputs * length)
+        return self._matrices[key]
 
 
 class HistorySum:
@@ -70,31 +88,50 @@ class HistorySum:
         self._step = 0
         self.inputs = np.zeros((inputs, halves, modes, table.steps))
         self._promised = np.zeros((outputs, halves, modes, table.steps))
-        self._reversed = np.zeros((inputs, halves, modes, BLOCK))
 
-    def present(self) -> FloatArray:
-        """Return sum_{j<n} k_{n-j} x_j at the present step n, shape (outputs, halves, M + 1)."""
-        total: FloatArray = self._promised[..., self._step].copy()
-        recent = self._step % BLOCK
-        if recent:
-            products = self._table.recent[:, :, None, :, :recent] * self._reversed[None, ..., BLOCK - recent :]
-            total += products.sum(axis=(1, 4))
-        return total
+    def ahead(self, count: int) -> FloatArray:
+        """Return what the inputs so far, x_0 to x_{n-1}, give to the steps n to n + count - 1: (outputs, halves, M + 1, count).
 
-    def push(self, values: FloatArray) -> None:
-        """Append the input of the present step, shape (inputs, halves, M + 1), and advance."""
-        self.inputs[..., self._step] = values
-        self._reversed[..., BLOCK - 1 - self._step % BLOCK] = values
-        self._step += 1
-        if self._step % BLOCK == 0 and self._step < self._table.steps:
-            self._promise()
+        ``count`` is at most the length of the blocks pushed.
+        """
+        return self._promised[..., self._step : self._step + count]
 
-    def _promise(self) -> None:
-        """Add the contribution of the longest complete dyadic block that ends here to as many steps ahead."""
-        length = self._step & -self._step
+    def push(self, values: FloatArray) -> FloatArray:
+        """Append the inputs of a block of steps and advance.
+
+        All blocks have the same length; only the last may be shorter.
+
+        Parameters
+        ----------
+        values : ndarray, shape (inputs, halves, M + 1, count)
+
+        Returns
+        -------
+        ndarray, shape (outputs, halves, M + 1, count)
+            What these inputs give to their own steps, k_0 included.
+        """
+        count = values.shape[-1]
+        self.inputs[..., self._step : self._step + count] = values
+        own = self._by_matrix(values, 0)
+        self._step += count
+        if self._step < self._table.steps:
+            blocks = self._step // count
+            self._promise(count * (blocks & -blocks))
+        return own
+
+    def _by_matrix(self, values: FloatArray, offset: int) -> FloatArray:
+        inputs, halves, modes, length = values.shape
+        stacked = values.transpose(2, 0, 3, 1).reshape(modes, inputs * length, halves)
+        return np.asarray((self._table.matrix(length, offset) @ stacked).transpose(0, 3, 1, 2))
+
+    def _promise(self, length: int) -> None:
+        """Add the contribution of the last ``length`` steps to as many steps ahead."""
         start, stop = self._step - length, min(self._step + length, self._table.steps)
-        block = fft.rfft(self.inputs[..., start : self._step], 2 * length, axis=-1, workers=WORKERS)
-        transform = self._table.transform(length)
-        total = np.einsum("ijmk,jhmk->ihmk", transform, block)
-        ahead = fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length : length + stop - self._step]
-        self._promised[..., self._step : stop] += ahead
+        recent = self.inputs[..., start : self._step]
+        if length <= _BY_MATRIX:
+            ahead = self._by_matrix(recent, length)
+        else:
+            block = fft.rfft(recent, 2 * length, axis=-1, workers=WORKERS)
+            total = np.einsum("ijmk,jhmk->ihmk", self._table.transform(length), block)
+            ahead = fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length:]
+        self._promised[..., self._step : stop] += ahead[..., : stop - self._step]

@@ -1,31 +1,37 @@
 """The interface march: absorbers with any force law and saturating actuators, one small implicit solve a step.
 
-Unknown are only the forces f at the points where absorbers touch shells, the velocities of their masses, and what saturated
-actuators lack. The shells and fluids enter through their velocity kernels,
+Unknown are only the stretches D of the links and, where actuators saturate, the voltages asked for, together z. The shells and fluids
+enter through their velocity kernels,
 
     dw/dt = (dw/dt)_linear + k * p,
 
 summed by product integration; springs and masses are stepped by the trapezoidal rule. The step weights keep the positive real
 part of the kernel and the trapezoidal rule keeps energy, so no step is unstable, however stiff or damped the absorbers.
+
+Time is worked through in blocks of a few steps. What came before a block, and what is linear in it, is summed for all its steps at
+once; step by step remains z_n = z_known + sum_l Z_l n(z_{n-l}), n(z) what the nonlinear laws add to the linear ones.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from coaxshell.acoustics.operators import FloatArray
+from coaxshell.errors import InputError
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.block_response import LinkConstants, block_response, over_block
 from coaxshell.solver.history import HistorySum
-from coaxshell.solver.newton import InterfaceNewton, StepState
+from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
+from coaxshell.solver.newton import MAX_ITERATIONS, ConvergenceError, ImplicitStep
 from coaxshell.solver.prepared import PreparedStructure
-from coaxshell.solver.saturation import SaturatedShell
+from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
 from coaxshell.solver.spectral import Progress
 
-_REPORT_EVERY = 100
-_COUPLING_TOLERANCE = 1e-10
-_MAX_COUPLING = 30
+_LONGEST_BLOCK = 32
+_BLOCK_UNKNOWNS = 256
+"""Unknowns of a block: above, its matrices leave the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -64,89 +70,186 @@ def march(structure: PreparedStructure, absorbers: AbsorberSet, *, saturate: boo
     saturate : bool
         Whether actuators stop at their field limit.
     progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        If a step does not converge.
     """
     return _March(structure, absorbers, saturate).run(progress)
 
 
 class _March:
-    """State and constants of one march."""
+    """State and constants of one march. Block arrays run over (step, row)."""
 
     def __init__(self, structure: PreparedStructure, absorbers: AbsorberSet, saturate: bool) -> None:
-        self.steps, self.count = structure.grid.time.size, absorbers.count
-        self.shells = len(structure.problem.shells)
+        self.structure, self.count, self.halves = structure, absorbers.count, absorbers.halves
+        self.shells, self.controlled = len(structure.problem.shells), structure.controlled if saturate else []
         self.points = InterfacePoints(structure.problem, absorbers, structure.max_order)
-        table = structure.kernels_with_voltage if saturate else structure.kernels
-        self.history = HistorySum(table, absorbers.halves)
-        self.immediate = table.present
-        self.actuators: list[SaturatedShell] = []
-        if saturate:
-            self.asked = np.zeros((len(structure.controlled), absorbers.halves, *structure.linear_voltage.shape[2:]))
-            self.asked[:, : structure.linear_voltage.shape[1]] = structure.linear_voltage
-            self.actuators = [
-                SaturatedShell(structure.problem, i, table.present[self.shells + row, i], absorbers.halves)
-                for row, i in enumerate(structure.controlled)
-            ]
-        self.state = StepState.at_rest(self.count)
-        if self.count:
-            self.newton = InterfaceNewton(absorbers, self.points.immediate(table.present), structure.grid.time_step)
-            self.displacement = self._by_step(self.points.evaluate(structure.linear_displacement))
-            self.velocity = self._by_step(self.points.evaluate(structure.linear_velocity))
+        self.table = structure.kernels_with_voltage if saturate else structure.kernels
+        self.history = HistorySum(self.table, self.halves)
+        self.modes = structure.max_order + 1
+        self.limits = np.array([voltage_limit(structure.problem, i) for i in self.controlled])
+        self.full_lack = np.array([structure.problem.actuator_pressure(i) for i in self.controlled]) * self.limits
+        unknowns = 2 * self.count + len(self.controlled) * self.halves * self.modes
+        self.length = _LONGEST_BLOCK
+        while self.length > 1 and self.length * unknowns > _BLOCK_UNKNOWNS:
+            self.length //= 2
+        self._links(absorbers)
+        self._linear_motion()
+
+    def _links(self, absorbers: AbsorberSet) -> None:
+        """Prepare the answers within a block and the implicit step."""
+        kernels = self.table.kernels[: self.shells, ..., : self.length]
+        of_forces = np.stack([self.points.immediate(kernels[..., lag]) for lag in range(kernels.shape[-1])])
+        step = self.structure.grid.time_step
+        self.links = LinkConstants.of(absorbers, np.diag(of_forces[0]), step)
+        lacks = self._lacks_to_pressure(np.eye(len(self.controlled) * self.halves * self.modes))
+        moved = np.stack([self.points.evaluate(_answer(kernels[..., lag], lacks)) for lag in range(kernels.shape[-1])])
+        response = block_response(self.links, of_forces, moved)
+        unknowns = np.concatenate([response.stretch, self._voltages(response.force, lacks)], axis=1)
+        self.rows = over_block(unknowns)
+        size = unknowns.shape[1]
+        self.earlier = [self.rows[step * size : (step + 1) * size, : step * size] for step in range(unknowns.shape[0])]
+        self.reaction = over_block(response.force)
+        self.pull = over_block(response.mass_velocity)
+        springs = CubicSprings(np.tile(absorbers.cubic, 2), np.tile(self.links.lent, 2))
+        law = (
+            springs
+            if not self.controlled
+            else SpringsAndActuators(springs, 2 * self.count, LimitedVoltages(len(self.controlled), self.halves, self.modes))
+        )
+        self.law, self.newton = law, ImplicitStep(unknowns[0], law)
+        half, length = self.links.half_step, kernels.shape[-1]
+        self.integral = half * (2.0 * np.tri(length, k=-1) + np.eye(length))
+
+    def _voltages(self, force: FloatArray, lacks: FloatArray) -> FloatArray:
+        """Return the voltages asked for, in units of the limits, per unit input: shape (lags, amplitudes, inputs)."""
+        lags, _, columns = force.shape
+        found = np.zeros((lags, len(self.controlled) * self.halves * self.modes, columns))
+        if not self.controlled:
+            return found
+        pressures = [self.points.project(f) for f in force]
+        pressures[0][..., columns - lacks.shape[-1] :] += lacks
+        for lag in range(lags):
+            volts = sum(_answer(self.table.kernels[self.shells :, ..., k], pressures[lag - k]) for k in range(lag + 1))
+            found[lag] = (volts / self.limits[:, None, None, None]).reshape(-1, columns)
+        return found
+
+    def _lacks_to_pressure(self, lacks: FloatArray) -> FloatArray:
+        """Return modal pressures (shells, halves, M + 1, ...) of what actuators lack (amplitudes, ...) in units of their limits."""
+        pressure = np.zeros((self.shells, self.halves, self.modes, *lacks.shape[1:]))
+        parts = lacks.reshape(len(self.controlled), self.halves, self.modes, *lacks.shape[1:])
+        for part, shell, scale in zip(parts, self.controlled, self.full_lack, strict=True):
+            pressure[shell] = scale * part
+        return pressure
+
+    def _linear_motion(self) -> None:
+        """Sample the motion without absorbers and the voltages asked for without limits, shape (T, rows)."""
+        structure = self.structure
+        self.linear_displacement = self._by_step(self.points.evaluate(structure.linear_displacement))
+        self.linear_velocity = self._by_step(self.points.evaluate(structure.linear_velocity))
+        steps = structure.grid.time.size
+        asked = np.zeros((len(self.controlled), self.halves, self.modes, steps))
+        if self.controlled:
+            asked[:, : structure.linear_voltage.shape[1]] = structure.linear_voltage / self.limits[:, None, None, None]
+        self.asked = np.ascontiguousarray(asked.reshape(-1, steps).T)
 
     def _by_step(self, histories: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(histories.T).reshape(self.steps, 2, self.count)
+        return np.ascontiguousarray(histories.T).reshape(histories.shape[-1], 2, self.count)
 
     def run(self, progress: Progress | None) -> MarchResult:
-        """Return the histories of all steps."""
-        force, mass = np.zeros((2, self.count, self.steps)), np.zeros((self.count, self.steps))
-        correction = np.zeros_like(self.history.inputs) if self.actuators else None
-        iterations = 0
-        for n in range(self.steps):
-            if n > 0:
-                lacking, used = self._step(n)
-                iterations += used
-                pressure = self._forces()
-                if correction is not None and lacking is not None:
-                    correction[..., n] = lacking
-                    pressure = pressure + lacking
-                self.history.push(pressure)
-            else:
-                self.history.push(np.zeros(self.history.inputs.shape[:-1]))
-            force[..., n], mass[:, n] = self.state.force, self.state.mass_displacement
-            if progress is not None and (n + 1) % _REPORT_EVERY == 0:
-                progress((n + 1) / self.steps, "interface march")
-        return MarchResult(force.reshape(2 * self.count, self.steps), mass, self.history.inputs, correction, iterations)
+        """Return the histories of all steps; the first instant is at rest."""
+        steps, n = self.structure.grid.time.size, self.count
+        force, mass, lacks = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, self.asked.shape[1]))
+        pressure = np.zeros((self.shells, self.halves, self.modes, steps))
+        state = BlockState(*np.zeros((3, 2, n)), *np.zeros((2, n)))
+        for start in range(1, steps, self.length):
+            block = slice(start, min(start + self.length, steps))
+            count = block.stop - start
+            state, force[block], mass[block], lacks[block] = self._block(block, state)
+            pressure[..., block] = self._pressure(force[block].reshape(count, -1).T, lacks[block].T)
+            own = self.points.evaluate(self.history.push(pressure[..., block])[: self.shells]).T.reshape(count, 2, n)
+            state = state.moved(own, self.integral[count - 1, :count])
+            if progress is not None:
+                progress(block.stop / steps, "interface march")
+        lacking = self._lacks_to_pressure(lacks.T) if self.controlled else None
+        return MarchResult(force.reshape(steps, -1).T, mass.T, pressure, lacking, self.newton.iterations)
 
-    def _forces(self) -> FloatArray:
-        return self.points.project(self.state.force.ravel())
+    def _pressure(self, force: FloatArray, lacks: FloatArray) -> FloatArray:
+        pressure = self.points.project(force)
+        return pressure + self._lacks_to_pressure(lacks) if self.controlled else pressure
 
-    def _step(self, n: int) -> tuple[FloatArray | None, int]:
-        """Advance to step n; return the corrections' modal pressure and the Newton iterations used."""
-        promised = self.history.present()
-        if not self.actuators:
-            return None, self._absorbers(n, promised[: self.shells], self.state)
-        lacking = np.zeros(self.history.inputs.shape[:-1])
-        iterations, before = 0, self.state
-        for _ in range(_MAX_COUPLING):
-            if self.count:
-                self.state = before.copy()
-                velocity = promised[: self.shells] + np.einsum("ijm,jhm->ihm", self.immediate[: self.shells], lacking)
-                iterations += self._absorbers(n, velocity, self.state)
-            update = self._corrections(n, promised, self._forces())
-            change = float(np.abs(update - lacking).max())
-            lacking = update
-            if not self.count or change <= _COUPLING_TOLERANCE * max(float(np.abs(lacking).max()), 1e-30):
-                break
-        return lacking, iterations
+    def _block(self, block: slice, state: BlockState) -> tuple[BlockState, FloatArray, FloatArray, FloatArray]:
+        """Solve one block from the state before it.
 
-    def _absorbers(self, n: int, velocity: FloatArray, state: StepState) -> int:
-        excited = self.points.evaluate(velocity).reshape(2, self.count)
-        return self.newton.step(state, excited, self.displacement[n], self.velocity[n])
+        Returns the state at its end, but for what its own forces move, the forces, the masses' displacements and what actuators lack.
+        """
+        n, half, count = self.count, self.links.half_step, block.stop - block.start
+        integral = self.integral[:count, :count]
+        promised = self.history.ahead(count)
+        excited = self.points.evaluate(promised[: self.shells]).T
+        free_w = integral @ excited
+        excited, free_w = excited.reshape(count, 2, n), free_w.reshape(count, 2, n) + (state.displacement + half * state.velocity)
+        free_u = state.mass_velocity - self.links.mobility * state.force.sum(axis=0)
+        free_q = state.mass_displacement + half * state.mass_velocity + integral.sum(axis=1)[:, None] * free_u
+        free_stretch = free_q[:, None] - self.linear_displacement[block] - free_w
+        drive = self.links.damping * (free_u - self.linear_velocity[block] - excited) + self.links.stiffness * free_stretch
+        added = self._march(block, promised, free_stretch.reshape(count, -1), drive.reshape(count, -1))
+        added[:, : 2 * n] += drive.reshape(count, -1)
+        flat = added.ravel()
+        force = (self.reaction[: 2 * n * count, : flat.size] @ flat).reshape(count, 2, n)
+        u = (self.pull[: n * count, : flat.size] @ flat).reshape(count, n)
+        mass = free_q + integral @ u
+        return BlockState(force[-1], free_w[-1], excited[-1], mass[-1], free_u + u[-1]), force, mass, added[:, 2 * n :]
 
-    def _corrections(self, n: int, promised: FloatArray, forces: FloatArray) -> FloatArray:
-        """Return the modal pressures of the corrections, given the absorbers' forces of this step."""
-        lacking = np.zeros_like(forces)
-        for row, actuator in enumerate(self.actuators):
-            output = self.shells + row
-            asked = self.asked[row, ..., n] + promised[output] + np.einsum("jm,jhm->hm", self.immediate[output], forces)
-            lacking[actuator.index] = actuator.correction(asked)
-        return lacking
+    def _march(self, block: slice, promised: FloatArray, free_stretch: FloatArray, drive: FloatArray) -> FloatArray:
+        """Return n(z) at the steps of a block, shape (steps, unknowns)."""
+        count, n = block.stop - block.start, self.count
+        asked = self.asked[block]
+        if self.controlled:
+            volts = promised[self.shells :] / self.limits[:, None, None, None]
+            asked = asked + volts.reshape(-1, count).T
+        added = np.zeros((count, self.asked.shape[1] + 2 * n))
+        added[:, : 2 * n] = drive
+        known = np.concatenate([free_stretch, asked], axis=1)
+        size = known.size
+        known += (self.rows[:size, :size] @ added.ravel()).reshape(known.shape)
+        flat = added.ravel()
+        for step in range(count):
+            earlier = self.earlier[step]
+            z = self._solve(known[step] + earlier @ flat[: earlier.shape[1]] if step else known[step])
+            added[step] = self.law.excess(z)
+        return added
+
+    def _solve(self, known: FloatArray) -> FloatArray:
+        try:
+            return self.newton.solve(known)
+        except ConvergenceError:
+            step = 2.0 * self.links.half_step
+            raise InputError(
+                "time_step",
+                f"{step:g} is too coarse for the absorbers: their forces did not converge in {MAX_ITERATIONS} iterations",
+                f"use time_step = {step / 4:g} or refinement = 4",
+            ) from None
+
+
+@dataclass(frozen=True)
+class BlockState:
+    """All that one block hands to the next: forces, forced displacement and velocity at the points (2, N), and the masses' (N,)."""
+
+    force: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    mass_displacement: FloatArray
+    mass_velocity: FloatArray
+
+    def moved(self, velocity: FloatArray, integral: FloatArray) -> BlockState:
+        """Return the state with the velocities (steps, 2, N) that the block's own forces give to the points."""
+        displacement = self.displacement + (integral @ velocity.reshape(integral.size, -1)).reshape(self.velocity.shape)
+        return replace(self, displacement=displacement, velocity=self.velocity + velocity[-1])
+
+
+def _answer(kernels: FloatArray, pressure: FloatArray) -> FloatArray:
+    """Return what modal pressures (shells, halves, M + 1, ...) cause through one weight per mode, (outputs, shells, M + 1)."""
+    return np.asarray(np.einsum("ijm,jhm...->ihm...", kernels, pressure))

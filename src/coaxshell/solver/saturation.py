@@ -24,6 +24,72 @@ _OVERSAMPLING = 4
 _FEWEST_POINTS = 180
 
 
+def circle(modes: int, halves: int) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices from modal amplitudes (halves * modes) to the points of a circle, and back.
+
+    One half has its points on the half circle: it is even.
+    """
+    orders = all_orders(modes - 1)
+    points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * halves
+    span = np.pi if halves == 1 else 2.0 * np.pi
+    theta = span * (np.arange(points) + 0.5) / points
+    angles = theta[:, None] * orders
+    evaluate = np.concatenate([np.cos(angles), np.sin(angles)][:halves], axis=1)
+    beta = np.tile(np.where(orders == 0, 2.0, 1.0), halves)
+    return evaluate, np.ascontiguousarray(evaluate.T * (2.0 / (beta * points))[:, None])
+
+
+class LimitedVoltages:
+    """What limited actuators lack, n(u) = clip(u) - u, by modes; u in units of each actuator's limit.
+
+    Parameters
+    ----------
+    shells : int
+        Controlled shells.
+    halves, modes : int
+    """
+
+    def __init__(self, shells: int, halves: int, modes: int) -> None:
+        self._shape = (shells, halves * modes)
+        self._evaluate, self._project = circle(modes, halves)
+        self._around, self._back = np.ascontiguousarray(self._evaluate.T), np.ascontiguousarray(self._project.T)
+        self._held = np.zeros((shells, self._evaluate.shape[0]))
+
+    def _within(self, amplitudes: FloatArray) -> bool:
+        """Return whether no sum of these amplitudes can reach a limit."""
+        return bool(np.abs(amplitudes).sum(axis=1).max() <= 1.0)
+
+    def excess(self, z: FloatArray) -> FloatArray:
+        """Return n(u) by modes."""
+        amplitudes = z.reshape(self._shape)
+        if self._within(amplitudes):
+            return np.zeros_like(z)
+        volts = amplitudes @ self._around
+        return np.asarray(((np.clip(volts, -1.0, 1.0) - volts) @ self._back).ravel())
+
+    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+        """Keep the tangent, -1 on the saturated points, and return R T."""
+        self._held = (np.abs(z.reshape(self._shape) @ self._around) > 1.0).astype(np.float64)
+        answer = np.zeros_like(response)
+        width = self._shape[1]
+        for shell, held in enumerate(self._held):
+            rows = np.flatnonzero(held)
+            if rows.size:
+                part = slice(shell * width, (shell + 1) * width)
+                tangent = self._project[:, rows] @ self._evaluate[rows]
+                answer[:, part] = -response[:, part] @ tangent
+        return answer
+
+    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+        """Return n(u) - T u with the tangent last kept."""
+        amplitudes = z.reshape(self._shape)
+        if not self._held.any() and self._within(amplitudes):
+            return np.zeros_like(z)
+        volts = amplitudes @ self._around
+        beyond = np.clip(volts, -1.0, 1.0) + (self._held - 1.0) * volts
+        return np.asarray((beyond @ self._back).ravel())
+
+
 class SaturatedShell:
     """The actuator of one shell on a circle of points.
 
@@ -41,18 +107,11 @@ class SaturatedShell:
         self.index = index
         self.limit = voltage_limit(problem, index)
         self.pressure_per_volt = problem.actuator_pressure(index)
-        orders = all_orders(present.size - 1)
-        points = max(_OVERSAMPLING * present.size, _FEWEST_POINTS) * halves
-        span = np.pi if halves == 1 else 2.0 * np.pi
-        theta = span * (np.arange(points) + 0.5) / points
-        angles = theta[:, None] * orders
-        self.evaluate = np.concatenate([np.cos(angles), np.sin(angles)][:halves], axis=1)
-        beta = np.tile(np.where(orders == 0, 2.0, 1.0), halves)
-        self.project = np.ascontiguousarray(self.evaluate.T * (2.0 / (beta * points))[:, None])
+        self.evaluate, self.project = circle(present.size, halves)
         self._shape = (halves, present.size)
         self._feedthrough = np.tile(present, halves) * self.pressure_per_volt
         self._response = (self.evaluate * self._feedthrough) @ self.project
-        self._saturated = np.zeros(points, dtype=bool)
+        self._saturated = np.zeros(self.evaluate.shape[0], dtype=bool)
 
     def correction(self, asked: FloatArray) -> FloatArray:
         """Return the modal pressure (halves, M + 1) of the correction to modal voltages asked for without it."""

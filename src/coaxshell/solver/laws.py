@@ -1,0 +1,86 @@
+"""What nonlinear laws add to the linear ones at the interface: cubic springs, and actuators that stop at their limit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from coaxshell.acoustics.operators import FloatArray
+from coaxshell.solver.saturation import LimitedVoltages
+
+
+class CubicSprings:
+    """n(D) = k_nl D^3 - kappa D, kappa the stiffness that was lent to the linear problem.
+
+    Parameters
+    ----------
+    cubic, lent : ndarray, shape (n,)
+        k_nl and kappa of every link.
+    """
+
+    def __init__(self, cubic: FloatArray, lent: FloatArray) -> None:
+        self._cubic, self._lent = cubic, lent
+        self._offset = lent.copy()
+
+    def excess(self, z: FloatArray) -> FloatArray:
+        """Return n(D)."""
+        return np.asarray((self._cubic * z * z - self._lent) * z)
+
+    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+        """Keep T = 3 k_nl D^2, without the kappa that makes the tangent of a massless absorber singular at D = 0; return R T."""
+        tangent = 3.0 * self._cubic * z * z
+        self._offset = tangent + self._lent
+        return np.asarray(response * tangent)
+
+    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+        """Return n(D) - T D."""
+        beyond = self._cubic * z
+        beyond *= z
+        beyond -= self._offset
+        beyond *= z
+        return beyond
+
+    def relative(self, change: FloatArray, z: FloatArray) -> float:
+        """Return |change|/|z|."""
+        return relative_size(change, z)
+
+
+class SpringsAndActuators:
+    """Cubic springs first, then the voltages of limited actuators.
+
+    Parameters
+    ----------
+    springs : CubicSprings
+    links : int
+        Links, 2N.
+    voltages : LimitedVoltages
+    """
+
+    def __init__(self, springs: CubicSprings, links: int, voltages: LimitedVoltages) -> None:
+        self._springs, self._links, self._voltages = springs, links, voltages
+
+    def excess(self, z: FloatArray) -> FloatArray:
+        """Return both."""
+        return np.concatenate([self._springs.excess(z[: self._links]), self._voltages.excess(z[self._links :])])
+
+    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+        """Keep both tangents and return R T."""
+        n = self._links
+        springs = self._springs.freeze(z[:n], response[:, :n])
+        return np.concatenate([springs, self._voltages.freeze(z[n:], response[:, n:])], axis=1)
+
+    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+        """Return both."""
+        return np.concatenate([self._springs.beyond_tangent(z[: self._links]), self._voltages.beyond_tangent(z[self._links :])])
+
+    def relative(self, change: FloatArray, z: FloatArray) -> float:
+        """Return the larger of the two relative changes."""
+        n = self._links
+        return max(relative_size(change[:n], z[:n]), relative_size(change[n:], z[n:]))
+
+
+def relative_size(change: FloatArray, z: FloatArray) -> float:
+    """Return |change|/|z|, 0 if nothing changes."""
+    moved = float(change.dot(change))
+    return math.sqrt(moved / max(float(z.dot(z)), 1e-300)) if moved > 0.0 else 0.0
