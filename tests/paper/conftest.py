@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.paper import Resolution, figure_recipe
+from coaxshell.paper import Resolution, Runs, figure_recipe
 
 TINY = Resolution(duration=2.5, time_step=1e-2, modes=16)
 PER_UNIT = {"stress": 1e-6, "displacement": 1e6}
@@ -17,7 +17,7 @@ PER_UNIT = {"stress": 1e-6, "displacement": 1e6}
 @pytest.fixture(scope="session")
 def drawn():
     """Return a function from the number of a figure to its figure at the tiny resolution."""
-    return lambda number: figure_recipe(number).draw([cx.presets.load(name) for name in figure_recipe(number).presets], TINY, None)
+    return lambda number: figure_recipe(number).draw([cx.presets.load(name) for name in figure_recipe(number).presets], Runs(TINY), None)
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.cli import main
 from coaxshell.errors import InputError
-from coaxshell.paper import FIGURES, StudyRecipe, figure_recipe, solve_each
+from coaxshell.paper import FIGURES, Runs, StudyRecipe, figure_recipe, solve_each
 from coaxshell.paper.cases import count, gains, power
 from coaxshell.paper.histories import named_warnings, plain
 from coaxshell.paper.limiting_cases import rigid_pressure
@@ -99,7 +99,7 @@ def test_a_system_that_does_not_fit_is_refused(tiny, number):
     bare = cx.presets.load("bare")
     for system in (bare.replace(shells=[cx.RigidShell(radius=0.5), bare.shells[1]]), cx.presets.load("iakovlev-filled")):
         with pytest.raises(InputError):
-            figure_recipe(number).draw([system], tiny, None)
+            figure_recipe(number).draw([system], Runs(tiny), None)
 
 
 def test_numbers_as_text():

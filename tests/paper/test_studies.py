@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.paper import Runs
 from coaxshell.paper.absorbers import counts
 
 POINTS = [("inner", 0.0), ("inner", 180.0), ("outer", 0.0), ("outer", 180.0)]
@@ -80,7 +81,7 @@ def test_attachment_position_carries_the_sine_orders(drawn, direct, line):
 
 
 def test_number_of_absorbers(tiny):
-    figure = counts(fine=(0, 1, 2), coarse=(0, 10))([BARE], tiny, None).figure
+    figure = counts(fine=(0, 1, 2), coarse=(0, 10))([BARE], Runs(tiny), None).figure
     for index, (shell, chosen) in enumerate([(0, (0, 10)), (1, (0, 10)), (0, (0, 1, 2)), (1, (0, 1, 2))]):
         ax, right = figure.axes[index], figure.axes[4 + index]
         systems = [ring(n) if n else BARE for n in chosen]
@@ -104,7 +105,7 @@ def test_a_turned_source_turns_the_study(drawn, tiny, line):
     from coaxshell.paper import figure_recipe
 
     turned = BARE.replace_path("source.angle", 70.0)
-    figure = figure_recipe("7").draw([turned], tiny, None).figure
+    figure = figure_recipe("7").draw([turned], Runs(tiny), None).figure
     for ax, other in zip(figure.axes[:2], drawn("7").figure.axes[:2], strict=True):
         for curve in other.lines[:6]:
             close(line(ax, curve.get_label()), np.asarray(curve.get_ydata()))

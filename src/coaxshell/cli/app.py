@@ -14,6 +14,7 @@ from coaxshell.cli.figure import figure
 from coaxshell.cli.info import info
 from coaxshell.cli.init import init
 from coaxshell.cli.presets import presets
+from coaxshell.cli.reproduce import reproduce
 from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
 from coaxshell.cli.snapshots import snapshots
@@ -50,5 +51,5 @@ def coaxshell(
         typer.echo(context.get_help())
 
 
-for _command in (run, presets, init, info, figure, snapshots, animate, export, sweep, verify, response_function, studio):
+for _command in (run, presets, init, info, figure, reproduce, snapshots, animate, export, sweep, verify, response_function, studio):
     app.command()(_command)

@@ -78,11 +78,11 @@ def _draw_study(
 ) -> tuple[str, ...]:
     """Solve, draw and save a figure of many runs, and return their warnings."""
     from coaxshell.cli.scenario import load_system
-    from coaxshell.paper import Resolution
+    from coaxshell.paper import Resolution, Runs
     from coaxshell.plotting import save_figure
 
     systems = [load_system(name, changes or ()) for name in sources]
     with named_as_options(), progress(quiet) as report:
-        drawn = recipe.draw(systems, Resolution(**request.settings()), report)
+        drawn = recipe.draw(systems, Runs(Resolution(**request.settings())), report)
     save_figure(drawn.figure, target)
     return drawn.warnings

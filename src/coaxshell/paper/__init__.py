@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from coaxshell.paper.figures import FIGURES, figure_recipe
+from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import Drawn, FigureRecipe, StudyRecipe
 from coaxshell.paper.runs import Resolution, solve_each
 
-__all__ = ["FIGURES", "Drawn", "FigureRecipe", "Resolution", "StudyRecipe", "figure_recipe", "solve_each"]
+__all__ = ["FIGURES", "Drawn", "FigureRecipe", "Resolution", "Runs", "StudyRecipe", "figure_recipe", "solve_each"]

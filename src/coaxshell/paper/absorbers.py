@@ -11,8 +11,9 @@ from coaxshell.errors import InputError
 from coaxshell.model import Shell
 from coaxshell.paper import cases
 from coaxshell.paper.histories import named_warnings, point_name, solved_curves
+from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Report, Resolution, solve_each
+from coaxshell.paper.runs import Report
 from coaxshell.plotting.absorber_counts import StressByCount, figure_absorber_counts
 from coaxshell.plotting.histories import QUANTITIES
 from coaxshell.plotting.offsets import figure_offsets
@@ -28,9 +29,9 @@ HEADS = (("inner", 0.0), ("outer", 0.0))
 _MEGA = 1e-6
 
 
-def offsets(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+def offsets(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
     """Draw Figure 8: the displacement at the heads for an absorber at 0 to 60 degrees beside them, up to t = 2."""
-    solved, warnings = solved_curves(cases.offset(systems[0]), HEADS, "displacement", resolution.up_to(SHOWN), progress)
+    solved, warnings = solved_curves(cases.offset(systems[0]), HEADS, "displacement", runs, progress, SHOWN)
     panels = {
         point_name(*point): (curves["bare"], {float(name): curve for name, curve in curves.items() if name != "bare"})
         for point, curves in solved.items()
@@ -40,19 +41,19 @@ def offsets(systems: list[System], resolution: Resolution, progress: Report | No
 
 def counts(
     fine: Sequence[int] = cases.COUNTS, coarse: Sequence[int] = cases.COARSE_COUNTS
-) -> Callable[[list[System], Resolution, Report | None], Drawn]:
+) -> Callable[[list[System], Runs, Report | None], Drawn]:
     """Return what draws Figure 9: peak and RMS stress of both shells, for two lists of numbers of absorbers."""
 
-    def draw(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+    def draw(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
         if not all(isinstance(shell, Shell) for shell in (systems[0].shells[0], systems[0].shells[-1])):
             raise InputError("shells", "the innermost or the outermost one is rigid and has no stress", "give elastic ones")
         wanted = tuple(sorted({*fine, *coarse}))
         stress: dict[str, dict[int, ShellSummary]] = {"inner": {}, "outer": {}}
         warnings: list[tuple[str, str]] = []
-        for name, response in solve_each(cases.count(systems[0], wanted), resolution, progress):
-            inner, *_, outer = response.summary().shells
-            stress["inner"][int(name)], stress["outer"][int(name)] = inner, outer
-            warnings += [(f"N = {name}", text) for text in response.warnings]
+        for name, run in runs.each(cases.count(systems[0], wanted), progress, peaks_only=True):
+            for shell in stress:
+                stress[shell][int(name)] = run.shells[shell]
+            warnings += [(f"N = {name}", text) for text in run.warnings]
         panels = [
             (f"{shell.capitalize()} shell, $N$ = {chosen[0]} to {chosen[-1]}", _by_count(stress[shell], chosen))
             for chosen in (coarse, fine)

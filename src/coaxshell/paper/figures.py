@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from coaxshell.errors import InputError
 from coaxshell.paper import cases
 from coaxshell.paper.histories import BOTH, INNER, MAGNIFIED, PER_LENGTH, hybrid, stress_study
+from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import Drawn, FigureRecipe, StudyRecipe
-from coaxshell.paper.runs import Report, Resolution
+from coaxshell.paper.runs import Report
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,22 +38,22 @@ def _pressure_rms(responses: list[Response], progress: Report | None) -> Figure:
     return figure_pressure_rms(*responses)
 
 
-def _limiting_cases(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+def _limiting_cases(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
     from coaxshell.paper.limiting_cases import limiting_cases
 
-    return limiting_cases(systems, resolution, progress)
+    return limiting_cases(systems, runs, progress)
 
 
-def _offsets(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+def _offsets(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
     from coaxshell.paper.absorbers import offsets
 
-    return offsets(systems, resolution, progress)
+    return offsets(systems, runs, progress)
 
 
-def _counts(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+def _counts(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
     from coaxshell.paper.absorbers import counts
 
-    return counts()(systems, resolution, progress)
+    return counts()(systems, runs, progress)
 
 
 _BARE = ("bare",)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from coaxshell.paper import cases
+from coaxshell.paper.known_runs import Runs
+from coaxshell.paper.observed import SIDES, Observed
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Report, Resolution, solve_each
+from coaxshell.paper.runs import Report
 from coaxshell.plotting.histories import QUANTITIES, History, history
 
 if TYPE_CHECKING:
@@ -40,25 +43,32 @@ def add_curves(curves: Curves, name: str, response: Response, points: Points, qu
         curves.setdefault((shell, turn), {})[name] = history(response, quantity, shell, head + turn)
 
 
+def history_of(run: Observed, quantity: str, shell: str, turn: float) -> History:
+    """Return the curve of a run at a point, so many degrees from the head, in drawn units."""
+    side = next(name for name, angle in SIDES.items() if angle == turn)
+    return History(run.time, QUANTITIES[quantity].per_si * run.at(quantity, shell, side), 1e3 * run.transit_time)
+
+
 def solved_curves(
-    systems: cases.Cases, points: Points, quantity: str, resolution: Resolution, progress: Report | None
+    systems: cases.Cases, points: Points, quantity: str, runs: Runs, progress: Report | None, last: float = math.inf
 ) -> tuple[Curves, tuple[str, ...]]:
-    """Return the histories of each system at each point, and the warnings with the systems' names."""
+    """Return the histories of each system at each point up to *last* transits, and the warnings with the systems' names."""
     curves: Curves = {}
     warnings: list[tuple[str, str]] = []
-    for name, response in solve_each(systems, resolution, progress):
-        add_curves(curves, name, response, points, quantity)
-        warnings += [(plain(name), text) for text in response.warnings]
+    for name, run in runs.each(systems, progress, resolution=runs.resolution.up_to(last)):
+        for point in points:
+            curves.setdefault(point, {})[name] = history_of(run, quantity, *point)
+        warnings += [(plain(name), text) for text in run.warnings]
     return curves, named_warnings(warnings)
 
 
 def stress_study(
     varied: Callable[[System], cases.Cases], points: Points, legend_title: str, magnified: float | None
-) -> Callable[[list[System], Resolution, Report | None], Drawn]:
+) -> Callable[[list[System], Runs, Report | None], Drawn]:
     """Return what draws the stress of varied systems at the given points."""
 
-    def draw(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
-        curves, warnings = solved_curves(varied(systems[0]), points, "stress", resolution, progress)
+    def draw(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+        curves, warnings = solved_curves(varied(systems[0]), points, "stress", runs, progress)
         return Drawn(_figure(curves, legend_title, magnified), warnings)
 
     return draw

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
@@ -11,16 +9,14 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.errors import InputError
 from coaxshell.model import VACUUM, RigidShell, Shell, System
-from coaxshell.paper.cases import head_of
 from coaxshell.paper.histories import named_warnings
+from coaxshell.paper.known_runs import Runs
+from coaxshell.paper.observed import Observed
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Report, Resolution, solve_each
+from coaxshell.paper.runs import Report, Resolution
 from coaxshell.plotting.curve_sheets import SheetCurve, SheetPanel, figure_curve_sheet
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import dimensionless
-
-if TYPE_CHECKING:
-    from coaxshell.response import Response
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,29 +25,35 @@ THICKNESSES = {5e-3: "sky", 1e-2: "blue", 2e-2: "green", 4e-2: "orange"}
 """Of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
 
 _ANGLES = {0.0: "blue", 45.0: "sky", 90.0: "green", 135.0: "amber", 180.0: "orange"}
-_SIDES = {"head": (0.0, "solid"), "tail": (180.0, (0, (4.0, 1.3)))}
+_SIDES = {"head": "solid", "tail": (0, (4.0, 1.3))}
 _COLOURS = {"outer": "blue", "inner": "orange"}
 _RELATIVE = "displacement / thickness, $w/h$"
 
 
-def limiting_cases(systems: list[System], resolution: Resolution, progress: Report | None) -> Drawn:
+def limiting_cases(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
     """Draw Figure 2 for an evacuated shell, a filled one in several thicknesses, and a double one."""
+    wanted = limiting_systems(systems)
+    filled_ones = [name for name in wanted if name.startswith("filled")]
+    found = {name: (wanted[name], run) for name, run in runs.each(wanted, progress)}
+    water = [(*found[name], thickness) for thickness, name in zip(THICKNESSES, filled_ones, strict=True)]
+    panels = [
+        SheetPanel("a  Evacuated shell, no motion", "pressure / incident peak", _pressures(*found["evacuated"], runs.resolution)),
+        SheetPanel("b  Evacuated shell", _RELATIVE, _ends(*found["evacuated"], "displacement", ("outer",))),
+        *(SheetPanel(f"c  Filled shell, {side}", _RELATIVE, _filled(water, side)) for side in _SIDES),
+        SheetPanel("d  Double shell, inner one hollow", _RELATIVE, _ends(*found["double"], "displacement", ("inner", "outer"))),
+        SheetPanel("e  Double shell, inner one hollow", "hoop stress (MPa)", _ends(*found["double"], "stress", ("inner", "outer"))),
+    ]
+    warnings = [(name, text) for name, (_, run) in found.items() for text in run.warnings]
+    return Drawn(figure_curve_sheet(panels), named_warnings(warnings))
+
+
+def limiting_systems(systems: list[System]) -> dict[str, System]:
+    """Return the systems of Figure 2 by name, from an evacuated shell, a filled one and a double one."""
     evacuated, filled, double = systems
     filled_ones = {
         f"filled, {1e3 * thickness:g} mm": filled.replace_path("shells[0].layers[0].thickness", thickness) for thickness in THICKNESSES
     }
-    wanted = {"evacuated": evacuated, **filled_ones, "double": double}
-    responses = dict(solve_each(wanted, resolution, progress))
-    water = [(response, thickness) for thickness, response in zip(THICKNESSES, (responses[name] for name in filled_ones), strict=True)]
-    panels = [
-        SheetPanel("a  Evacuated shell, no motion", "pressure / incident peak", _pressures(responses["evacuated"], resolution)),
-        SheetPanel("b  Evacuated shell", _RELATIVE, _ends(responses["evacuated"], "displacement", ("outer",))),
-        *(SheetPanel(f"c  Filled shell, {side}", _RELATIVE, _filled(water, side)) for side in _SIDES),
-        SheetPanel("d  Double shell, inner one hollow", _RELATIVE, _ends(responses["double"], "displacement", ("inner", "outer"))),
-        SheetPanel("e  Double shell, inner one hollow", "hoop stress (MPa)", _ends(responses["double"], "stress", ("inner", "outer"))),
-    ]
-    warnings = [(name, text) for name, response in responses.items() for text in response.warnings]
-    return Drawn(figure_curve_sheet(panels), named_warnings(warnings))
+    return {"evacuated": evacuated, **filled_ones, "double": double}
 
 
 def rigid_pressure(system: System, resolution: Resolution, modes: int, angles: list[float]) -> tuple[FloatArray, FloatArray]:
@@ -89,15 +91,14 @@ def rigid_pressure(system: System, resolution: Resolution, modes: int, angles: l
     return grid.time, np.asarray((basis @ modal).T, dtype=np.float64)
 
 
-def _pressures(response: Response, resolution: Resolution) -> list[SheetCurve]:
-    time, values = rigid_pressure(response.system, resolution, response.modes, list(_ANGLES))
+def _pressures(system: System, run: Observed, resolution: Resolution) -> list[SheetCurve]:
+    time, values = rigid_pressure(system, resolution, run.modes, list(_ANGLES))
     return [SheetCurve(f"{angle:g}°", time, values[:, k], colour) for k, (angle, colour) in enumerate(_ANGLES.items())]
 
 
-def _history(response: Response, quantity: str, shell: str, turn: float) -> FloatArray:
+def _history(system: System, run: Observed, quantity: str, shell: str, side: str) -> FloatArray:
     """Return the stress in MPa, or the displacement over the thickness of the shell."""
-    values = np.asarray(getattr(response, quantity)(shell, angle=[head_of(response.system) + turn]))[:, 0]
-    return values / (1e6 if quantity == "stress" else _thickness(response.system, shell))
+    return run.at(quantity, shell, side) / (1e6 if quantity == "stress" else _thickness(system, shell))
 
 
 def _thickness(system: System, shell: str) -> float:
@@ -107,25 +108,23 @@ def _thickness(system: System, shell: str) -> float:
     return float(sum(layer.thickness for layer in wall.layers))
 
 
-def _ends(response: Response, quantity: str, shells: tuple[str, ...]) -> list[SheetCurve]:
+def _ends(system: System, run: Observed, quantity: str, shells: tuple[str, ...]) -> list[SheetCurve]:
     return [
         SheetCurve(
             f"{shell} {side}" if len(shells) > 1 else side,
-            response.time,
-            _history(response, quantity, shell, turn),
+            run.time,
+            _history(system, run, quantity, shell, side),
             _COLOURS[shell],
             dash,
         )
         for shell in shells
-        for side, (turn, dash) in _SIDES.items()
+        for side, dash in _SIDES.items()
     ]
 
 
-def _filled(responses: list[tuple[Response, float]], side: str) -> list[SheetCurve]:
-    turn, dash = _SIDES[side]
+def _filled(water: list[tuple[System, Observed, float]], side: str) -> list[SheetCurve]:
+    dash = _SIDES[side]
     return [
-        SheetCurve(
-            f"{1e3 * thickness:g} mm", response.time, _history(response, "displacement", "outer", turn), THICKNESSES[thickness], dash
-        )
-        for response, thickness in responses
+        SheetCurve(f"{1e3 * thickness:g} mm", run.time, _history(system, run, "displacement", "outer", side), THICKNESSES[thickness], dash)
+        for system, run, thickness in water
     ]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.errors import InputError
 from coaxshell.model import Shell
 from coaxshell.paper.cases import head_of
 
@@ -56,13 +57,20 @@ class Observed:
     absorber: FloatArray = field(default_factory=lambda: np.empty((3, 0)))
     warnings: tuple[str, ...] = ()
 
+    def at(self, quantity: str, shell: str, side: str) -> FloatArray:
+        """Return a history at a point; InputError if the shell is rigid and has none."""
+        try:
+            return self.histories[quantity, shell, side]
+        except KeyError:
+            raise InputError("shells", f"the {shell} shell is rigid and has no {quantity}", "give an elastic one") from None
+
     def stress(self, shell: str, side: str) -> FloatArray:
         """Return the hoop stress at a point, Pa, shape (T,)."""
-        return self.histories["stress", shell, side]
+        return self.at("stress", shell, side)
 
     def displacement(self, shell: str, side: str) -> FloatArray:
         """Return the inward displacement of a point, m, shape (T,)."""
-        return self.histories["displacement", shell, side]
+        return self.at("displacement", shell, side)
 
 
 def observe(response: Response, *, peaks_only: bool = False) -> Observed:

@@ -6,12 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from coaxshell.paper.runs import Report, Resolution
+from coaxshell.paper.runs import Report
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from coaxshell.model import System
+    from coaxshell.paper.known_runs import Runs
     from coaxshell.response import Response
 
 
@@ -59,11 +60,11 @@ class StudyRecipe:
     presets : tuple of str
         Presets that are varied, in this order, unless other systems are given.
     draw : callable
-        From the systems, the resolution and a report of progress (or None) to what was drawn.
+        From the systems, the runs and a report of progress (or None) to what was drawn.
     """
 
     number: str
     title: str
     presets: tuple[str, ...]
-    draw: Callable[[list[System], Resolution, Report | None], Drawn]
+    draw: Callable[[list[System], Runs, Report | None], Drawn]
     caption: str

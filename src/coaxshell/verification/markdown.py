@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from coaxshell.verification.rows import HEADINGS
 from coaxshell.verification.suite import Report
 
@@ -15,13 +17,17 @@ def markdown(report: Report) -> str:
     for result in report.results:
         parts.append(f"## {result.title}")
         parts.append(f"`{result.name}`, {result.seconds:.1f} s. {result.about}")
-        lines = [_line(HEADINGS), _line(("---",) * len(HEADINGS))]
-        lines += [_line((*row.cells[:-1], f"**{row.verdict}**" if row.verdict == "FAIL" else row.verdict)) for row in result.rows]
-        parts.append("\n".join(lines))
+        rows = [(*row.cells[:-1], f"**{row.verdict}**" if row.verdict == "FAIL" else row.verdict) for row in result.rows]
+        parts.append(table(HEADINGS, rows))
     return "\n\n".join(parts) + "\n"
 
 
-def _line(cells: tuple[str, ...]) -> str:
+def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table as Markdown text; what would break it is escaped."""
+    return "\n".join(_line(cells) for cells in (headings, ("---",) * len(headings), *rows))
+
+
+def _line(cells: Sequence[str]) -> str:
     return "| " + " | ".join(_cell(cell) for cell in cells) + " |"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Iterable
 from html import escape
 
 from coaxshell.verification.drawing import svg
@@ -43,16 +44,25 @@ _NUMBERS = {"expected", "found", "error", "tolerance"}
 def page(report: Report) -> str:
     """Return the report as HTML text."""
     good = not report.failed
-    parts = [
-        "<!doctype html>",
-        f'<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<link rel="icon" href="data:,"><title>{escape(report.title)}</title><style>{STYLE}</style></head><body>',
+    body = [
         f'<header><h1>{escape(report.title)}</h1><p class="dim">{escape(report.circumstances)}</p><p class="dim">{escape(report.note)}</p>',
         f'<p class="verdict {"good" if good else "bad"}">{escape(report.verdict)}</p></header>',
         _contents(report) if len(report.results) > 1 else "",
         "<main>",
         *(_section(result) for result in report.results),
-        "</main></body></html>",
+        "</main>",
+    ]
+    return document(report.title, body)
+
+
+def document(title: str, body: Iterable[str], style: str = "") -> str:
+    """Return HTML text with this room's look, and more style if given; empty pieces of the body are left out."""
+    parts = [
+        "<!doctype html>",
+        f'<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<link rel="icon" href="data:,"><title>{escape(title)}</title><style>{STYLE}{style}</style></head><body>',
+        *body,
+        "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"
 
@@ -98,9 +108,15 @@ def _number(name: str) -> str:
 
 
 def _figure(sheet: Sheet) -> str:
-    picture = base64.b64encode(svg(sheet).encode()).decode()
+    kind = "" if len(sheet.panels) > 1 else "one"
+    return inlined(svg(sheet).encode(), "svg+xml", sheet.title, escape(sheet.caption), kind)
+
+
+def inlined(picture: bytes, form: str, title: str, caption: str, kind: str = "") -> str:
+    """Return a picture ("png", "svg+xml") within the page, its title and its caption (HTML) below it."""
+    data = base64.b64encode(picture).decode()
     return (
-        f"<figure{'' if len(sheet.panels) > 1 else ' class=one'}>"
-        f'<img alt="{escape(sheet.title)}" src="data:image/svg+xml;base64,{picture}">'
-        f"<figcaption><b>{escape(sheet.title)}.</b> {escape(sheet.caption)}</figcaption></figure>"
+        f"<figure{f' class={kind}' if kind else ''}>"
+        f'<img alt="{escape(title)}" src="data:image/{form};base64,{data}">'
+        f"<figcaption><b>{escape(title)}.</b> {caption}</figcaption></figure>"
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from coaxshell.errors import InputError
 from coaxshell.paper.known_runs import CORRECTED, NoFieldsError
 
 if TYPE_CHECKING:
@@ -94,6 +95,10 @@ def judge(claim: Claim, variants: Mapping[str, Runs]) -> Judged:
             found = claim.work(runs)
         except NoFieldsError:
             found = Finding({}, "not judged", "Fields under this slip are not computed.")
+        except InputError:
+            if name == CORRECTED:
+                raise
+            found = Finding({}, "not judged", "The slip is defined for two elastic shells in three fluids only.")
         bad = [what for what, value in found.measured.items() if not math.isfinite(value)]
         if bad and name == CORRECTED:
             raise ValueError(f"claim {claim.name}: {bad[0]} is not finite")

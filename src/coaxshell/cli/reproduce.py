@@ -1,0 +1,91 @@
+"""``coaxshell reproduce``: the paper's figures, claims and slips in one report."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from coaxshell.cli import options, values
+from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.progress import progress
+from coaxshell.errors import InputError
+
+if TYPE_CHECKING:
+    from coaxshell.paper import Resolution
+    from coaxshell.paper.reproduction import Results
+
+FOLDER = Path("reproduction")
+
+
+def reproduce(
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where the report and the finished parts are kept; made if need be.")
+    ] = FOLDER,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", metavar="TOPIC", help="figures, claims, slips, film or estimate. May be repeated.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A coarse trial of everything: a minute instead of several.")] = False,
+    film: Annotated[bool, typer.Option("--film/--no-film", help="Make a film of bare against hybrid.")] = True,
+    duration: options.DurationOption = "5",
+    time_step: options.TimeStepOption = "1e-3",
+    modes: Annotated[str, typer.Option("--modes", metavar="N", help="Highest circumferential order.")] = "150",
+    workers: options.WorkersOption = None,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Compute the whole paper and write one report.
+
+    Figures 2 to 14, a film, claims under the corrected model and under slips, the slips. Finished parts are kept: a second call goes on.
+    """
+    from coaxshell.paper.reproduction import TOPICS, write
+    from coaxshell.paper.reproduction import reproduce as compute
+    from coaxshell.verification.files import prepare
+
+    wanted = frozenset(only or ())
+    for name in sorted(wanted - set(TOPICS)):
+        raise InputError("--only", f"there is no topic {name!r}", f"allowed: {', '.join(TOPICS)}")
+    resolution = _resolution(quick, duration, time_step, modes)
+    count = None if workers is None else values.whole("--workers", workers)
+    prepare(output)
+    suffix = (".mp4" if find_spec("imageio_ffmpeg") else ".webp") if film else None
+    try:
+        with values.named_as_options(), progress(quiet) as report:
+            found = compute(output, resolution, only=wanted, film_suffix=suffix, workers=count, progress=report)
+    except KeyboardInterrupt:
+        raise Interrupted(f"interrupted; finished parts are kept in {str(output)!r}: the same command goes on") from None
+    paths = write(found, output)
+    _tell(found)
+    typer.echo("wrote " + ", ".join(str(path) for path in paths))
+
+
+def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Resolution:
+    from coaxshell.paper import Resolution
+    from coaxshell.paper.reproduction import QUICK
+    from coaxshell.solver.settings import Settings
+
+    chosen = Resolution(duration=values.number("--duration", duration), time_step=values.number("--time-step", time_step))
+    order = values.modes(modes)
+    if order == "auto":
+        raise InputError("--modes", "'auto' is not allowed here", "give a whole number of 1 or more")
+    with values.named_as_options():
+        Settings(chosen.duration, chosen.time_step, order, "spectral", chosen.tolerance, 1)
+    if chosen.duration < LEAST:
+        raise InputError("--duration", f"{chosen.duration:g} is too short for the claims", f"give at least {LEAST:g} transits")
+    if quick:
+        return QUICK
+    return Resolution(duration=chosen.duration, time_step=chosen.time_step, modes=order)
+
+
+LEAST = 4.0
+"""Shortest run in which all instants that the claims are about lie, transits."""
+
+
+def _tell(found: Results) -> None:
+    from coaxshell.paper.reproduction import VARIANTS
+
+    for name in VARIANTS if found.judged else ():
+        tally = found.tally(name)
+        typer.echo(f"claims, {name}: " + ", ".join(f"{count} {verdict}" for verdict, count in tally.items()))
+    typer.echo(f"{len(found.figures)} figures, {len(found.seconds)} parts in {found.elapsed:.0f} s")

@@ -1,0 +1,128 @@
+"""What the reproduction found, gathered from the finished parts."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from coaxshell.paper import cases
+from coaxshell.paper.claims import Judged, claims, judge, systems
+from coaxshell.paper.claims.claim import Verdict
+from coaxshell.paper.figures import FIGURES
+from coaxshell.paper.known_runs import CORRECTED
+from coaxshell.paper.recipes import FigureRecipe
+from coaxshell.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, Part
+from coaxshell.paper.reproduction.work import picture, runs_of
+from coaxshell.paper.runs import Resolution
+from coaxshell.paper.store import Store
+
+if TYPE_CHECKING:
+    from coaxshell.paper.recipes import StudyRecipe
+
+VERDICTS: tuple[Verdict, ...] = ("holds", "holds in part", "does not hold", "not judged")
+
+
+@dataclass(frozen=True)
+class DrawnFigure:
+    """A figure as PNG bytes, the warnings of its runs, and the seconds of its part (0 if it shares the runs of the claims)."""
+
+    recipe: FigureRecipe | StudyRecipe
+    png: bytes
+    warnings: tuple[str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Seconds of all of Figure 9's runs: by the direct engine, extrapolated from a sample, and by ours, as measured."""
+
+    sample: tuple[int, ...]
+    direct: tuple[float, ...]
+    spectral: tuple[float, ...]
+    ours: float | None
+
+    @property
+    def runs(self) -> int:
+        """How many numbers of absorbers Figure 9 shows."""
+        return len({*cases.COUNTS, *cases.COARSE_COUNTS})
+
+    @property
+    def whole(self) -> float:
+        """The sample's mean times the number of runs."""
+        return self.runs * sum(self.direct) / len(self.direct)
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything that the report tells.
+
+    Attributes
+    ----------
+    resolution : Resolution
+    figures : tuple of DrawnFigure
+    judged : tuple of Judged
+    effects : list of dict
+        Of slips, as :class:`coaxshell.paper.slips.effects.Effect`.
+    film : tuple of (bytes, ending) or None
+    estimate : Estimate or None
+    seconds : mapping of str to float
+        By part.
+    elapsed : float
+        Of this call, from its start to the report.
+    resumed : int
+        Parts that were there already.
+    workers : int
+    """
+
+    resolution: Resolution
+    figures: tuple[DrawnFigure, ...] = ()
+    judged: tuple[Judged, ...] = ()
+    effects: list[dict[str, Any]] = field(default_factory=list)
+    film: tuple[bytes, str] | None = None
+    estimate: Estimate | None = None
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    elapsed: float = 0.0
+    resumed: int = 0
+    workers: int = 1
+
+    def tally(self, variant: str) -> Counter[Verdict]:
+        """Return how many claims have each verdict in a variant."""
+        return Counter(judged.findings[variant].verdict for judged in self.judged)
+
+
+def drawn_figures(
+    resolution: Resolution, store: Store, pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]
+) -> tuple[DrawnFigure, ...]:
+    """Return all figures: those of a few responses from their parts, those of many runs drawn from the runs in the store."""
+    runs = runs_of(CORRECTED, resolution, store)
+    found = []
+    for number, recipe in FIGURES.items():
+        if isinstance(recipe, FigureRecipe):
+            arrays, values = pieces[Part("figure", number)]
+            found.append(DrawnFigure(recipe, arrays["png"].tobytes(), tuple(values["warnings"]), values["seconds"]))
+        else:
+            drawn = recipe.draw([systems.preset(name) for name in recipe.presets], runs, None)
+            found.append(DrawnFigure(recipe, picture(drawn.figure).tobytes(), drawn.warnings, 0.0))
+    return tuple(found)
+
+
+def judged_claims(resolution: Resolution, store: Store) -> tuple[Judged, ...]:
+    """Return every claim with its findings in all variants, from the runs in the store."""
+    variants = {name: runs_of(name, resolution, store) for name in VARIANTS}
+    return tuple(judge(claim, variants) for claim in claims())
+
+
+def estimate_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> Estimate | None:
+    """Return what the direct engine would take for Figure 9, if it was measured."""
+    piece = pieces.get(Part("direct", "engine on a sample"))
+    if piece is None:
+        return None
+    counted = [
+        values["seconds"]
+        for part, (_, values) in pieces.items()
+        if part.kind == "runs" and part.about.endswith("absorbers") and part.variant == CORRECTED
+    ]
+    values = piece[1]
+    return Estimate(DIRECT_SAMPLE, tuple(values["direct"]), tuple(values["spectral"]), sum(counted) if counted else None)

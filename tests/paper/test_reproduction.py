@@ -1,0 +1,152 @@
+"""The reproduction at a coarse resolution: one report with every figure and claim, resumed where it was cut off."""
+
+from __future__ import annotations
+
+import html
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coaxshell.cli import main
+from coaxshell.paper import FIGURES, Resolution, Runs, StudyRecipe
+from coaxshell.paper.claims import claims, judge
+from coaxshell.paper.claims.systems import preset
+from coaxshell.paper.known_runs import CORRECTED
+from coaxshell.paper.reproduction import VARIANTS, reproduce, write
+from coaxshell.paper.reproduction import plan as planning
+from coaxshell.paper.reproduction import run as running
+from coaxshell.paper.reproduction import work as working
+from coaxshell.paper.reproduction.plan import Part, groups, parts
+from coaxshell.paper.slips import SLIPS
+
+TINY = Resolution(duration=0.6, time_step=2e-2, modes=6)
+LONG = Resolution(duration=4.0, time_step=2e-2, modes=8)
+ONLY = frozenset({"figures"})
+
+
+@pytest.fixture(autouse=True)
+def small_fields(monkeypatch):
+    """Draw the figures of many pressure fields as Figure 3, which takes a moment; they have tests of their own."""
+    figure = working._WORK["figure"]
+    monkeypatch.setitem(working._WORK, "figure", lambda job, store: figure(replace(job, part=Part("figure", "3")), store))
+
+
+@pytest.fixture
+def results(tmp_path):
+    return reproduce(tmp_path, TINY, only=ONLY, film_suffix=None, workers=1)
+
+
+@pytest.fixture(scope="session")
+def judged():
+    """Return all claims judged at a coarse resolution, the corrected model's runs standing for every variant but one."""
+    runs = Runs(LONG)
+    halved = Runs(replace(LONG, modes=4))
+    return runs, tuple(judge(claim, {name: halved if name == "both slips" else runs for name in VARIANTS}) for claim in claims())
+
+
+def test_every_figure_and_every_claim_is_in_the_report(results, judged, tmp_path):
+    found = replace(results, judged=judged[1], seconds={**results.seconds, "one | more": 1.0})
+    pages = {path.suffix: path.read_text(encoding="utf-8") for path in write(found, tmp_path)}
+    assert [figure.recipe.number for figure in found.figures] == list(FIGURES)
+    for number in FIGURES:
+        assert f'id="figure-{number}"' in pages[".html"]
+        assert f"coaxshell figure {number} --duration 0.6 --time-step 0.02 --modes 6" in pages[".md"]
+        assert (tmp_path / "figures" / f"figure-{number}.png").read_bytes().startswith(b"\x89PNG")
+    for one in found.judged:
+        assert f'id="claim-{one.claim.number}"' in pages[".html"]
+        assert set(one.findings) == set(VARIANTS)
+        assert one.corrected.why in html.unescape(pages[".html"])
+    assert sum(found.tally(CORRECTED).values()) == len(claims())
+    assert any(one.turned == ("both slips",) for one in found.judged)
+    assert "one \\| more" in pages[".md"]
+    assert not re.search(r'(src|href)="(?!data:|#)', pages[".html"])
+
+
+def test_the_parts_hold_every_run_that_claims_and_figures_ask_for(judged):
+    runs, _ = judged
+    planned = {runs._key(system, group.resolution) for group in groups(LONG).values() for system in group.systems.values()}
+    for recipe in FIGURES.values():
+        if isinstance(recipe, StudyRecipe) and recipe.number != "9":  # its runs are those of the claims, without histories
+            list(recipe.draw([preset(name) for name in recipe.presets], runs, None).warnings)
+    assert set(runs._known) <= planned
+
+
+def test_a_run_that_was_cut_off_ends_like_one_that_was_not(results, tmp_path_factory, monkeypatch):
+    folder = tmp_path_factory.mktemp("cut")
+    done = []
+    carry_out = running.carry_out
+
+    def until(job):
+        if len(done) == 6:
+            raise KeyboardInterrupt
+        done.append(job.part)
+        return carry_out(job)
+
+    monkeypatch.setattr(running, "carry_out", until)
+    with pytest.raises(KeyboardInterrupt):
+        reproduce(folder, TINY, only=ONLY, film_suffix=None, workers=1)
+    assert not list(folder.glob("**/.*.part*"))
+    monkeypatch.setattr(running, "carry_out", carry_out)
+    whole = reproduce(folder, TINY, only=ONLY, film_suffix=None, workers=1)
+    assert whole.resumed == 6
+    assert [figure.png for figure in whole.figures] == [figure.png for figure in results.figures]
+    monkeypatch.setattr("coaxshell.paper.slips.solve_each", None)
+    assert reproduce(folder, TINY, only=ONLY, film_suffix=None, workers=1).resumed == len(whole.seconds)
+
+
+def test_the_film_the_slips_and_the_estimate(tmp_path, monkeypatch):
+    monkeypatch.setitem(working.FILM, "frames", 4)
+    monkeypatch.setitem(working.FILM, "pixels", 60)
+    monkeypatch.setattr(planning, "DIRECT_SAMPLE", (2,))
+    monkeypatch.setattr(working, "DIRECT_SAMPLE", (2,))
+    small = Resolution(duration=0.6, time_step=2e-2, modes=6)
+    found = reproduce(tmp_path, small, only=frozenset({"film", "slips", "estimate"}), film_suffix=".webp", workers=1)
+    film, suffix = found.film
+    assert film[8:12] == b"WEBP"
+    assert suffix == ".webp"
+    assert found.estimate.runs == 76
+    assert found.estimate.whole == pytest.approx(76 * np.mean(found.estimate.direct), rel=1e-12)
+    assert found.estimate.ours is None
+    assert {key for effect in found.effects for key in effect["slips"]} <= set(SLIPS)
+    assert all(math.isfinite(effect["corrected"]["inner"]) for effect in found.effects)
+    page = {path.suffix: path.read_text(encoding="utf-8") for path in write(found, tmp_path)}[".html"]
+    assert "data:image/webp;base64," in page
+    assert all(f"<td>{key}</td>" in page for key in SLIPS)
+
+
+def test_parts_are_named_once_and_chosen_by_topic():
+    every = list(parts(TINY))
+    assert len(every) == len(set(every)) == len({part.title for part in every})
+    assert {part.kind for part in parts(TINY, only=frozenset({"slips"}))} == {"slips"}
+    assert Part("film", "bare against hybrid") not in parts(TINY, film=False)
+    counted = {name for group in groups(TINY).values() if group.peaks_only for name in group.systems}
+    assert len(counted) == 76
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--only", "tables"], "no topic 'tables'"),
+        (["--duration", "1"], "too short for the claims"),
+        (["--time-step", "-1"], "--time-step"),
+        (["--modes", "auto"], "'auto' is not allowed"),
+        (["--workers", "none"], "not a whole number"),
+    ],
+)
+def test_a_bad_option_is_told_in_one_line(tmp_path, monkeypatch, capsys, arguments, told):
+    monkeypatch.chdir(tmp_path)
+    assert main(["reproduce", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_the_whole_paper_at_its_resolution(tmp_path):
+    assert main(["reproduce", "--output", str(tmp_path), "--quiet"]) == 0
+    assert (tmp_path / "report.html").stat().st_size > 1e6
+    assert len(list((tmp_path / "figures").iterdir())) == len(FIGURES)
