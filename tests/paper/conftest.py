@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
 import coaxshell as cx
 from coaxshell.paper import Resolution, Runs, figure_recipe
+from coaxshell.paper.known_runs import CORRECTED
+from coaxshell.paper.store import Store
 
 TINY = Resolution(duration=2.5, time_step=1e-2, modes=16)
+SMALL = Resolution(duration=2.5, time_step=1e-2, modes=16)
+"""For the claims, whose numbers need some time and some orders."""
+
 PER_UNIT = {"stress": 1e-6, "displacement": 1e6}
 
 
@@ -45,3 +50,41 @@ def line():
 @pytest.fixture(scope="session")
 def tiny():
     return TINY
+
+
+@pytest.fixture(scope="session")
+def runs(tmp_path_factory):
+    """Return runs at a coarse resolution that all tests of claims share."""
+    return Runs(SMALL, store=Store(tmp_path_factory.mktemp("runs")))
+
+
+class Changed:
+    """Runs of which some are changed: *how* gets (name, run) and returns the run that is told instead."""
+
+    def __init__(self, runs, how):
+        self.runs, self.how, self.resolution, self.variant = runs, how, runs.resolution, CORRECTED
+        self.fields = runs.fields
+
+    def __call__(self, system, resolution=None):
+        return self.how(system.name, self.runs(system, resolution))
+
+    def each(self, systems, progress=None, **options):
+        for name, run in self.runs.each(systems, progress, **options):
+            yield name, self.how(name, run)
+
+
+@pytest.fixture(scope="session")
+def changed(runs):
+    """Return a function that gives the shared runs, changed."""
+    return lambda how: Changed(runs, how)
+
+
+@pytest.fixture(scope="session")
+def scaled():
+    """Return a function that scales the histories of a run, on one shell or on both."""
+
+    def scale(run, factor, shell=None):
+        histories = {key: values * (factor if shell in (None, key[1]) else 1.0) for key, values in run.histories.items()}
+        return replace(run, histories=histories)
+
+    return scale

@@ -18,25 +18,6 @@ SMALL = Resolution(duration=2.5, time_step=1e-2, modes=16)
 BY_NAME = {claim.name: claim for claim in claims()}
 
 
-@pytest.fixture(scope="session")
-def runs(tmp_path_factory):
-    return Runs(SMALL, store=Store(tmp_path_factory.mktemp("runs")))
-
-
-class Changed:
-    """Runs of which some are changed: *how* gets (name, run) and returns the run that is told instead."""
-
-    def __init__(self, runs, how):
-        self.runs, self.how, self.resolution, self.variant = runs, how, runs.resolution, CORRECTED
-
-    def __call__(self, system, resolution=None):
-        return self.how(system.name, self.runs(system, resolution))
-
-    def each(self, systems, progress=None, **options):
-        for name, run in self.runs.each(systems, progress, **options):
-            yield name, self.how(name, run)
-
-
 def found(name, runs):
     return judge(BY_NAME[name], {CORRECTED: runs}).corrected
 
@@ -59,43 +40,38 @@ def test_a_claim_gives_finite_numbers_a_verdict_and_a_reason(runs, name):
     assert finding.why.endswith(".")
 
 
-def scaled(run, factor, shell=None):
-    histories = {key: values * (factor if shell in (None, key[1]) else 1.0) for key, values in run.histories.items()}
-    return replace(run, histories=histories)
-
-
 def with_shell(run, shell, **changes):
     return replace(run, shells={**run.shells, shell: replace(run.shells[shell], **changes)})
 
 
-def test_the_peak_at_the_head_turns_the_claim_about_the_tail(runs):
+def test_the_peak_at_the_head_turns_the_claim_about_the_tail(runs, changed):
     def swap(name, run):
         inner = run.shells["inner"]
         return with_shell(run, "inner", stress_head=inner.stress_tail, stress_tail=inner.stress_head)
 
     assert found("tail-bears-the-peak", runs).verdict == "holds"
-    assert found("tail-bears-the-peak", Changed(runs, swap)).verdict == "holds in part"
+    assert found("tail-bears-the-peak", changed(swap)).verdict == "holds in part"
 
 
-def test_an_effect_of_a_soft_link_turns_the_claim_that_there_is_none(runs):
-    finding = found("soft-link-has-no-effect", Changed(runs, lambda name, run: run if name == "bare" else scaled(run, 1.2)))
+def test_an_effect_of_a_soft_link_turns_the_claim_that_there_is_none(runs, changed, scaled):
+    finding = found("soft-link-has-no-effect", changed(lambda name, run: run if name == "bare" else scaled(run, 1.2)))
     assert finding.verdict == "does not hold"
     assert min(finding.measured.values()) > 15.0
 
 
-def test_a_fifth_less_stress_makes_the_claim_about_25_hold(runs):
+def test_a_fifth_less_stress_makes_the_claim_about_25_hold(runs, changed):
     bare = runs(preset("bare")).shells["inner"]
 
     def lowered(name, run):
         stress = replace(bare.stress, value=0.8 * bare.stress.value)
         return with_shell(run, "inner", stress=stress, stress_rms=0.8 * bare.stress_rms) if name == "25" else run
 
-    finding = found("twenty-per-cent-at-25", Changed(runs, lowered))
+    finding = found("twenty-per-cent-at-25", changed(lowered))
     assert finding.verdict == "holds"
     np.testing.assert_allclose(list(finding.measured.values()), 20.0, rtol=1e-12)
 
 
-def test_voltages_within_the_limit_make_the_claim_hold(runs):
+def test_voltages_within_the_limit_make_the_claim_hold(runs, changed):
     def weak(name, run):
         for shell, summary in run.shells.items():
             if summary.actuator_voltage:
@@ -103,15 +79,15 @@ def test_voltages_within_the_limit_make_the_claim_hold(runs):
         return run
 
     assert found("voltage-is-within-the-limit", runs).verdict == "does not hold"
-    assert found("voltage-is-within-the-limit", Changed(runs, weak)).verdict == "holds"
+    assert found("voltage-is-within-the-limit", changed(weak)).verdict == "holds"
 
 
-def test_a_stronger_outer_shell_turns_the_claim_about_the_inner_one(runs):
-    assert found("inner-shell-is-stressed-more", Changed(runs, lambda name, run: scaled(run, 2.0, "outer"))).verdict == "does not hold"
+def test_a_stronger_outer_shell_turns_the_claim_about_the_inner_one(runs, changed, scaled):
+    assert found("inner-shell-is-stressed-more", changed(lambda name, run: scaled(run, 2.0, "outer"))).verdict == "does not hold"
 
 
-def test_a_late_start_turns_the_claim_about_arrival(runs):
-    late = Changed(runs, lambda name, run: replace(run, time=run.time + 0.3))
+def test_a_late_start_turns_the_claim_about_arrival(runs, changed):
+    late = changed(lambda name, run: replace(run, time=run.time + 0.3))
     assert found("inner-head-begins-at-0-5", late).verdict == "does not hold"
 
 

@@ -11,44 +11,43 @@ import numpy as np
 import pytest
 
 from coaxshell.cli import main
-from coaxshell.paper import FIGURES, Resolution, Runs, StudyRecipe
+from coaxshell.paper import FIGURES, Resolution, StudyRecipe
 from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
 from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.reproduction import VARIANTS, reproduce, write
-from coaxshell.paper.reproduction import plan as planning
 from coaxshell.paper.reproduction import run as running
 from coaxshell.paper.reproduction import work as working
 from coaxshell.paper.reproduction.plan import Part, groups, parts
 from coaxshell.paper.slips import SLIPS
 
 TINY = Resolution(duration=0.6, time_step=2e-2, modes=6)
-LONG = Resolution(duration=4.0, time_step=2e-2, modes=8)
 ONLY = frozenset({"figures"})
 
 
-@pytest.fixture(autouse=True)
-def small_fields(monkeypatch):
+@pytest.fixture(scope="module", autouse=True)
+def small_fields():
     """Draw the figures of many pressure fields as Figure 3, which takes a moment; they have tests of their own."""
     figure = working._WORK["figure"]
-    monkeypatch.setitem(working._WORK, "figure", lambda job, store: figure(replace(job, part=Part("figure", "3")), store))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(working._WORK, "figure", lambda job, store: figure(replace(job, part=Part("figure", "3")), store))
+        yield
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory, small_fields):
+    return reproduce(tmp_path_factory.mktemp("whole"), TINY, only=ONLY, film_suffix=None, workers=1)
 
 
 @pytest.fixture
-def results(tmp_path):
-    return reproduce(tmp_path, TINY, only=ONLY, film_suffix=None, workers=1)
-
-
-@pytest.fixture(scope="session")
-def judged():
-    """Return all claims judged at a coarse resolution, the corrected model's runs standing for every variant but one."""
-    runs = Runs(LONG)
-    halved = Runs(replace(LONG, modes=4))
-    return runs, tuple(judge(claim, {name: halved if name == "both slips" else runs for name in VARIANTS}) for claim in claims())
+def judged(runs, changed, scaled):
+    """Return all claims judged, the corrected model's runs standing for every variant but one."""
+    other = changed(lambda name, run: scaled(run, 2.0, "outer"))
+    return tuple(judge(claim, {name: other if name == "both slips" else runs for name in VARIANTS}) for claim in claims())
 
 
 def test_every_figure_and_every_claim_is_in_the_report(results, judged, tmp_path):
-    found = replace(results, judged=judged[1], seconds={**results.seconds, "one | more": 1.0})
+    found = replace(results, judged=judged, seconds={**results.seconds, "one | more": 1.0})
     pages = {path.suffix: path.read_text(encoding="utf-8") for path in write(found, tmp_path)}
     assert [figure.recipe.number for figure in found.figures] == list(FIGURES)
     for number in FIGURES:
@@ -65,9 +64,8 @@ def test_every_figure_and_every_claim_is_in_the_report(results, judged, tmp_path
     assert not re.search(r'(src|href)="(?!data:|#)', pages[".html"])
 
 
-def test_the_parts_hold_every_run_that_claims_and_figures_ask_for(judged):
-    runs, _ = judged
-    planned = {runs._key(system, group.resolution) for group in groups(LONG).values() for system in group.systems.values()}
+def test_the_parts_hold_every_run_that_claims_and_figures_ask_for(runs, judged):
+    planned = {runs._key(system, group.resolution) for group in groups(runs.resolution).values() for system in group.systems.values()}
     for recipe in FIGURES.values():
         if isinstance(recipe, StudyRecipe) and recipe.number != "9":  # its runs are those of the claims, without histories
             list(recipe.draw([preset(name) for name in recipe.presets], runs, None).warnings)
@@ -93,14 +91,11 @@ def test_a_run_that_was_cut_off_ends_like_one_that_was_not(results, tmp_path_fac
     whole = reproduce(folder, TINY, only=ONLY, film_suffix=None, workers=1)
     assert whole.resumed == 6
     assert [figure.png for figure in whole.figures] == [figure.png for figure in results.figures]
-    monkeypatch.setattr("coaxshell.paper.slips.solve_each", None)
-    assert reproduce(folder, TINY, only=ONLY, film_suffix=None, workers=1).resumed == len(whole.seconds)
 
 
 def test_the_film_the_slips_and_the_estimate(tmp_path, monkeypatch):
     monkeypatch.setitem(working.FILM, "frames", 4)
     monkeypatch.setitem(working.FILM, "pixels", 60)
-    monkeypatch.setattr(planning, "DIRECT_SAMPLE", (2,))
     monkeypatch.setattr(working, "DIRECT_SAMPLE", (2,))
     small = Resolution(duration=0.6, time_step=2e-2, modes=6)
     found = reproduce(tmp_path, small, only=frozenset({"film", "slips", "estimate"}), film_suffix=".webp", workers=1)

@@ -13,7 +13,7 @@ from coaxshell.paper.claims.claim import Verdict
 from coaxshell.paper.figures import FIGURES
 from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.recipes import FigureRecipe
-from coaxshell.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, Part
+from coaxshell.paper.reproduction.plan import VARIANTS, Part
 from coaxshell.paper.reproduction.work import picture, runs_of
 from coaxshell.paper.runs import Resolution
 from coaxshell.paper.store import Store
@@ -125,4 +125,4 @@ def estimate_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) ->
         if part.kind == "runs" and part.about.endswith("absorbers") and part.variant == CORRECTED
     ]
     values = piece[1]
-    return Estimate(DIRECT_SAMPLE, tuple(values["direct"]), tuple(values["spectral"]), sum(counted) if counted else None)
+    return Estimate(tuple(values["sample"]), tuple(values["direct"]), tuple(values["spectral"]), sum(counted) if counted else None)
