@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from benchmarks import bare, engines, march, scaling, sweep
+from benchmarks import bare, engines, march, scaling, studio, sweep
 
 
 def main() -> None:
     """Run them one after another."""
-    for benchmark in (bare, scaling, march, sweep, engines):
+    for benchmark in (bare, scaling, march, sweep, engines, studio):
         benchmark.main()
 
 

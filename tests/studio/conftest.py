@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from starlette.testclient import TestClient
 
-from coaxshell.studio import create_app
+from coaxshell.studio.app import create_app
 
 PORT = 8765
 

@@ -23,7 +23,7 @@ def studio(
     missing = [name for name in ("starlette", "uvicorn", "plotly") if find_spec(name) is None]
     if missing:
         raise InputError("studio", f"needs {', '.join(missing)}", "pip install 'coaxshell[studio]'")
-    from coaxshell.studio import serve
+    from coaxshell.studio.server import serve
 
     def ready(address: str) -> None:
         typer.echo(f"coaxshell studio: {address}  (Ctrl-C ends it)")

@@ -32,6 +32,8 @@ def loads(text: str, folder: Path | None = None) -> dict[str, Any]:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError("TOML", str(error), "the text must be valid TOML") from None
+    except (ValueError, RecursionError) as error:  # a number of thousands of digits, thousands of brackets
+        raise InputError("TOML", f"cannot be read ({str(error)[:60]})", "the text must be valid TOML of moderate depth") from None
     known = _materials(data.pop("materials", {}))
     shells = data.get("shells")
     for i, shell in enumerate(shells if isinstance(shells, list) else []):

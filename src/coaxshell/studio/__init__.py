@@ -1,8 +1,4 @@
-"""The page in the browser: a server on this machine only, its routes, and the files of the page."""
+"""The page in the browser: a server on this machine only, its routes, and the files of the page.
 
-from __future__ import annotations
-
-from coaxshell.studio.app import create_app
-from coaxshell.studio.server import serve
-
-__all__ = ["create_app", "serve"]
+:func:`coaxshell.studio.server.serve` runs it, :func:`coaxshell.studio.app.create_app` makes the application.
+"""

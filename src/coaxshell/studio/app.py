@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+from anyio import to_thread
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -28,6 +29,8 @@ def create_app(port: int) -> Guard:
 
 @asynccontextmanager
 async def _alive(app: Starlette) -> AsyncIterator[None]:
+    # Descriptions are read in threads; more of them at once would only take the event loop's turns.
+    to_thread.current_default_thread_limiter().total_tokens = 4
     app.state.studio = studio = Studio()
     try:
         yield

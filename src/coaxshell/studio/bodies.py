@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 from typing import Any, NoReturn
 
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
 from coaxshell.studio import limits
 from coaxshell.studio.refusals import RefusedError
 
 NAME_LENGTH = 64
+LONG = 20_000
+"""Bytes from which on a body is read beside the event loop."""
+NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
 
 
 async def read_body(request: Request, most: int = limits.BODY_BYTES) -> bytes:
@@ -31,7 +35,8 @@ async def read_table(request: Request) -> dict[str, Any]:
     """Return a JSON body, which must be an object; RefusedError otherwise."""
     if request.headers.get("content-type", "").split(";")[0].strip().lower() != "application/json":
         raise RefusedError(415, "wrong-type", "Content-Type", "is not JSON", "send application/json")
-    return parse_table(await read_body(request))
+    body = await read_body(request)
+    return await run_in_threadpool(parse_table, body) if len(body) > LONG else parse_table(body)
 
 
 def parse_table(body: bytes) -> dict[str, Any]:
@@ -50,12 +55,11 @@ def parse_table(body: bytes) -> dict[str, Any]:
 def depth_of(text: bytes) -> int:
     """Return an upper bound of the depth of nesting: the largest number of brackets open at once, those in texts counted too."""
     depth = most = 0
-    for byte in text:
-        if byte in b"[{":
-            depth += 1
-            most = max(most, depth)
-        elif byte in b"]}":
-            depth -= 1
+    for byte in text.translate(None, delete=NO_BRACKETS):
+        depth += 1 if byte in b"[{" else -1
+        most = max(most, depth)
+        if most > limits.NESTING:
+            break
     return most
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -53,16 +53,16 @@ class Cache(Generic[T]):
 def held_bytes(thing: Any, seen: set[int] | None = None) -> int:
     """Return the bytes of all arrays that an object holds, directly or through its parts; views count as what they view."""
     seen = set() if seen is None else seen
-    if id(thing) in seen or isinstance(thing, str | bytes | int | float | complex | type) or thing is None:
+    if id(thing) in seen:
         return 0
     seen.add(id(thing))
     if isinstance(thing, np.ndarray):
         return held_bytes(thing.base, seen) if isinstance(thing.base, np.ndarray) else thing.nbytes
+    parts: Iterable[Any] = ()
     if isinstance(thing, dict):
-        return sum(held_bytes(part, seen) for part in thing.values())
-    if isinstance(thing, list | tuple):
-        return sum(held_bytes(part, seen) for part in thing)
-    if type(thing).__module__.startswith("coaxshell.") and not callable(thing):
-        slots = [getattr(thing, name, None) for name in getattr(type(thing), "__slots__", ())]
-        return held_bytes([*vars(thing).values(), *slots] if hasattr(thing, "__dict__") else slots, seen)
-    return 0
+        parts = thing.values()
+    elif isinstance(thing, list | tuple):
+        parts = thing
+    elif type(thing).__module__.startswith("coaxshell.") and hasattr(thing, "__dict__"):
+        parts = vars(thing).values()
+    return sum(held_bytes(part, seen) for part in parts)

@@ -142,7 +142,7 @@ def _bars(response: Response, summary: Summary) -> list[dict[str, Any]]:
     ):
         largest = getattr(summary, name)
         if largest is not None:
-            bars.append({"shell": None, "name": name, "label": label, "unit": unit, "value": largest, "time": None, "angle": None})
+            bars.append({"shell": None, "name": name, "label": label, "unit": unit, "value": _finite(largest), "time": None, "angle": None})
     return bars
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell, Shell, System
 from coaxshell.model.toml import loads
+from coaxshell.studies.metrics import metric_names
 from coaxshell.studio import limits
 
 
@@ -58,7 +59,8 @@ def normalised(system: System) -> dict[str, Any]:
 
 def told(system: System) -> dict[str, Any]:
     """Return the answer to a valid description."""
-    return {"ok": True, "system": normalised(system), "toml": system.to_toml_string(), "derived": derived(system)}
+    plain = {"system": normalised(system), "toml": system.to_toml_string()}
+    return {"ok": True, **plain, "derived": derived(system), "metrics": metric_names(system)}
 
 
 def derived(system: System) -> list[dict[str, Any]]:

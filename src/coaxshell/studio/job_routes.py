@@ -15,13 +15,14 @@ from starlette.routing import BaseRoute, Route
 
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
+from coaxshell.studies.design import POINTS
 from coaxshell.studio import arrays, bodies, downloads, limits, refusals, worker
 from coaxshell.studio.jobs import Job
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.routes import MOST_REVISION, studio_of, wanted
 from coaxshell.studio.state import Run, Studio
 
-KINDS = ("solve", "field", "film")
+KINDS = ("solve", "field", "film", "sweep")
 HEARTBEAT, THROTTLE = 15.0, 0.1
 
 
@@ -30,7 +31,7 @@ async def start(request: Request) -> Response:
     studio, data = studio_of(request), await bodies.read_table(request)
     job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", KINDS))
     try:
-        await {"solve": _solve, "field": _field, "film": _film}[job.kind](studio, job, data)
+        await {"solve": _solve, "field": _field, "film": _film, "sweep": _sweep}[job.kind](studio, job, data)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({"job": job.told()}, 202)
@@ -83,6 +84,22 @@ async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     studio.jobs.start(job, downloads.movie, pairs, frames, fps, size, job.file, place=runs[0].place)
 
 
+async def _sweep(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.studio import sweeps
+
+    points = bodies.one_of(data, "points", POINTS, "grid")
+    samples = None if data.get("samples") is None else bodies.whole_of(data, "samples", 1, 2**31)
+    seed = bodies.whole_of(data, "seed", 0, 2**31, 0)
+
+    def prepared() -> tuple[Any, ...]:
+        system, settings = wanted(data, live=False)
+        return system, settings, *sweeps.planned(system, data.get("over"), data.get("metrics", sweeps.METRICS), points, samples, seed)
+
+    arguments = await run_in_threadpool(prepared)
+    job.file = studio.file("nc")
+    studio.jobs.start(job, sweeps.sweep, *arguments, job.file, place=worker.structure_key(*arguments[:2]))
+
+
 def _runs(studio: Studio, names: Any) -> list[Run]:
     if not isinstance(names, list) or not 1 <= len(names) <= 3 or not all(isinstance(name, str) for name in names):
         raise bodies.bad("runs", names, "give 1 to 3 names of runs")
@@ -108,6 +125,8 @@ async def job(request: Request) -> Response:
 async def result(request: Request) -> Response:
     """Answer with what a job came to."""
     found = studio_of(request).jobs.finished(request.path_params["job"])
+    if found.kind == "sweep":
+        return JSONResponse({"kind": "sweep", **found.result})
     if found.kind != "field":
         raise RefusedError(404, "not-found", "result", f"a {found.kind} has none", "see /api/runs/{run} or /api/jobs/{id}/file")
     return JSONResponse({"run": found.run, **found.result[0], "most_values": limits.FRAME_VALUES})
@@ -130,9 +149,9 @@ async def frames(request: Request) -> Response:
 
 
 async def job_file(request: Request) -> Response:
-    """Answer with the film of a job."""
+    """Answer with the film or the dataset of a job."""
     found = studio_of(request).jobs.finished(request.path_params["job"])
-    if found.kind != "film" or found.file is None:
+    if found.kind not in ("film", "sweep") or found.file is None:
         raise RefusedError(404, "not-found", "file", f"a {found.kind} has none", "start a job of the kind film")
     suffix = found.file.suffix[1:]
     return FileResponse(found.file, media_type=downloads.TYPES[suffix], filename=f"coaxshell.{suffix}")

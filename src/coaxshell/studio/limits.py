@@ -23,6 +23,7 @@ MODE_STEPS = 3_000_000
 
 FIELD_VALUES, FRAME_VALUES, FIELD_BYTES = 30_000_000, 8_000_000, 500_000_000
 LIVE_WAITING, JOBS_WAITING, JOBS_OF_CLIENT, JOBS_KEPT, STREAMS = 120, 24, 6, 64, 200
+SWEPT, CASES = 4, 400
 RUNS, SLOTS = 4_000, 4_000
 
 
@@ -38,6 +39,8 @@ def table() -> dict[str, int]:
         "steps": STEPS,
         "refinement": REFINEMENT,
         "mode_steps": MODE_STEPS,
+        "swept": SWEPT,
+        "cases": CASES,
         "preview_modes": PREVIEW_MODES,
         "preview_steps": PREVIEW_STEPS,
         "body_bytes": BODY_BYTES,

@@ -69,9 +69,11 @@ async def solve(request: Request) -> Response:
         studio.workers.drop(slot.work)
         slot.work = None
     try:
-        run = studio.run_of(*await run_in_threadpool(lambda: wanted(data, live=True)))
-        if revision < slot.revision:
+        # Under load this waits for its turn: what has become old meanwhile is not even read.
+        pair = await run_in_threadpool(lambda: wanted(data, live=True) if revision == slot.revision else None)
+        if pair is None or revision < slot.revision:
             return Response(status_code=204)
+        run = studio.run_of(*pair)
         content = studio.curves.get(run.name)
         if content is None:
             slot.work = work = studio.workers.submit(worker.solve, *run.pair, place=run.place)
@@ -80,8 +82,9 @@ async def solve(request: Request) -> Response:
     except InputError as error:
         return JSONResponse(refusals.told(error))
     except asyncio.CancelledError:
-        if slot.revision == revision and not studio.closing:
-            raise
+        task = asyncio.current_task()
+        if task is not None and task.cancelling():
+            raise  # the request itself, not the work for it
         return Response(status_code=204)
     if revision < slot.revision:
         return Response(status_code=204)

@@ -10,7 +10,6 @@ from contextlib import suppress
 import uvicorn
 
 from coaxshell.errors import InputError
-from coaxshell.studio.app import create_app
 from coaxshell.studio.guard import Guard
 
 ADDRESS = "127.0.0.1"
@@ -32,9 +31,12 @@ def serve(port: int, ready: Callable[[str], None]) -> None:
         The port is taken, or not allowed.
     """
     with listening(port) as listener:
+        from coaxshell.studio.app import create_app  # takes seconds to import: after the port has been had
+
         port = listener.getsockname()[1]
         app = create_app(port)
-        config = uvicorn.Config(app, log_level="warning", lifespan="on", server_header=False, timeout_graceful_shutdown=2)
+        # A page that rests keeps its connections: a request sent into one that is just being closed would be lost.
+        config = uvicorn.Config(app, log_level="error", server_header=False, timeout_keep_alive=75, timeout_graceful_shutdown=2)
         with suppress(KeyboardInterrupt):  # Ctrl-C is how it ends
             _Server(config, app, lambda: ready(f"http://{ADDRESS}:{port}/")).run(sockets=[listener])
 

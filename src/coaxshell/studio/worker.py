@@ -6,10 +6,13 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing import parent_process
 from multiprocessing.process import BaseProcess
 from typing import Any, NamedTuple
+
+from threadpoolctl import ThreadpoolController
 
 from coaxshell.errors import InputError
 from coaxshell.model import System
@@ -17,7 +20,7 @@ from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
 from coaxshell.studio.cache import Cache, held_bytes
 
-STRUCTURE_BYTES, ANSWER_BYTES = 600_000_000, 200_000_000
+STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
 STOP, FRACTION = 0, 1
 """Places on the shared board: the number of the task to be stopped, and how far the present one is."""
 
@@ -37,6 +40,7 @@ class _Here:
     """The state of this process."""
 
     number = 0
+    part: tuple[float, float, str] | None = None
     board: Any = None
     stage: Any = None
     structures: Cache[PreparedSystem] = Cache(STRUCTURE_BYTES, held_bytes)
@@ -47,6 +51,8 @@ def begin(board: Any, stage: Any) -> None:
     """Set up a worker process: Ctrl-C is the server's to handle, and a worker whose server is gone goes too."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _Here.board, _Here.stage = board, stage
+    os.nice(5)  # the page's own requests go first
+    ThreadpoolController().limit(limits=1, user_api="blas")  # the workers share the cores
     parent = parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
@@ -66,7 +72,7 @@ def ready() -> int:
 
 def perform(number: int, task: Callable[..., Any], arguments: tuple[Any, ...]) -> Outcome:
     """Carry out one task; what is wrong with its input comes back as a value, since InputError cannot travel."""
-    _Here.number = number
+    _Here.number, _Here.part = number, None
     _Here.board[FRACTION] = 0.0
     _Here.stage.value = b""
     try:
@@ -75,6 +81,9 @@ def perform(number: int, task: Callable[..., Any], arguments: tuple[Any, ...]) -
         return Outcome("stopped", None)
     except InputError as error:
         return Outcome("input", (error.where, error.problem, error.remedy))
+    except (ArithmeticError, ValueError, MemoryError) as error:  # what numbers far out of the usual do to linear algebra
+        remedy = "look for a value far from usual, in the system or its resolution"
+        return Outcome("input", ("system", f"cannot be solved ({type(error).__name__}: {str(error)[:100]})", remedy))
 
 
 def report(fraction: float, stage: str) -> None:
@@ -83,8 +92,22 @@ def report(fraction: float, stage: str) -> None:
         return
     if _Here.board[STOP] == _Here.number:
         raise Stopped
+    if _Here.part is not None:
+        begun, share, stage = _Here.part
+        fraction = begun + share * fraction
     _Here.board[FRACTION] = fraction
     _Here.stage.value = stage.encode()[:60]
+
+
+@contextmanager
+def part(number: int, count: int, stage: str) -> Iterator[None]:
+    """Make the reports inside a ``with`` block those of one of several equal parts of the task."""
+    _Here.part = number / count, 1 / count, stage
+    try:
+        report(0.0, stage)
+        yield
+    finally:
+        _Here.part = None
 
 
 def structure_key(system: System, settings: Settings) -> tuple[str, Settings]:

@@ -1,0 +1,126 @@
+"""Fifty clients that move sliders at once, against a real server: latency, and memory before and after.
+
+``python -m benchmarks.studio``
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import httpx2
+
+from coaxshell.model import presets
+from coaxshell.studio.limits import settings_of
+from coaxshell.studio.worker import solve
+
+CLIENTS, SECONDS = 50, 20.0
+SYSTEMS = {name: presets.load(name).model_dump(mode="json") for name in ("absorbers", "hybrid")}
+PAUSE = 0.05
+"""Seconds between two movements of a slider, whether or not the last one has been answered."""
+
+
+def main() -> None:
+    """Start a server and measure it."""
+    command = [sys.executable, "-m", "coaxshell", "studio", "--no-browser", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        found = re.search(r"http://127\.0\.0\.1:\d+", process.stdout.readline())
+        assert found is not None
+        asyncio.run(_measured(found.group(), process.pid))
+        process.terminate()
+
+
+async def _measured(address: str, pid: int) -> None:
+    limits = httpx2.Limits(max_connections=400)
+    async with httpx2.AsyncClient(base_url=address, timeout=120, limits=limits) as http:
+        for preset, change in (("absorbers", "mass"), ("hybrid", "mass")):
+            alone = [await _solve(http, f"alone-{preset}", step, preset, change, 5.0 + step) for step in range(20)]
+            assert {status for _, status in alone} == {200}
+            told = f"median {_ms(statistics.median(x for x, _ in alone[4:]))}, first {_ms(alone[0][0])}; in this process {_plain(preset)}"
+            print(f"{preset}, {change} of the absorbers, one client at M = 60, dt = 4e-3: {told}", flush=True)
+        for half in (1, 2, 3):
+            answered: list[float] = []
+            replaced: list[float] = []
+            light: list[float] = []
+            await asyncio.gather(_watch(http, light), *(_hammer(http, half, number, answered, replaced) for number in range(CLIENTS)))
+            print(
+                f"{CLIENTS} clients, {SECONDS:g} s, round {half}: {len(answered)} answered ({_spread(answered)}), {len(replaced)} replaced "
+                f"by newer ones, a light route meanwhile {_spread(light)}; memory of all processes {_memory(pid):.0f} MB",
+                flush=True,
+            )
+
+
+async def _hammer(http: Any, half: int, number: int, answered: list[float], replaced: list[float]) -> None:
+    """Move a slider every so often, with at most four requests open, as a browser has."""
+    end, step, waiting = time.perf_counter() + SECONDS, 0, set[asyncio.Task[None]]()
+
+    async def one(revision: int, mass: float) -> None:
+        seconds, status = await _solve(http, f"c{number}", revision, "absorbers", "mass", mass)
+        (answered if status == 200 else replaced).append(seconds)
+
+    while time.perf_counter() < end:
+        step += 1
+        waiting.add(asyncio.create_task(one(half * 100_000 + step, 5 + number + 0.001 * step + 0.0001 * half)))
+        await asyncio.sleep(PAUSE)
+        while len(waiting) >= 4:
+            done, waiting = await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+    await asyncio.gather(*waiting)
+
+
+async def _solve(http: Any, client: str, revision: int, preset: str, change: str, value: float) -> tuple[float, int]:
+    system = dict(SYSTEMS[preset])
+    system["absorbers"] = {**system["absorbers"], change: value}
+    start = time.perf_counter()
+    answer = await http.post("/api/solve", json={"client": client, "slot": "current", "revision": revision, "system": system})
+    return time.perf_counter() - start, int(answer.status_code)
+
+
+async def _watch(http: Any, light: list[float]) -> None:
+    end = time.perf_counter() + SECONDS
+    while time.perf_counter() < end:
+        start = time.perf_counter()
+        (await http.get("/api/jobs?client=light")).raise_for_status()
+        light.append(time.perf_counter() - start)
+        await asyncio.sleep(0.1)
+
+
+def _plain(preset: str) -> str:
+    """Return the time of the same in this process: structure prepared, absorbers marched."""
+    system, settings, times = presets.load(preset), settings_of("preview", live=True), []
+    for step in range(6):
+        changed = system.with_overrides({"absorbers.mass": 5.0 + step})
+        start = time.perf_counter()
+        solve(changed, settings)
+        times.append(time.perf_counter() - start)
+    return f"median {_ms(statistics.median(times[1:]))}, first {_ms(times[0])}"
+
+
+def _memory(pid: int) -> float:
+    """Return the resident memory of a process and its children, MB."""
+    pids = [pid, *map(int, Path(f"/proc/{pid}/task/{pid}/children").read_text().split())]
+    texts = [Path(f"/proc/{one}/status").read_text() for one in pids]
+    found = [re.search(r"VmRSS:\s+(\d+)", text) for text in texts]
+    return sum(int(match.group(1)) for match in found if match) / 1e3
+
+
+def _spread(seconds: list[float]) -> str:
+    if len(seconds) < 2:
+        return "too few"
+    return f"median {_ms(statistics.median(seconds))}, 99th percentile {_ms(statistics.quantiles(seconds, n=100)[-1])}"
+
+
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.0f} ms"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,188 @@
+"""Bodies that a careless or hostile program might send: a thousand and more, the same ones every time."""
+
+from __future__ import annotations
+
+import copy
+import json
+import random
+
+from asking import SMALL, described
+
+from coaxshell.model import System, presets
+
+VALUES = [
+    None,
+    True,
+    False,
+    0,
+    -1,
+    1,
+    -0.0,
+    1e-320,
+    1e308,
+    -1e308,
+    10**30,
+    10**400,
+    2**53,
+    0.5,
+    1e20,
+    "",
+    " ",
+    "NaN",
+    "inf",
+    "1e999 m",
+    "6 mm",
+    "-3 kg",
+    "9**9**9**9",
+    "1 9**9**9**9",
+    "../../etc/passwd",
+    "/etc/passwd",
+    "file:///etc/passwd",
+    "\x00",
+    "\ud800",
+    "é" * 40,
+    "x" * 5000,
+    "{}",
+    "__class__",
+    "${7*7}",
+    "'; drop table",
+    "<script>alert(1)</script>",
+    [],
+    {},
+    [[]],
+    [None],
+    [1, 2, 3],
+    {"": 1},
+    {"type": "spherical-shock"},
+    {"count": 1},
+    {"count": 10**12},
+    {"__proto__": 1},
+    {"rigid": True},
+    {"file": "/dev/zero"},
+    {"type": "sampled", "file": "/dev/zero"},
+    [{"type": "plane-wave"}],
+    "vacuum",
+    "all",
+    "none",
+]
+
+RAW = [
+    b"",
+    b"{",
+    b"null",
+    b"[]",
+    b"1",
+    b'"x"',
+    b"\xff\xfe\x00",
+    b"{'a': 1}",
+    b'{"system": NaN}',
+    b'{"system": {"a": Infinity}}',
+    b'{"a": 1e999999}',
+    b"[" * 100_000,
+    b'{"a":' * 100_000,
+    b'{"a":' * 30 + b"1" + b"}" * 30,
+    b'{"a": ' + b"9" * 9000 + b"}",
+    b'{"toml": "' + b"a." * 20_000 + b'b = 1"}',
+    json.dumps({"toml": "a = " + "[" * 5000}).encode(),
+    json.dumps({"toml": "[" + ".".join("a" * 5000) + "]"}).encode(),
+    json.dumps({"toml": "x = 1\n" * 3}).encode(),
+    json.dumps({"toml": "a = {" * 900}).encode(),
+    json.dumps({"toml": "\x00"}).encode(),
+    b"\x1f\x8b\x08\x00",
+    json.dumps({"toml": "a" * 900_000}).encode(),
+    json.dumps({"toml": 'fluids = ["' + "w" * 90_000 + '"]'}).encode(),
+    b'{"toml": "\\ud800"}',
+    b"\n" * 1000,
+    json.dumps({"toml": "a = " + "9" * 10_000}).encode(),
+    b'{"a": "\\u0000"}',
+    b'{"system": {}, "system": {}}',
+]
+
+
+def places(value, path=()):
+    """Yield the paths of all entries."""
+    yield path
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield from places(item, (*path, key))
+
+
+def mutated(random_, base, changes):
+    """Return a copy with some entries replaced, removed or added."""
+    body = copy.deepcopy(base)
+    for _ in range(changes):
+        path = random_.choice(list(places(body))[1:] or [()])
+        if not path:
+            continue
+        owner = body
+        for key in path[:-1]:
+            owner = owner[key]
+        match random_.randrange(5):
+            case 0:
+                del owner[path[-1]]
+            case 1 if isinstance(owner, dict):
+                owner[random_.choice(["colour", "", "__init__", "file", "count", "type", "x" * 300])] = random_.choice(VALUES)
+            case 2 if isinstance(owner, list):
+                owner.extend([owner[path[-1]]] * random_.choice([1, 3, 300]))
+            case _:
+                owner[path[-1]] = copy.deepcopy(random_.choice(VALUES))
+    return body
+
+
+def from_schema(random_, schema, definitions, depth=0):
+    """Return a value that is nearly one of the schema."""
+    if random_.random() < 0.06 or depth > 7:
+        return copy.deepcopy(random_.choice(VALUES))
+    if "$ref" in schema:
+        return from_schema(random_, definitions[schema["$ref"].rsplit("/", 1)[1]], definitions, depth + 1)
+    if "anyOf" in schema:
+        return from_schema(random_, random_.choice(schema["anyOf"]), definitions, depth + 1)
+    if "const" in schema:
+        return schema["const"]
+    if "enum" in schema:
+        return random_.choice(schema["enum"])
+    match schema.get("type"):
+        case "object":
+            required = schema.get("required", ())
+            chosen = [name for name in schema.get("properties", {}) if name in required or random_.random() < 0.6]
+            return {name: from_schema(random_, schema["properties"][name], definitions, depth + 1) for name in chosen}
+        case "array":
+            return [from_schema(random_, schema.get("items", {}), definitions, depth + 1) for _ in range(random_.randrange(4))]
+        case "number":
+            return random_.choice([1e-3, 0.5, 1.0, 1000.0, 1e6, random_.uniform(-1e3, 1e3), *schema.get("examples", [])])
+        case "integer":
+            return random_.choice([0, 1, 2, 25, -1, 10**6])
+        case "string":
+            return random_.choice(["water-1400", "aluminium", "pzt-4", "TNT", ""])
+        case _:
+            return random_.choice(VALUES)
+
+
+def requests(seed=1, count=1100):
+    """Yield (method, path, body as bytes) of *count* requests and the raw ones."""
+    random_ = random.Random(seed)
+    schema = System.model_json_schema()
+    systems = [described(name) for name in presets.names()]
+    for raw in RAW:
+        for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/link", "/api/link/open"):
+            yield "POST", path, raw
+    for number in range(count):
+        base = random_.choice(systems)
+        if number % 3 == 0:
+            yield "POST", "/api/validate", encoded({"system": from_schema(random_, schema, schema["$defs"])})
+        elif number % 3 == 1:
+            yield "POST", "/api/validate", encoded(mutated(random_, {"system": base}, random_.randrange(1, 5)))
+        else:
+            kind = random_.choice(["solve", "field", "film", "sweep"])
+            path = random_.choice(["/api/solve", "/api/jobs", "/api/link", "/api/link/open"])
+            body = {"client": "tab", "slot": "fuzz", "revision": number, "system": base, "resolution": {**SMALL, "modes": 4}, "kind": kind}
+            yield (
+                "POST",
+                path,
+                encoded(mutated(random_, {**body, "run": "x", "runs": ["x"], "v": 1, "fragment": "s=AAAA"}, random_.randrange(1, 6))),
+            )
+
+
+def encoded(body):
+    """Return JSON as a careless program writes it: NaN and lone surrogates included."""
+    return json.dumps(body).encode()
