@@ -16,8 +16,9 @@ import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions, annulus
-from coaxshell.solver.ingredients import Radial
+from coaxshell.solver.ingredients import OWN, Radial
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.workshop import Workshop
 
 
 @dataclass
@@ -57,6 +58,11 @@ class FluidMatrix:
     diagonal: list[ComplexArray | float]
     upper: list[ComplexArray | float]
     lower: list[ComplexArray | float]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all entries."""
+        return sum(x.nbytes for row in (self.diagonal, self.upper, self.lower) for x in row if isinstance(x, np.ndarray))
 
 
 def fluid_matrix(problem: Problem, radial: Radial) -> FluidMatrix:
@@ -99,6 +105,8 @@ class ModalSystem:
         Ascending circumferential orders.
     like : ModalSystem, optional
         One of the same fluids, radii, nodes and orders, whose Bessel ratios are shared.
+    workshop : Workshop, optional
+        Where the added mass of the fluids is found, or left for the next one.
 
     Attributes
     ----------
@@ -108,8 +116,10 @@ class ModalSystem:
         None for a rigid shell.
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, orders: FloatArray, like: ModalSystem | None = None) -> None:
-        self.problem, self.s, self.orders = problem, s, orders
+    def __init__(
+        self, problem: Problem, s: ComplexArray, orders: FloatArray, like: ModalSystem | None = None, workshop: Workshop | None = None
+    ) -> None:
+        self.problem, self.s, self.orders, self._workshop = problem, s, orders, workshop
         self._radial: dict[tuple[float, float], RadialFunctions] = {} if like is None else like._radial
         self.surface = self.radial(1.0, 1.0)
         self.shells = [
@@ -125,11 +135,23 @@ class ModalSystem:
             self._radial[key] = RadialFunctions(slowness * self.s, radius, self.orders)
         return self._radial[key]
 
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return self.orders.size, self.s.size
+
+    def _fluids(self) -> FluidMatrix:
+        """Return the added mass, shared where only fluids, radii, orders and nodes determine it."""
+        problem = self.problem
+        if self._workshop is None or problem.ingredients != OWN:
+            return fluid_matrix(problem, self.radial)
+        key = ("fluids", problem.fluids, tuple(shell.radius for shell in problem.shells), self.orders.tobytes(), self.s.tobytes())
+        return self._workshop.part(key, lambda: fluid_matrix(problem, self.radial))
+
     def _assemble(self) -> None:
         """Add shells and fluids; a rigid shell keeps a row of its own, W = 0, and couples to none."""
-        s2, fluids = self.s * self.s, fluid_matrix(self.problem, self.radial)
+        s2, fluids = self.s * self.s, self._fluids()
         self._diagonal = [
-            op.impedance + s2 * fluids.diagonal[i] if op is not None else np.ones_like(self.surface.exterior)
+            op.impedance + s2 * fluids.diagonal[i] if op is not None else np.ones(self._shape, np.complex128)
             for i, op in enumerate(self.shells)
         ]
         free = [op is not None for op in self.shells]
@@ -151,7 +173,7 @@ class ModalSystem:
     def solve(self, index: int, load: ComplexArray | float) -> list[ComplexArray]:
         """Return W of every shell under a normal load (positive inward) on shell ``index`` alone."""
         if self.shells[index] is None:
-            return [np.zeros_like(self.surface.exterior) for _ in self.shells]
+            return [np.zeros(self._shape, np.complex128) for _ in self.shells]
         count = len(self.shells)
         loads: list[ComplexArray | float] = [0.0] * count
         loads[index] = load

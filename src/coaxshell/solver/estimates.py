@@ -16,6 +16,7 @@ from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.solver.workshop import Workshop
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,16 +37,16 @@ def sampled_orders(problem: Problem, first: int) -> FloatArray:
     return np.unique(np.geomspace(first, top, _SAMPLED_ORDERS).round())
 
 
-def modal_norms(problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> tuple[FloatArray, FloatArray]:
+def modal_norms(problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> tuple[FloatArray, FloatArray]:
     """Return the squared norms of the displacement W and of the strain m V - W of each order, shape (shells, orders).
 
     The norm is the integral of |X|^2 along the contour, that is of x(t)^2 e^{-2 sigma t} in time (Parseval).
     """
     nodes = slice(0, None, _NODE_STRIDE)
-    modal = ModalSystem(problem, grid.nodes[nodes], orders)
+    modal = ModalSystem(problem, grid.nodes[nodes], orders, workshop=workshop)
     displacement = np.zeros((len(problem.shells), orders.size))
     strain = np.zeros_like(displacement)
-    for load in SurfaceLoads(problem, grid, orders)(modal.surface, nodes):
+    for load in SurfaceLoads(problem, grid, orders, workshop)(modal.surface, nodes):
         normal = modal.solve(len(problem.shells) - 1, load)
         for i, (w, v) in enumerate(zip(normal, modal.tangential(normal), strict=True)):
             displacement[i] += np.sum(np.abs(w) ** 2, axis=-1)
@@ -80,13 +81,13 @@ def relative(tail: FloatArray, total: FloatArray) -> FloatArray:
     return np.sqrt(np.divide(tail, total, out=np.zeros_like(tail), where=total > 0))
 
 
-def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float) -> tuple[int, float]:
+def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, workshop: Workshop | None = None) -> tuple[int, float]:
     """Return the smallest order M whose estimated stress truncation is within the tolerance on every shell, and that estimate.
 
     If even 2000 orders are not enough, 2000 and what remains.
     """
     orders = np.unique(np.concatenate([np.arange(0, 33), np.geomspace(36, 2 * MAX_MODES, 48).round()]))
-    _, strain = modal_norms(problem, grid, orders)
+    _, strain = modal_norms(problem, grid, orders, workshop)
     every = np.arange(0, int(orders[-1]) + 1)
     remaining = np.zeros(every.size)
     for row in strain:
@@ -112,11 +113,11 @@ def window_error(grid: LaplaceGrid, normal: npt.NDArray[np.complex128]) -> float
     return 0.0 if scale == 0 else float(np.abs(history - wider).max()) / scale + grid.wrap_around
 
 
-def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings) -> tuple[int, list[str]]:
+def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings, workshop: Workshop | None = None) -> tuple[int, list[str]]:
     """Return the number of modes asked for, chosen by the tolerance if "auto", and a warning if 2000 are not enough."""
     if settings.modes != "auto":
         return settings.modes, []
-    order, remaining = choose_modes(problem, grid, settings.tolerance)
+    order, remaining = choose_modes(problem, grid, settings.tolerance, workshop)
     if remaining <= settings.tolerance:
         return order, []
     return order, [
@@ -126,14 +127,19 @@ def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings) -> tu
 
 
 def truncation(
-    problem: Problem, grid: LaplaceGrid, max_order: int, normal: ComplexArray, tangential: ComplexArray
+    problem: Problem,
+    grid: LaplaceGrid,
+    max_order: int,
+    normal: ComplexArray,
+    tangential: ComplexArray,
+    workshop: Workshop | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Return what the orders above M would add to displacement and stress of each shell, relative to what the others give.
 
     ``normal`` and ``tangential`` are the transforms of W and V, shape (shells, halves, M + 1, nodes).
     """
     orders = sampled_orders(problem, max_order + 1)
-    above = modal_norms(problem, grid, orders)
+    above = modal_norms(problem, grid, orders, workshop)
     below = computed_norms(normal, tangential)
     displacement, stress = (
         relative(tail_above(max_order, orders, high), surface_total(low)) for high, low in zip(above, below, strict=True)

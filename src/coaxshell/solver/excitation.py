@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from threading import Lock
 
 import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.incident import IncidentWave
+from coaxshell.acoustics.incident import IncidentWave, SurfaceLoad
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.workshop import Workshop
 
 
 def incident_wave(problem: Problem, source: Source) -> IncidentWave:
@@ -32,6 +34,37 @@ def needs_sine_half(sources: Iterable[Source]) -> bool:
     return any(source.angle % 180.0 != 0.0 for source in sources)
 
 
+class UnitLoad:
+    """The modal load of a unit pulse of one geometry; its projections are made when first needed.
+
+    Parameters
+    ----------
+    wave : IncidentWave
+    grid : LaplaceGrid
+    orders : ndarray
+    workshop : Workshop, optional
+        Where loads are found, or left for the next one.
+    """
+
+    def __init__(self, wave: IncidentWave, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None) -> None:
+        self._wave, self._grid, self._orders, self._workshop = wave, grid, orders, workshop
+        self._lock = Lock()
+        self._load: SurfaceLoad | None = None
+
+    def __call__(self, surface: RadialFunctions, nodes: slice) -> ComplexArray:
+        """Return L_m at a slice of the grid's nodes, shape (orders, nodes)."""
+        if self._workshop is None:
+            return self._made(surface, nodes)
+        key = ("load", self._wave, self._grid, self._orders.tobytes(), (nodes.start, nodes.stop, nodes.step))
+        return self._workshop.part(key, lambda: self._made(surface, nodes))
+
+    def _made(self, surface: RadialFunctions, nodes: slice) -> ComplexArray:
+        with self._lock:
+            if self._load is None:
+                self._load = self._wave.prepare(self._grid, self._orders)
+        return self._load(surface, nodes)
+
+
 class SurfaceLoads:
     """The modal loads of all sources on the outermost shell, prepared for some orders on a Laplace grid.
 
@@ -39,13 +72,13 @@ class SurfaceLoads:
     Sources that share a geometry share its modal load.
     """
 
-    def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> None:
+    def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> None:
         self.halves = 2 if needs_sine_half(problem.system.sources) else 1
         groups: dict[IncidentWave, list[Source]] = {}
         for source in problem.system.sources:
             groups.setdefault(incident_wave(problem, source), []).append(source)
         self._problem, self._orders = problem, orders
-        self._groups = [(wave.prepare(grid, orders), sources) for wave, sources in groups.items()]
+        self._groups = [(UnitLoad(wave, grid, orders, workshop), sources) for wave, sources in groups.items()]
 
     def __call__(self, surface: RadialFunctions, nodes: slice) -> list[ComplexArray]:
         """Return the load of the cosine half, and of the sine half if any source needs it, at a slice of the grid's nodes."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +14,24 @@ from coaxshell.solver.history import KernelTable
 from coaxshell.solver.kernels import velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import LinearSpectra, Progress, linear_spectra
+from coaxshell.solver.workshop import Workshop
+
+
+@dataclass
+class ForcedParts:
+    """What structures that differ only in their sources, absorbers and field limits have in common; made when first needed.
+
+    Attributes
+    ----------
+    compliance, ratio : ndarray or None
+        C_ij and V/W.
+    kernels, kernels_with_voltage : KernelTable or None
+    """
+
+    compliance: ComplexArray | None = None
+    ratio: ComplexArray | None = None
+    kernels: KernelTable | None = None
+    kernels_with_voltage: KernelTable | None = None
 
 
 class PreparedStructure:
@@ -24,38 +43,52 @@ class PreparedStructure:
         Its absorbers are ignored here.
     grid : LaplaceGrid
     max_order : int
+    progress : callable, optional
+    workshop : Workshop, optional
+        Where parts of other structures are found.
+    forced : ForcedParts, optional
+        Those of a structure that differs at most in its sources.
     """
 
-    def __init__(self, problem: Problem, grid: LaplaceGrid, max_order: int, progress: Progress | None = None) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        grid: LaplaceGrid,
+        max_order: int,
+        progress: Progress | None = None,
+        *,
+        workshop: Workshop | None = None,
+        forced: ForcedParts | None = None,
+    ) -> None:
         self.problem, self.grid, self.max_order = problem, grid, max_order
-        self._progress = progress
+        self.forced = forced or ForcedParts()
+        self._progress, self._workshop = progress, workshop
 
     @cached_property
-    def _with_compliance(self) -> LinearSpectra:
-        return linear_spectra(self.problem, self.grid, self.max_order, self._progress, compliance=True)
-
-    @cached_property
-    def _sources_alone(self) -> LinearSpectra:
-        return linear_spectra(self.problem, self.grid, self.max_order, self._progress)
-
-    @property
     def linear(self) -> LinearSpectra:
         """Transforms of the response without absorbers."""
-        return self._with_compliance if "_with_compliance" in self.__dict__ else self._sources_alone
+        return linear_spectra(self.problem, self.grid, self.max_order, self._progress, workshop=self._workshop)
+
+    def _responses(self) -> tuple[ComplexArray, ComplexArray]:
+        """Return compliance and V/W, made in one pass with the linear response if neither is known."""
+        forced = self.forced
+        if forced.compliance is None or forced.ratio is None:
+            made = linear_spectra(self.problem, self.grid, self.max_order, self._progress, compliance=True, workshop=self._workshop)
+            self.__dict__.setdefault("linear", made)
+            forced.compliance, forced.ratio = made.compliance, made.ratio
+        assert forced.compliance is not None
+        assert forced.ratio is not None
+        return forced.compliance, forced.ratio
 
     @property
     def compliance(self) -> ComplexArray:
         """C_ij, shape (shells, shells, M + 1, nodes)."""
-        compliance = self._with_compliance.compliance
-        assert compliance is not None
-        return compliance
+        return self._responses()[0]
 
     @property
     def tangential_ratio(self) -> ComplexArray:
         """V/W, shape (shells, M + 1, nodes)."""
-        ratio = self._with_compliance.ratio
-        assert ratio is not None
-        return ratio
+        return self._responses()[1]
 
     @cached_property
     def linear_displacement(self) -> FloatArray:
@@ -67,21 +100,26 @@ class PreparedStructure:
         """dW/dt without absorbers, shape (shells, halves, M + 1, T)."""
         return self.grid.invert(self.linear.normal * self.grid.nodes)
 
-    @cached_property
+    @property
     def kernels(self) -> KernelTable:
         """Step weights of the velocity kernels, ready for history sums."""
-        return KernelTable(velocity_weights(self.problem, self.grid, self.compliance))
+        if self.forced.kernels is None:
+            self.forced.kernels = KernelTable(velocity_weights(self.problem, self.grid, self.compliance))
+        return self.forced.kernels
 
     @cached_property
     def controlled(self) -> list[int]:
         """Shells with feedback."""
         return [i for i, shell in enumerate(self.problem.shells) if shell.gains is not None]
 
-    @cached_property
+    @property
     def kernels_with_voltage(self) -> KernelTable:
         """The same, with the voltages asked for on the controlled shells as further outputs."""
-        voltage = voltage_weights(self.problem, self.grid, self.compliance, self.tangential_ratio, self.controlled)
-        return KernelTable(np.concatenate([velocity_weights(self.problem, self.grid, self.compliance), voltage]))
+        if self.forced.kernels_with_voltage is None:
+            voltage = voltage_weights(self.problem, self.grid, self.compliance, self.tangential_ratio, self.controlled)
+            velocity = velocity_weights(self.problem, self.grid, self.compliance)
+            self.forced.kernels_with_voltage = KernelTable(np.concatenate([velocity, voltage]))
+        return self.forced.kernels_with_voltage
 
     @cached_property
     def linear_voltage(self) -> FloatArray:

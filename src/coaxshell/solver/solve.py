@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from copy import copy
 from dataclasses import replace
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
@@ -21,6 +22,7 @@ from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Progress, Stopwatch
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.workshop import Workshop
 
 
 def solve(system: System, *, settings: Settings | None = None, progress: Progress | None = None) -> ModalSolution:
@@ -54,6 +56,10 @@ class Prepared:
         Its own absorbers are only the default of ``solve``. A dimensionless problem may carry other ingredients than a system's own.
     settings : Settings
     progress : callable, optional
+    workshop : Workshop, optional
+        Where parts that other systems share are found and left.
+    like : Prepared, optional
+        Another one at the same settings, whose parts are shared if they are the same.
 
     Raises
     ------
@@ -61,23 +67,57 @@ class Prepared:
         If the engine is not available or the feedback is unstable.
     """
 
-    def __init__(self, system: System | Problem, settings: Settings, progress: Progress | None = None) -> None:
+    def __init__(
+        self,
+        system: System | Problem,
+        settings: Settings,
+        progress: Progress | None = None,
+        *,
+        workshop: Workshop | None = None,
+        like: Prepared | None = None,
+    ) -> None:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
         self._stopwatch = Stopwatch()
-        self._progress = progress
+        self._progress, self._workshop, self._asked = progress, workshop, settings
         self.problem = system if isinstance(system, Problem) else dimensionless(system)
         grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
         self._notes: list[str] = []
         order = self._order(grid, settings)
         self.settings = replace(settings, modes=order)
-        require_stable(self.problem, order, settings.duration)
-        self._stopwatch.lap("stability of the feedback")
-        self.structure = PreparedStructure(self.problem, grid, order, progress)
+        forced = like.structure.forced if like is not None and like.answers_like(self.problem, order) else None
+        if forced is None:
+            require_stable(self.problem, order, settings.duration, workshop)
+            self._stopwatch.lap("stability of the feedback")
+        self.structure: PreparedStructure = PreparedStructure(self.problem, grid, order, progress, workshop=workshop, forced=forced)
         self._trust: Estimates | None = None
 
+    def answers_like(self, problem: Problem, max_order: int) -> bool:
+        """Return whether a problem differs at most in its sources, absorbers and field limits."""
+        own = self.problem
+        same = all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "ingredients"))
+        return same and max_order == self.structure.max_order
+
+    def retuned(self, system: System | Problem) -> Prepared:
+        """Return the same for a changed system, sharing what is unchanged; the first call makes what later ones share.
+
+        Raises
+        ------
+        InputError
+            If the feedback is unstable.
+        """
+        if self._workshop is None:
+            self._workshop = Workshop()
+        problem = system if isinstance(system, Problem) else dimensionless(system)
+        same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
+        if same and self.answers_like(problem, self.structure.max_order):
+            shared = copy(self)
+            shared.problem, shared._stopwatch = problem, Stopwatch()
+            return shared
+        return Prepared(problem, self._asked, self._progress, workshop=self._workshop, like=self)
+
     def _order(self, grid: LaplaceGrid, settings: Settings) -> int:
-        order, notes = estimates.resolve_modes(self.problem, grid, settings)
+        order, notes = estimates.resolve_modes(self.problem, grid, settings, self._workshop)
         self._notes += notes
         self._stopwatch.lap("choosing the number of modes")
         return order
@@ -88,7 +128,9 @@ class Prepared:
         if self._trust is None:
             linear = self.structure.linear
             structure = self.structure
-            displacement, stress = estimates.truncation(self.problem, structure.grid, structure.max_order, linear.normal, linear.tangential)
+            displacement, stress = estimates.truncation(
+                self.problem, structure.grid, structure.max_order, linear.normal, linear.tangential, self._workshop
+            )
             self._trust = Estimates(displacement, stress, estimates.window_error(structure.grid, linear.normal))
         return self._trust
 

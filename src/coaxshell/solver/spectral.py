@@ -20,6 +20,7 @@ from coaxshell.acoustics.operators import all_orders
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.workshop import Workshop
 
 Progress = Callable[[float, str], None]
 
@@ -65,11 +66,17 @@ class LinearSpectra:
 
 
 def linear_spectra(
-    problem: Problem, grid: LaplaceGrid, max_order: int, progress: Progress | None = None, *, compliance: bool = False
+    problem: Problem,
+    grid: LaplaceGrid,
+    max_order: int,
+    progress: Progress | None = None,
+    *,
+    compliance: bool = False,
+    workshop: Workshop | None = None,
 ) -> LinearSpectra:
     """Return the transforms of W and V of every shell under the sources, and the modal compliance if asked for."""
     orders = all_orders(max_order)
-    loads = SurfaceLoads(problem, grid, orders)
+    loads = SurfaceLoads(problem, grid, orders, workshop)
     count, modes, nodes = len(problem.shells), max_order + 1, grid.nodes.size
     spectra = LinearSpectra(
         np.empty((count, loads.halves, modes, nodes), np.complex128),
@@ -79,7 +86,7 @@ def linear_spectra(
     )
 
     def work(block: slice) -> None:
-        modal = ModalSystem(problem, grid.nodes[block], orders)
+        modal = ModalSystem(problem, grid.nodes[block], orders, workshop=workshop)
         for half, load in enumerate(loads(modal.surface, block)):
             normal = modal.solve(count - 1, load)
             for shell, (w, v) in enumerate(zip(normal, modal.tangential(normal), strict=True)):

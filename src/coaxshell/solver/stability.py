@@ -8,14 +8,18 @@ s = sigma_0 + i omega, omega from 0 to infinity, divided by pi.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray, all_orders
 from coaxshell.errors import InputError
 from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import ControlGains, Problem
+from coaxshell.solver.workshop import Workshop
 
 _MAX_NODES = 8192
 _SPACING = 0.8
@@ -40,7 +44,7 @@ def with_gains(problem: Problem, proportional: float, derivative: float) -> Prob
 
 
 def highest_frequency(problem: Problem, max_order: int) -> float:
-    """Return the frequency above which feedback is less than half of every controlled shell's inertia."""
+    """Return a power of two above which feedback is less than half of every controlled shell's inertia."""
     orders = all_orders(max_order)
     highest = 1.0
     for i, shell in enumerate(problem.shells):
@@ -50,7 +54,7 @@ def highest_frequency(problem: Problem, max_order: int) -> float:
         damping = float((volts * abs(shell.gains.derivative)).max()) / shell.mass
         stiffness = float((volts * abs(shell.gains.proportional)).max()) / shell.mass
         highest = max(highest, 2.0 * damping + 2.0 * np.sqrt(stiffness))
-    return highest
+    return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
 def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, FloatArray]:
@@ -64,16 +68,21 @@ def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, 
     return shift, np.concatenate([even, beyond[1:]])
 
 
-def unstable_poles(problem: Problem, max_order: int, duration: float) -> UnstablePoles:
+def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: Workshop | None = None) -> UnstablePoles:
     """Return the orders whose response would grow by more than a factor e within the duration."""
     shift, frequencies = _contour(problem, max_order, duration)
     open_loop = replace(problem, shells=tuple(replace(shell, gains=None) for shell in problem.shells))
+    known = (open_loop.shells, open_loop.fluids, open_loop.scales, max_order)
     orders = all_orders(max_order)
     turned = np.zeros(orders.size)
     for start in range(0, frequencies.size, _BLOCK):
         block = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
-        without = ModalSystem(open_loop, block, orders)
-        ratio = ModalSystem(problem, block, orders, like=without).determinant() / without.determinant()
+        closed = ModalSystem(problem, block, orders, workshop=workshop)
+        without = partial(_determinant, open_loop, block, orders, closed)
+        if workshop is not None and problem.ingredients == OWN:
+            ratio = closed.determinant() / workshop.part(("open loop", *known, block.tobytes()), without)
+        else:
+            ratio = closed.determinant() / without()
         turned += np.angle(ratio[:, 1:] / ratio[:, :-1]).sum(axis=1)
     turned += np.angle(1.0 / ratio[:, -1])  # beyond the last node the ratio tends to 1 without turning
     counts = np.rint(-turned / np.pi)
@@ -81,11 +90,15 @@ def unstable_poles(problem: Problem, max_order: int, duration: float) -> Unstabl
     return UnstablePoles(orders[found], counts[found])
 
 
-def require_stable(problem: Problem, max_order: int, duration: float) -> None:
+def _determinant(problem: Problem, nodes: ComplexArray, orders: FloatArray, like: ModalSystem) -> ComplexArray:
+    return ModalSystem(problem, nodes, orders, like=like).determinant()
+
+
+def require_stable(problem: Problem, max_order: int, duration: float, workshop: Workshop | None = None) -> None:
     """Raise InputError, naming gain and order, if the closed loop is unstable."""
     if all(shell.gains is None for shell in problem.shells):
         return
-    unstable = unstable_poles(problem, max_order, duration)
+    unstable = unstable_poles(problem, max_order, duration, workshop)
     if unstable.orders.size == 0:
         return
     control = problem.system.control
