@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -50,15 +51,13 @@ math_eqref_format = "({number})"
 
 # Reference, from the docstrings
 autodoc_member_order = "bysource"
-autodoc_typehints = "signature"
-autodoc_typehints_format = "short"
+autodoc_typehints = "none"  # the docstrings tell types together with shapes and units
 autodoc_preserve_defaults = True
-autodoc_type_aliases = {"npt.ArrayLike": "ArrayLike", "FloatArray": "ndarray", "FloatArray | None": "ndarray | None"}
 autoclass_content = "class"
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_param = False
-napoleon_use_ivar = True
+napoleon_use_ivar = False
 python_use_unqualified_type_names = True
 python_display_short_literal_types = True
 python_maximum_signature_line_length = 88
@@ -100,3 +99,20 @@ html_theme_options = {
 }
 pygments_style = "friendly"
 pygments_dark_style = "native"
+
+
+def without_placeholders(app, what, name, obj, options, signature, result):
+    """Show a required argument as one: its default in the code only tells that it was left out."""
+    return (re.sub(r"\s*=\s*<object object[^>]*>", "", signature) if signature else signature, result)
+
+
+def no_type_before_a_colon(app, what, name, obj, options, lines):
+    """Keep a colon in the one line of an attribute from being read as the end of its type."""
+    if what in ("attribute", "data", "property") and lines:
+        lines[0] = re.sub(r":(?=\s)", " \N{EN DASH}", lines[0])
+
+
+def setup(app):
+    """Connect what is too small for an extension."""
+    app.connect("autodoc-process-signature", without_placeholders)
+    app.connect("autodoc-process-docstring", no_type_before_a_colon, priority=400)

@@ -14,7 +14,9 @@ import coaxshell as cx
 # A material is its constants, in SI or as texts with a unit. The library has more, :data:`coaxshell.materials` and
 # :data:`coaxshell.fluids`, each with its source.
 
-aluminium = cx.Elastic(name="aluminium", density=2700, youngs_modulus="70 GPa", poisson_ratio=0.33)
+aluminium = cx.Elastic(
+    name="aluminium", density=2700, youngs_modulus="70 GPa", poisson_ratio=0.33
+)
 water = cx.Fluid(density=1000, sound_speed=1400)
 layers = [
     cx.Layer(cx.materials.PZT4, "3 mm", role="sensor"),

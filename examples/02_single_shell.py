@@ -42,11 +42,22 @@ step = empty.replace(source=cx.PlaneWave(pulse=cx.Step(pressure="1 kPa")))
 late = cx.simulate(step, duration=40.0, time_step=2e-2, modes=8)
 
 inward = late.displacement("outer", angle=[0, 180])
-translation = (inward.sel(angle=0) - inward.sel(angle=180)) / 2  # along the wave, away from the source
-speed = float(translation[-1] - translation[-501]) / float(translation.time_seconds[-1] - translation.time_seconds[-501])
+translation = (
+    inward.sel(angle=0) - inward.sel(angle=180)
+) / 2  # along the wave, away from the source
+speed = float(translation[-1] - translation[-501]) / float(
+    translation.time_seconds[-1] - translation.time_seconds[-501]
+)
 particle = 1e3 / (1000 * 1400)
 
 shell, water = empty.shells[0], empty.exterior
-mass = 2 * 3.141592653589793 * shell.radius * sum(layer.material.density * layer.thickness for layer in shell.layers)
+mass = (
+    2
+    * 3.141592653589793
+    * shell.radius
+    * sum(layer.material.density * layer.thickness for layer in shell.layers)
+)
 displaced = 3.141592653589793 * shell.radius**2 * water.density
-print(f"late velocity over the wave's: {speed / particle:.4f}, by hand {2 / (1 + mass / displaced):.4f}")
+print(
+    f"late velocity over the wave's: {speed / particle:.4f}, by hand {2 / (1 + mass / displaced):.4f}"
+)

@@ -19,13 +19,17 @@ prepared = cx.prepare(bare, duration=4.0, time_step=2e-3, modes=80)
 
 
 def ring(count, damping=1e6):
-    return cx.absorber_ring(count, mass=10, damping=damping, linear_stiffness=1e9, cubic_stiffness=1e20)
+    return cx.absorber_ring(
+        count, mass=10, damping=damping, linear_stiffness=1e9, cubic_stiffness=1e20
+    )
 
 
 responses = {count: prepared.simulate(ring(count)) for count in (0, 5, 25)}
 for count, response in responses.items():
     inner, outer = response.summary().shells
-    print(f"{count:2d} absorbers: RMS stress {inner.stress_rms / 1e3:.1f} kPa inside, {outer.stress_rms / 1e3:.1f} kPa outside")
+    print(
+        f"{count:2d} absorbers: RMS stress {inner.stress_rms / 1e3:.1f} kPa inside, {outer.stress_rms / 1e3:.1f} kPa outside"
+    )
 
 # %%
 # The system with the last set, drawn:
@@ -43,8 +47,12 @@ figure_comparison({"25 absorbers": responses[25], "5": responses[5], "none": res
 
 three = [
     cx.Absorber(angle=0, mass=20, damping=1e6, linear_stiffness=1e9),
-    cx.Absorber(angle=100, mass=10, damping=1e6, linear_stiffness=1e9, cubic_stiffness=1e20),
-    cx.Absorber(angle=-130, mass=10, damping=5e5, linear_stiffness=5e8, cubic_stiffness=1e20),
+    cx.Absorber(
+        angle=100, mass=10, damping=1e6, linear_stiffness=1e9, cubic_stiffness=1e20
+    ),
+    cx.Absorber(
+        angle=-130, mass=10, damping=5e5, linear_stiffness=5e8, cubic_stiffness=1e20
+    ),
 ]
 uneven = prepared.simulate(three)
 uneven

@@ -48,5 +48,11 @@ print([f"{float(value) / 1e3:.2f} kPa" for value in rms])
 # ``.webp`` needs nothing but the package, ``.mp4`` the extra ``video``. Two responses would be shown side by side.
 
 with TemporaryDirectory() as folder:
-    film = save_film(bare, path=Path(folder) / "bare.webp", frames=8, fps=4, view=FieldView(half_width=2.5, pixels=100))
+    film = save_film(
+        bare,
+        path=Path(folder) / "bare.webp",
+        frames=8,
+        fps=4,
+        view=FieldView(half_width=2.5, pixels=100),
+    )
     print(f"{film.name}: {film.stat().st_size / 1e3:.0f} kB")

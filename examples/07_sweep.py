@@ -27,8 +27,18 @@ resolution = {"duration": 3.0, "time_step": 4e-3, "modes": 50}
 # works in a process of its own; ``workers=1`` stays in this one.
 
 with TemporaryDirectory() as folder:
-    table = cx.sweep(system, over=over, metrics=metrics, store=f"{folder}/ring", workers=1, **resolution)
-    again = cx.sweep(system, over=over, metrics=metrics, store=f"{folder}/ring", resume=True, workers=1, **resolution)
+    table = cx.sweep(
+        system, over=over, metrics=metrics, store=f"{folder}/ring", workers=1, **resolution
+    )
+    again = cx.sweep(
+        system,
+        over=over,
+        metrics=metrics,
+        store=f"{folder}/ring",
+        resume=True,
+        workers=1,
+        **resolution,
+    )
 print(table.equals(again))
 
 # %%
@@ -46,9 +56,17 @@ print((inner / 1e3).round(2).to_pandas())
 with style():
     figure = new_figure(width=6.4, height=3.2)
     ax = figure.subplots()
-    for damping, colour in zip(over["absorbers.damping"], ("blue", "orange", "green"), strict=True):
+    for damping, colour in zip(
+        over["absorbers.damping"], ("blue", "orange", "green"), strict=True
+    ):
         one = inner.sel({"absorbers.damping": damping})
-        ax.plot(one["absorbers.count"], one / 1e3, marker="o", color=COLOURS[colour], label=f"damping {damping:g} N s/m$^2$")
+        ax.plot(
+            one["absorbers.count"],
+            one / 1e3,
+            marker="o",
+            color=COLOURS[colour],
+            label=f"damping {damping:g} N s/m$^2$",
+        )
     ax.set_xlabel("number of absorbers")
     ax.set_ylabel("RMS stress, inner shell (kPa)")
     ax.legend()
