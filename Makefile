@@ -10,12 +10,13 @@ DEMO   := demo
 DOCS_CHECKS ?= not slow
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-all lint types bench docs clean
+.PHONY: help demo test test-all mutation lint types bench docs clean
 
 help:
 	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
 	@echo "make test      the tests, without the slow ones"
 	@echo "make test-all  all tests"
+	@echo "make mutation  break the package in one place at a time: which test notices (tests/mutation; a quarter of an hour)"
 	@echo "make lint      style and format"
 	@echo "make types     static types"
 	@echo "make bench     time, memory and cost curves of the solver"
@@ -56,6 +57,9 @@ test-all: export OPENBLAS_NUM_THREADS = 1
 test-all: $(STAMP_ALL)
 	@$(BIN)/python -m pytest -q -n 2
 	@$(MAKE) --no-print-directory docs DOCS_CHECKS="slow or not slow"
+
+mutation: $(STAMP)
+	@$(BIN)/python tests/mutation
 
 lint: $(STAMP)
 	@$(BIN)/ruff check .

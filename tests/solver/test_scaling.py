@@ -59,3 +59,12 @@ def test_the_paper_in_its_own_units() -> None:
     np.testing.assert_allclose([shell.mass for shell in problem.shells], 0.0612, rtol=1e-12)
     stiffness = problem.stiffness(1, np.array([0.0]))
     np.testing.assert_allclose(stiffness.ww, 9.852e8 / 1.96e9, rtol=1e-4)
+
+
+def test_fluids_and_thicknesses_by_hand() -> None:
+    problem = dimensionless(system())
+    assert [fluid.slowness for fluid in problem.fluids] == [1400 / 1300, 1400 / 1600, 1.0]
+    assert [fluid.density for fluid in problem.fluids] == [0.9, 1.1, 1.0]
+    aluminium, steel = (layer.material.density for layer in LAYUP)
+    np.testing.assert_allclose([shell.mass for shell in problem.shells], (5e-3 * aluminium + 2e-3 * steel) / (1000 * 0.9), rtol=1e-14)
+    np.testing.assert_allclose(problem.scales.time, 0.9 / 1400, rtol=1e-14)

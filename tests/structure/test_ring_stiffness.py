@@ -101,6 +101,18 @@ def test_open_circuit_layers_stiffen_bending_alone() -> None:
     assert (with_layers.ww - without.ww)[:1] == 0.0  # breathing does not bend
 
 
+@pytest.mark.parametrize("radius", [0.5, 2.0])
+def test_open_circuit_stiffness_by_hand(radius: float) -> None:
+    # kappa = E^2/(zeta33 + m^2 zeta22/R^2), R once; at m = 150 the second term is no small one.
+    layers = cx.presets.load("bare").shells[0].layers
+    layer = section(cx.Shell(radius=radius, layers=layers)).layer("sensor")
+    t, e = 3e-3, -4.1 - 73 / 115 * 14.1
+    zeta33, zeta22 = (5.841e-9 - 14.1**2 / 115e9) * math.pi**2 / (2 * t), 7.124e-9 * t / 2
+    m = np.array([0.0, 3.0, 150.0])
+    expected = (e * 2 * t / math.pi) ** 2 / (zeta33 + m**2 * zeta22 / radius**2)
+    np.testing.assert_allclose(open_circuit_stiffness(layer, m, radius), expected, rtol=1e-13)
+
+
 def test_sensor_equation_by_hand() -> None:
     # phi = E (m V - m^2 W)/(zeta33 R^2 + m^2 zeta22), R once (Eq. 20 prints it twice).
     layer = section(cx.presets.load("bare").shells[0]).layer("sensor")

@@ -11,15 +11,16 @@ from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import writable
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request
+from coaxshell.cli.solving import Request, with_resolution
 
 
+@with_resolution
 def animate(
     context: typer.Context,
     source: field_options.SourceArgument,
     compare: field_options.CompareOption = None,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .mp4 (needs the extra coaxshell\\[video]) or .webp.")
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .mp4 (needs the extra 'video') or .webp.")
     ] = Path("film.mp4"),
     frames: Annotated[int, typer.Option("--frames", help="Number of frames.")] = 250,
     fps: Annotated[float, typer.Option("--fps", help="Frames per second.")] = 25.0,
@@ -32,12 +33,8 @@ def animate(
     pressure_limit: field_options.PressureLimitOption = None,
     stress_limit: field_options.StressLimitOption = None,
     changes: options.SetOption = None,
-    duration: options.DurationOption = "5",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: options.ModesOption = "150",
-    tolerance: options.ToleranceOption = "1e-3",
-    engine: options.EngineOption = "spectral",
-    refinement: options.RefinementOption = "1",
+    *,
+    request: Request,
     quiet: options.QuietOption = False,
 ) -> None:
     """Make a film of the pressure field.
@@ -50,13 +47,12 @@ def animate(
     last = None if until is None else values.number("--until", until)
     highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
     highest_stress = field_options.limit("--stress-limit", stress_limit)
-    with field_options.named_as_options(pixels="size"):
+    with values.named_as_options(pixels="size"):
         view = FieldView(0.5 * values.number("--width", width), size)
         check_units(units)
         check_film(target, frames, fps)
-    sources = [source] if compare is None else [source, compare]
-    responses = answers(context, sources, changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
-    with field_options.named_as_options(), progress(quiet) as report:
+    responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
+    with values.named_as_options(), progress(quiet) as report:
         save_film(
             *responses,
             path=target,

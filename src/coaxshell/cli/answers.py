@@ -8,21 +8,13 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coaxshell.cli.solving import Request
+from coaxshell.cli.solving import RESOLUTION, Request
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
-_FOR_SOLVING = {
-    "changes": "--set",
-    "duration": "--duration",
-    "time_step": "--time-step",
-    "modes": "--modes",
-    "tolerance": "--tolerance",
-    "engine": "--engine",
-    "refinement": "--refinement",
-}
+_FOR_SOLVING = {"changes": "--set", **{name: "--" + name.replace("_", "-") for name in RESOLUTION}}
 
 
 def is_saved(source: str) -> bool:

@@ -11,13 +11,14 @@ from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import writable
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request
+from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.times import times as read_times
 from coaxshell.errors import InputError
 
 _KINDS = ("paraview", "csv", "mat")
 
 
+@with_resolution
 def export(
     context: typer.Context,
     source: field_options.SourceArgument,
@@ -37,12 +38,8 @@ def export(
     ] = "0",
     force: Annotated[bool, typer.Option("--force", help="Replace the folder or the file if it exists.")] = False,
     changes: options.SetOption = None,
-    duration: options.DurationOption = "5",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: options.ModesOption = "150",
-    tolerance: options.ToleranceOption = "1e-3",
-    engine: options.EngineOption = "spectral",
-    refinement: options.RefinementOption = "1",
+    *,
+    request: Request,
     quiet: options.QuietOption = False,
 ) -> None:
     """Write a run for ParaView, as CSV or for MATLAB."""
@@ -53,10 +50,10 @@ def export(
     target = _target(source, to, output, force)
     chosen = None if times is None else read_times(times)
     half_width, factor = 0.5 * values.number("--width", width), values.number("--displaced", displaced)
-    with field_options.named_as_options():
+    with values.named_as_options():
         check_grid(half_width, points, factor)
-    (response,) = answers(context, [source], changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
-    with field_options.named_as_options(folder="output", path="output"), progress(quiet) as report:
+    (response,) = answers(context, [source], changes, request, quiet=quiet)
+    with values.named_as_options(folder="output", path="output"), progress(quiet) as report:
         if to == "paraview":
             export_paraview(
                 response, target, times=chosen, half_width=half_width, points=points, displaced=factor, force=force, progress=report

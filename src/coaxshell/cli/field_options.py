@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Annotated
 
 import typer
 
 from coaxshell.cli import values
 from coaxshell.errors import InputError
-
-_ARGUMENTS = ("times", "until", "frames", "fps", "pixels", "width", "units", "points", "displaced", "output", "folder", "path")
 
 SourceArgument = Annotated[
     str, typer.Argument(metavar="SOURCE", help="A preset, a .toml file, or a run saved by coaxshell run --output (.nc).")
@@ -40,14 +36,3 @@ def limit(option: str, text: str | None) -> float | None:
     if not (math.isfinite(value) and value > 0):
         raise InputError(option, f"{value:g} is not allowed", "give a positive number, in Pa")
     return value
-
-
-@contextmanager
-def named_as_options(**names: str) -> Iterator[None]:
-    """Let errors about arguments name the options instead: ``width`` becomes ``--width``, or what *names* says of it."""
-    try:
-        yield
-    except InputError as error:
-        if error.where in _ARGUMENTS:
-            raise InputError("--" + names.get(error.where, error.where), error.problem, error.remedy) from None
-        raise

@@ -12,7 +12,7 @@ from coaxshell.cli import options
 from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import writable
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request
+from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.tables import tell_warnings
 from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from coaxshell.paper import StudyRecipe
 
 
+@with_resolution
 def figure(
     context: typer.Context,
     number: Annotated[str, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper, 2 to 14.")],
@@ -36,12 +37,8 @@ def figure(
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg. [default: figure-NUMBER.png]")
     ] = None,
     changes: options.SetOption = None,
-    duration: options.DurationOption = "5",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: options.ModesOption = "150",
-    tolerance: options.ToleranceOption = "1e-3",
-    engine: options.EngineOption = "spectral",
-    refinement: options.RefinementOption = "1",
+    *,
+    request: Request,
     quiet: options.QuietOption = False,
 ) -> None:
     """Draw a figure of the paper.
@@ -55,7 +52,6 @@ def figure(
     target = writable(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
     if source and (preset or changes):
         raise InputError("--from", "cannot be combined with --preset or --set", "a saved run has its own system: give one or the other")
-    request = Request(duration, time_step, modes, tolerance, engine, refinement)
     if source and isinstance(recipe, StudyRecipe):
         raise InputError("--from", f"has no effect on figure {number}, which compares many runs", "leave it out")
     sources = [str(path) for path in source or ()] or preset or list(recipe.presets)

@@ -12,7 +12,7 @@ from coaxshell.errors import InputError
 
 
 def init(
-    file: Annotated[Path, typer.Argument(help="The file to write.")] = Path("scenario.toml"),
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The scenario file to write, .toml.")] = Path("scenario.toml"),
     preset: Annotated[str, typer.Option("--preset", metavar="NAME", help="System to start from; see coaxshell presets.")] = "bare",
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file if there is one.")] = False,
 ) -> None:

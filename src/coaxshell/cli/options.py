@@ -15,7 +15,7 @@ SetOption = Annotated[
 DurationOption = Annotated[
     str, typer.Option("--duration", metavar="TRANSITS", help="How long, in acoustic transits a/c_e of the outermost radius.")
 ]
-TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TRANSITS", help="Time step, in the same unit.")]
+TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TRANSITS", help="Time step, in transits too.")]
 ModesOption = Annotated[str, typer.Option("--modes", metavar="N|auto", help="Highest circumferential order, or auto to meet --tolerance.")]
 ToleranceOption = Annotated[str, typer.Option("--tolerance", metavar="ERROR", help="Relative error that --modes auto aims at.")]
 EngineOption = Annotated[str, typer.Option("--engine", metavar="NAME", help="How to solve: spectral or direct.")]

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from coaxshell.cli.files import replacing, writable
-from coaxshell.cli.values import number
+from coaxshell.cli.values import named_as_options, number
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -55,7 +53,7 @@ def response_function(
     place = None if radius is None else number("--radius", radius)
     times = _times(number("--duration", duration), number("--time-step", time_step))
 
-    with _named_as_options():
+    with named_as_options(disc_radius="inner-radius", inner="inner-radius", outer="outer-radius", radius="radius", slowness="slowness"):
         found = _functions(region, orders if table else list(range(max(60, *orders) + 1)), times, place, sizes)
     if table:
         _write(target, orders, found)
@@ -127,13 +125,3 @@ def _write(target: Path, orders: list[int], found: list[ResponseFunction]) -> No
     columns = np.concatenate([found[0].time[None], *(each.values for each in found)]).T
     with replacing(target) as partial:
         np.savetxt(partial, columns, delimiter=",", header=",".join(names), comments="", fmt="%.12g")
-
-
-@contextmanager
-def _named_as_options() -> Iterator[None]:
-    """Let errors about arguments name the options."""
-    names = {"disc_radius": "--inner-radius", "inner": "--inner-radius", "outer": "--outer-radius"}
-    try:
-        yield
-    except InputError as error:
-        raise InputError(names.get(error.where, f"--{error.where}"), error.problem, error.remedy) from None

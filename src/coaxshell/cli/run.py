@@ -9,20 +9,17 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.files import writable
-from coaxshell.cli.solving import Request
+from coaxshell.cli.solving import Request, with_resolution
 
 
+@with_resolution
 def run(
     scenario: Annotated[
         str, typer.Argument(metavar="SCENARIO", help="A .toml file (see coaxshell init) or a preset (see coaxshell presets).")
     ],
     changes: options.SetOption = None,
-    duration: options.DurationOption = "5",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: options.ModesOption = "150",
-    tolerance: options.ToleranceOption = "1e-3",
-    engine: options.EngineOption = "spectral",
-    refinement: options.RefinementOption = "1",
+    *,
+    request: Request,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Save the run: arrays, system, settings, versions.")
     ] = None,
@@ -57,7 +54,6 @@ def run(
     systems = [load_system(scenario, changes or ())]
     if compare is not None:
         systems.append(load_reference(compare, changes or ()))
-    request = Request(duration, time_step, modes, tolerance, engine, refinement)
     responses = [request.solve(system, quiet=quiet) for system in systems]
     names = labels(systems[0], systems[-1]) if compare is not None else (systems[0].name or scenario,)
     named = dict(zip(names, responses, strict=True))

@@ -11,10 +11,11 @@ from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import writable
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request
+from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.times import times as read_times
 
 
+@with_resolution
 def snapshots(
     context: typer.Context,
     source: field_options.SourceArgument,
@@ -31,12 +32,8 @@ def snapshots(
     pressure_limit: field_options.PressureLimitOption = None,
     stress_limit: field_options.StressLimitOption = None,
     changes: options.SetOption = None,
-    duration: options.DurationOption = "5",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: options.ModesOption = "150",
-    tolerance: options.ToleranceOption = "1e-3",
-    engine: options.EngineOption = "spectral",
-    refinement: options.RefinementOption = "1",
+    *,
+    request: Request,
     quiet: options.QuietOption = False,
 ) -> None:
     """Draw the pressure field at several instants.
@@ -49,12 +46,11 @@ def snapshots(
     chosen = None if times is None else read_times(times)
     highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
     highest_stress = field_options.limit("--stress-limit", stress_limit)
-    with field_options.named_as_options():
+    with values.named_as_options():
         view = FieldView(0.5 * values.number("--width", width), pixels)
         check_units(units)
-    sources = [source] if compare is None else [source, compare]
-    responses = answers(context, sources, changes, Request(duration, time_step, modes, tolerance, engine, refinement), quiet=quiet)
-    with field_options.named_as_options(), progress(quiet) as report:
+    responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
+    with values.named_as_options(), progress(quiet) as report:
         figure = figure_snapshots(
             *responses,
             times=chosen,

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypedDict
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import wraps
+from inspect import Parameter, signature
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
-from coaxshell.cli import values
+from coaxshell.cli import options, values
 from coaxshell.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -26,14 +29,14 @@ class Settings(TypedDict):
 
 @dataclass(frozen=True)
 class Request:
-    """The resolution options of a command, as typed."""
+    """The resolution options of a command, as typed; their names, help and defaults are those of every command that solves."""
 
-    duration: str
-    time_step: str
-    modes: str
-    tolerance: str
-    engine: str
-    refinement: str = "1"
+    duration: options.DurationOption = "5"
+    time_step: options.TimeStepOption = "1e-3"
+    modes: options.ModesOption = "150"
+    tolerance: options.ToleranceOption = "1e-3"
+    engine: options.EngineOption = "spectral"
+    refinement: options.RefinementOption = "1"
 
     def solve(self, system: System, *, quiet: bool) -> Response:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
@@ -53,3 +56,27 @@ class Request:
             "engine": self.engine,
             "refinement": values.whole("--refinement", self.refinement),
         }
+
+
+RESOLUTION = tuple(field.name for field in fields(Request))
+"""The names of the resolution's parameters."""
+
+
+def with_resolution(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command whose parameter ``request`` is filled from the options of a :class:`Request`, which stand in its place."""
+    parameters = signature(command, eval_str=True).parameters
+    shown: list[Parameter] = []
+    for parameter in parameters.values():
+        if parameter.name == "request":
+            shown += signature(Request, eval_str=True).parameters.values()
+        else:
+            shown.append(parameter)
+
+    @wraps(command)
+    def filled(**given: Any) -> None:
+        request = Request(**{name: given.pop(name) for name in RESOLUTION})
+        command(**given, request=request)
+
+    told: Any = filled
+    told.__signature__ = signature(command).replace(parameters=[each.replace(kind=Parameter.KEYWORD_ONLY) for each in shown])
+    return filled

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from coaxshell.errors import InputError
 
 _OF_SETTINGS = ("duration", "time_step", "modes", "tolerance", "engine", "refinement")
+_OF_FIELDS = ("times", "until", "frames", "fps", "pixels", "width", "units", "points", "displaced", "output", "folder", "path")
 
 
 def number(option: str, text: str) -> float:
@@ -60,11 +61,12 @@ def _value(text: str) -> Any:
 
 
 @contextmanager
-def named_as_options() -> Iterator[None]:
-    """Let errors about the settings of a run name the option (``--time-step``) instead of the argument (``time_step``)."""
+def named_as_options(**names: str) -> Iterator[None]:
+    """Let errors about arguments name the option instead: ``time_step`` becomes ``--time-step``, or what *names* says of it."""
     try:
         yield
     except InputError as error:
-        if error.where in _OF_SETTINGS:
-            raise InputError("--" + error.where.replace("_", "-"), error.problem, error.remedy) from None
+        if error.where in names or error.where in _OF_SETTINGS + _OF_FIELDS:
+            option = names.get(error.where, error.where).replace("_", "-")
+            raise InputError(f"--{option}", error.problem, error.remedy) from None
         raise

@@ -43,9 +43,8 @@ def verify(
 ) -> None:
     """Check the numbers and write a report.
 
-    Against theory, reference values and independent methods; --against compares the histories of another code.
-
-    Exits with 1 if anything fails. With --against FILE.csv --case SCENARIO another code's histories are compared with ours instead.
+    Against theory, reference values and independent methods. With --against FILE.csv --case SCENARIO another code's histories are
+    compared with ours instead. Exits with 1 if anything fails.
     """
     if show_list:
         return _list()

@@ -29,7 +29,7 @@ def checked_times(times: npt.ArrayLike) -> FloatArray:
     except (TypeError, ValueError):
         raise InputError("times", f"{times!r} is not a list of numbers", "give finite numbers") from None
     if given.ndim != 1 or not np.all(np.isfinite(given)):
-        raise InputError("times", "not a list of finite numbers", "give a scalar or one-dimensional array of finite numbers")
+        raise InputError("times", "is not a list of finite numbers", "give a scalar or one-dimensional array of finite numbers")
     return given
 
 

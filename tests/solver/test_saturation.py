@@ -1,0 +1,55 @@
+"""Limited voltages: the circle of points against the modes, clipping against a quadrature of its own, the limit by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.solver.saturation import LimitedVoltages, circle, voltage_limit
+from coaxshell.solver.scaling import dimensionless
+
+MODES = 7
+
+
+def amplitudes(halves: int) -> np.ndarray:
+    """Return amplitudes (halves, MODES) whose sum passes 1 here and there; order 0 has no sine."""
+    values = np.random.default_rng(3).normal(size=(halves, MODES))
+    values[1:, 0] = 0.0
+    return values
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_to_the_circle_and_back(halves: int) -> None:
+    evaluate, project = circle(MODES, halves)
+    given = amplitudes(halves).ravel()
+    np.testing.assert_allclose(project @ (evaluate @ given), given, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_what_limited_voltages_lack(halves: int) -> None:
+    given = amplitudes(halves)
+    theta = np.linspace(0.0, 2.0 * np.pi, 20_001)
+    shapes = np.stack([np.cos, np.sin][:halves], dtype=object)
+    basis = np.array([[shape(m * theta) for m in range(MODES)] for shape in shapes])
+    volts = np.einsum("hm,hmt->t", given, basis)
+    assert volts.max() > 1.5
+    assert volts.min() < -1.5
+    lack = np.where(volts > 1.0, 1.0 - volts, np.where(volts < -1.0, -1.0 - volts, 0.0))
+    expected = np.trapezoid(lack * basis, theta, axis=-1) / np.pi
+    expected[:, 0] /= 2.0
+    found = LimitedVoltages(1, halves, MODES).excess(given.ravel()).reshape(halves, MODES)
+    # Corners of the clipped voltage lie between the points of the circle: second order in their distance, 2 degrees or less.
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-3 * np.abs(expected).max())
+
+
+def test_voltages_within_the_limit_lack_nothing() -> None:
+    assert not LimitedVoltages(1, 1, MODES).excess(np.full(MODES, 0.99 / MODES)).any()
+
+
+def test_the_limit_is_field_times_thickness() -> None:
+    hybrid = cx.presets.load("hybrid")
+    thickness = hybrid.shells[0].layers[-1].thickness
+    np.testing.assert_allclose(voltage_limit(dimensionless(hybrid), 0), 590e3 * thickness, rtol=1e-14)  # Table 1: 590 V/mm
+    lowered = hybrid.replace(control=hybrid.control.replace(field_limit=1e5))
+    np.testing.assert_allclose(voltage_limit(dimensionless(lowered), 1), 1e5 * thickness, rtol=1e-14)
