@@ -1,0 +1,18 @@
+// The format application/x-coaxshell-arrays: a JSON header, then numbers in bulk.
+const TYPES = { float32: Float32Array, uint8: Uint8Array };
+
+export function unpack(buffer) {
+  const length = new DataView(buffer).getUint32(0, true);
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+  const arrays = {};
+  for (const { name, dtype, shape, offset, unit, scale } of header.arrays) {
+    const size = shape.reduce((a, b) => a * b, 1);
+    arrays[name] = { values: new TYPES[dtype](buffer, 4 + length + offset, size), shape, unit, scale };
+  }
+  return { ...header, arrays };
+}
+
+// Row i of a two-dimensional array, without a copy.
+export function row({ values, shape }, i) {
+  return values.subarray(i * shape[1], (i + 1) * shape[1]);
+}

@@ -1,0 +1,25 @@
+// Making elements: el("button", { type: "button", class: "quiet", onclick }, "Cancel").
+const SVG = "http://www.w3.org/2000/svg";
+
+function make(node, attributes, children) {
+  for (const [name, value] of Object.entries(attributes ?? {})) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== false));
+  return node;
+}
+
+export const el = (tag, attributes, ...children) => make(document.createElement(tag), attributes, children);
+export const svg = (tag, attributes, ...children) => make(document.createElementNS(SVG, tag), attributes, children);
+export const by = (id) => document.getElementById(id);
+
+let timer;
+export function toast(text) {
+  const box = by("toast");
+  box.textContent = text;
+  box.hidden = false;
+  clearTimeout(timer);
+  timer = setTimeout(() => { box.hidden = true; }, 5000);
+}

@@ -1,0 +1,68 @@
+// Taking things home and bringing them in: downloads, a film, a link that holds the whole system, a file opened.
+import { client, request } from "./api.js";
+import { by, el, toast } from "./dom.js";
+import { ended, watch } from "./events.js";
+
+const FILES = [
+  ["download.toml", "Scenario", "TOML, for coaxshell run"],
+  ["download.nc", "Response", "NetCDF, arrays and scenario"],
+  ["download.csv", "Histories", "CSV, head and tail"],
+  ["figure.png", "Stress figure", "PNG"],
+  ["figure.svg", "Stress figure", "SVG"],
+];
+const KINDS = { toml: "application/toml", nc: "application/x-netcdf" };
+
+export function setUp({ runs, opened, described }) {
+  const button = by("download").querySelector("button"), list = by("download-list");
+  const toggle = (open) => { list.hidden = !open; button.setAttribute("aria-expanded", String(open)); };
+  button.addEventListener("click", () => {
+    if (!runs().current) return toast("Nothing solved yet.");
+    fill(list, runs(), () => toggle(false));
+    toggle(list.hidden);
+  });
+  document.addEventListener("click", (event) => { if (!by("download").contains(event.target)) toggle(false); });
+  by("download").addEventListener("keydown", (event) => { if (event.key === "Escape") { toggle(false); button.focus(); } });
+  by("open").addEventListener("click", () => by("file").click());
+  by("file").addEventListener("change", () => { const [file] = by("file").files; by("file").value = ""; if (file) upload(file, opened); });
+  by("link").addEventListener("click", () => copyLink(described()));
+}
+
+function fill(list, runs, close) {
+  const run = runs.current.run, compare = runs.bare ? `?compare=${encodeURIComponent(runs.bare.run)}` : "";
+  list.replaceChildren(...FILES.map(([path, name, kind]) => el("li", {}, el("a", { href: `/api/runs/${run}/${path}${path.startsWith("figure") ? compare : ""}`, download: "", onclick: close }, name, el("small", {}, kind)))),
+    el("li", {}, el("button", { type: "button", id: "film", onclick: () => { close(); film(runs); } }, "Film", el("small", {}, "MP4, bare beside current"))));
+}
+
+async function film(runs) {
+  try {
+    const body = { client, kind: "film", runs: [runs.bare?.run, runs.current.run].filter(Boolean), frames: 120, fps: 24, size: 360, format: "mp4" };
+    const { job } = await request("/api/jobs", { body });
+    watch(job, (told) => {
+      if (!ended(told)) return toast(`Film: ${Math.round(100 * (told.fraction ?? 0))} %`);
+      if (told.state !== "done") return toast(`No film: ${[told.error?.problem, told.error?.remedy].filter(Boolean).join("; ") || told.state}`);
+      const link = el("a", { href: `/api/jobs/${told.id}/file`, download: "coaxshell.mp4" });
+      document.body.append(link);
+      link.click();
+      link.remove();
+      return toast("The film is done.");
+    });
+  } catch (failure) { toast(failure.message); }
+}
+
+async function upload(file, opened) {
+  const type = KINDS[file.name.split(".").at(-1).toLowerCase()];
+  if (!type) return toast(`${file.name}: give a .toml or a .nc file`);
+  try {
+    const answer = await request("/api/upload", { body: file, type });
+    if (answer.ok) { opened(answer); return toast(`Opened ${file.name}.`); }
+    return toast(`${file.name}: ${[answer.problem.where, answer.problem.problem, answer.problem.remedy].filter(Boolean).join(": ")}`);
+  } catch (failure) { return toast(failure.message); }
+}
+
+async function copyLink(described) {
+  try {
+    const { fragment } = await request("/api/link", { body: { v: 1, ...described } });
+    history.replaceState(null, "", `#${fragment}`);
+    try { await navigator.clipboard.writeText(location.href); toast("Link copied: it holds the whole system."); } catch { toast("The link stands in the address bar."); }
+  } catch (failure) { toast(failure.message); }
+}

@@ -1,0 +1,61 @@
+// One run's field, from the server to this page: frames as bytes, the shells' stress beside them.
+import { client, request } from "./api.js";
+import { ended, unwatch, watch } from "./events.js";
+
+const FRAMES = 160, SIZE = 200, HALF_WIDTH = 3;
+
+// Fetch the film of a run; tell(fraction) while the server computes it. Aborting the signal stops the server too.
+export async function film(answer, signal, tell) {
+  const every = Math.max(1, Math.ceil(answer.arrays.time.values.length / FRAMES));
+  const started = await request("/api/jobs", { body: { client, kind: "field", run: answer.run, every, size: SIZE, half_width: HALF_WIDTH }, signal });
+  await finished(started.job, signal, tell);
+  const about = await request(`/api/jobs/${started.job.id}/result`, { signal });
+  const size = about.size ** 2, pressure = new Uint8Array(about.frames * size), rings = new Map();
+  const most = Math.max(1, Math.floor(about.most_values / size));
+  let scale = 1;
+  for (let start = 0; start < about.frames; start += most) {
+    const part = await request(`/api/jobs/${started.job.id}/frames?start=${start}&count=${most}&format=uint8`, { signal });
+    pressure.set(part.arrays.pressure.values, start * size);
+    scale = part.arrays.pressure.scale;
+    for (const [name, array] of Object.entries(part.arrays)) {
+      if (!name.startsWith("stress/")) continue;
+      const shell = Number(name.slice(7));
+      if (!rings.has(shell)) rings.set(shell, new Float32Array(about.frames * 360));
+      rings.get(shell).set(array.values, start * 360);
+    }
+  }
+  return { ...about, run: answer.run, pressure, rings, scale };
+}
+
+function finished(job, signal, tell) {
+  return new Promise((done, fail) => {
+    const stop = () => {
+      unwatch(job.id);
+      request(`/api/jobs/${job.id}`, { method: "DELETE" }).catch(() => {});
+      fail(new DOMException("stopped", "AbortError"));
+    };
+    if (signal.aborted) return stop();
+    signal.addEventListener("abort", stop, { once: true });
+    watch(job, (told) => {
+      tell(told.fraction ?? 0);
+      if (!ended(told)) return;
+      signal.removeEventListener("abort", stop);
+      if (told.state === "done") done();
+      else fail(told.state === "cancelled" ? new DOMException("stopped", "AbortError") : new Error([told.error?.where, told.error?.problem, told.error?.remedy].filter(Boolean).join(": ")));
+    });
+  });
+}
+
+// The number of the last frame at or before a time.
+export function frameAt(one, time) {
+  const step = one.time.length > 1 ? one.time[1] - one.time[0] : 1;
+  return Math.min(one.time.length - 1, Math.max(0, Math.floor((time - one.time[0]) / step + 1e-6)));
+}
+
+// Pressure (Pa) at a place (in units of a) of one frame, or null outside the picture.
+export function pressureAt(one, frame, x, y) {
+  const pixel = (2 * one.half_width) / one.size;
+  const column = Math.floor((x + one.half_width) / pixel), line = Math.floor((y + one.half_width) / pixel);
+  if (column < 0 || line < 0 || column >= one.size || line >= one.size) return null;
+  return one.scale * (one.pressure[(frame * one.size + line) * one.size + column] - 128);
+}

@@ -1,0 +1,290 @@
+// The form, generated from the description's own schema: one function a kind of entry.
+import { el, by } from "./dom.js";
+import { join, read } from "./paths.js";
+import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
+import { fresh, kinds, kindTitle, limits, matches, resolve, title, use } from "./schema.js";
+import { editable, plain, pretty, show } from "./units.js";
+
+const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
+const OPEN = new Set(["absorbers", "control"]);
+const KEPT_OPEN = new Map();
+
+let world, change; // what /api/schema says; (path, value, { live }) => void
+
+export function setUp(known, onChange) {
+  world = known;
+  change = onChange;
+  use(known.schema);
+}
+
+export function render(system, problem) {
+  const form = by("form");
+  const focus = document.activeElement?.dataset?.path;
+  const parts = resolve(world.schema).properties;
+  const names = [...ORDER, ...Object.keys(parts).filter((name) => !ORDER.includes(name))];
+  form.replaceChildren(...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
+  mark(problem);
+  if (focus) form.querySelector(`[data-path="${focus}"]`)?.focus({ preventScroll: true });
+}
+
+// Bring the inputs up to date without making them anew: a slider under a finger stays where it is.
+export function refresh(system) {
+  for (const input of by("form").querySelectorAll("input[data-unit]")) {
+    const value = read(system, input.dataset.path);
+    if (input !== document.activeElement) input.value = editable(value, input.dataset.unit);
+    const slider = by("form").querySelector(`input[type="range"][data-path="${input.dataset.path}"]`);
+    if (slider && typeof value === "number") place(slider, value, input.dataset.unit);
+  }
+  for (const digest of by("form").querySelectorAll(".digest")) digest.textContent = summary(digest.dataset.of, read(system, digest.dataset.of));
+}
+
+function group(path, name, open, text, ...body) {
+  const known = KEPT_OPEN.get(path);
+  const box = el("details", { "data-group": path, open: known ?? open, ontoggle: () => KEPT_OPEN.set(path, box.open) },
+    el("summary", {}, el("span", {}, name), el("span", { class: "digest", "data-of": path }, text)), el("div", { class: "body" }, ...body));
+  return box;
+}
+
+function section(name, schema, value) {
+  return group(name, title(name), OPEN.has(name), summary(name, value), entry(schema, name, name, value, true));
+}
+
+const RESOLUTION = {
+  duration: { type: "number", unit: "", description: "How long, in transits a/c of the outermost radius" },
+  time_step: { type: "number", unit: "", description: "Time step, in transits; the preview takes a coarser one" },
+  modes: { type: "integer", unit: "", description: "Circumferential orders; the preview takes at most 60" },
+  refinement: { type: "integer", unit: "", description: "Steps of the absorbers' march within one time step" },
+};
+
+function resolution(value) {
+  return group("resolution", "Resolution", false, summary("resolution", value), ...Object.entries(RESOLUTION).map(([name, schema]) => leaf({ ...schema, exclusiveMinimum: 0 }, `resolution.${name}`, name, value[name])));
+}
+
+// One line that tells what a closed group holds.
+function summary(path, value) {
+  if (value === null || value === undefined || (Array.isArray(value) && !value.length)) return "none";
+  if (typeof value === "string") return value;
+  if (/^absorbers$/.test(path)) return Array.isArray(value) ? `${value.length} single` : `${value.count} equal`;
+  if (/^fluids/.test(path)) return (Array.isArray(value) ? value : [value]).map((fluid) => fluid.name || (fluid === "vacuum" ? fluid : "own")).filter((n, i, all) => n !== all[i - 1]).join(", ");
+  if (/^shells$/.test(path)) return value.map((shell) => show(shell.radius, "m", 3)).join(", ");
+  if (/^shells\[\d+\]$/.test(path)) return show(value.radius, "m");
+  if (/layers\[\d+\]$/.test(path)) return `${show(value.thickness, "m")} ${value.material?.name ?? ""}${value.role && value.role !== "core" ? `, ${value.role}` : ""}`;
+  if (/^source$/.test(path)) return Array.isArray(value) ? `${value.length} sources` : title(value.type.replace(/-/g, " ").toLowerCase());
+  if (path === "resolution") return `${value.modes} orders, step ${value.time_step}`;
+  if (/^control$/.test(path)) return `${show(value.proportional, "", 3)}, ${show(value.derivative, "", 3)}`;
+  return value.name ?? value.type ?? "";
+}
+
+function entry(schema, path, name, value, bare = false) {
+  const found = resolve(schema);
+  const choices = kinds(found);
+  if (/(^|\.)fluids\[\d+\]$/.test(path)) return library(path, name, value, choices, world.fluids, "fluid", "name");
+  if (/\.material$/.test(path)) return library(path, name, value, choices, world.materials, "material", "name");
+  if (choices.length > 1) return union(found, choices, path, name, value, bare);
+  const kind = { ...choices[0], description: found.description ?? choices[0].description };
+  if (kind.const !== undefined) return null;
+  if (kind.type === "array") return list(kind, path, name, value ?? []);
+  if (kind.type === "object") return table(kind, path, name, value ?? {}, bare);
+  return leaf(kind, path, name, value);
+}
+
+function table(schema, path, name, value, bare) {
+  const fields = Object.entries(schema.properties ?? {}).map(([key, part]) => entry(part, join(path, key), key, value[key]));
+  return bare ? el("div", {}, ...fields) : group(path, label(path, name), false, summary(path, value), ...fields);
+}
+
+function label(path, name) {
+  const index = path.match(/(\w+)\[(\d+)\]$/);
+  if (!index) return title(name);
+  return `${title(index[1].replace(/s$/, ""))} ${Number(index[2]) + 1}`;
+}
+
+function list(schema, path, name, value) {
+  const singular = name.replace(/s$/, "");
+  const item = schema.items ?? {};
+  const numeric = ["number", "integer"].includes(resolve(item).type);
+  if (numeric) return leaf({ type: "string", list: true, description: schema.description }, path, name, value.join(", "));
+  const items = value.map((one, i) => {
+    const at = join(path, i);
+    const inner = entry(item, at, singular, one);
+    const tools = el("div", { class: "buttons" },
+      i > 0 && el("button", { type: "button", "aria-label": `Move ${label(at, name)} inwards`, onclick: () => swap(path, value, i, i - 1) }, "↑"),
+      el("button", { type: "button", "aria-label": `Remove ${label(at, name)}`, onclick: () => change(path, value.filter((_, k) => k !== i)) }, "Remove"));
+    const body = inner?.querySelector?.(":scope > .body");
+    (body ?? inner)?.append?.(path === "fluids" ? "" : tools);
+    return inner;
+  });
+  return el("div", { "data-group": path }, ...items, path === "fluids" ? null : el("div", { class: "buttons" },
+    el("button", { type: "button", onclick: () => change(path, [...value, following(item, value, name)]) }, `Add ${singular}`)));
+}
+
+function swap(path, value, i, j) {
+  const copy = [...value];
+  [copy[i], copy[j]] = [copy[j], copy[i]];
+  change(path, copy);
+}
+
+// A further item starts as the last one; a further shell is a quarter larger, so that it is outside.
+function following(item, value, name) {
+  const last = structuredClone(value.at(-1) ?? fresh(item, HINTS));
+  if (name === "shells" && typeof last.radius === "number") last.radius = Number((1.25 * last.radius).toPrecision(4));
+  if (typeof last.angle === "number") last.angle = (last.angle + 30) % 360;
+  if (["sensor", "actuator"].includes(last.role)) last.role = "passive";
+  return last;
+}
+
+const HINTS = {
+  count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150,
+  distance: 5, peak_pressure: 2.5e4, decay_time: 1.314e-4, width: 1e-4, pressure: 2.5e4, charge_mass: 1, stand_off: 10,
+  time: [0, 1e-4, 5e-4], density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
+};
+
+function union(schema, choices, path, name, value, bare) {
+  let chosen = choices.findIndex((kind) => matches(kind, value));
+  if (chosen < 0) chosen = choices.findIndex((kind) => kind.type !== "null");
+  const numeric = choices.find((kind) => ["number", "integer"].includes(kind.type));
+  if (numeric && choices.some((kind) => kind.type === "null")) return leaf({ ...numeric, optional: true, description: schema.description }, path, name, value);
+  if (path.endsWith("control.shells")) return leaf({ type: "string", list: true, description: schema.description }, path, name, Array.isArray(value) ? value.join(", ") : value);
+  const id = `kind-${path}`;
+  const none = Array.isArray(value) && !value.length && choices.some((kind) => kind.type === "array");
+  const options = choices.map((kind, i) => el("option", { value: i, selected: i === chosen && !none }, kind.type === "null" ? "None" : kind.type === "array" ? "Several, one by one" : kindTitle(kind)));
+  if (path === "absorbers") options.unshift(el("option", { value: "none", selected: none }, "None"));
+  const select = el("select", { id, "data-path": path, onchange: () => change(path, start(select.value, choices, value)) }, ...options);
+  const inner = none ? null : entry(choices[chosen], path, name, value, true);
+  const choice = el("div", { class: "choice" }, el("label", { for: id }, "Kind"), select);
+  return bare ? el("div", { "data-group": path }, choice, inner) : group(path, label(path, name), false, summary(path, value), choice, inner);
+}
+
+// The first value of another kind keeps what the two have in common.
+function start(index, choices, value) {
+  if (index === "none") return [];
+  const kind = choices[index];
+  if (kind.type === "array") return value && !Array.isArray(value) ? singles(value, kind) : [fresh(kind.items, HINTS)];
+  const kept = Array.isArray(value) ? (value[0] ?? {}) : value && typeof value === "object" ? value : {};
+  const common = Object.fromEntries(Object.entries(kept).filter(([key]) => key !== "type"));
+  const made = fresh(kind, { ...HINTS, ...common });
+  if (kind.type === "object" && Array.isArray(value) && "count" in made) made.count = value.length;
+  if (resolve(kind.properties?.pulse).anyOf && !made.pulse?.type) made.pulse = { type: "exponential", peak_pressure: kept.peak_pressure ?? HINTS.peak_pressure, decay_time: kept.decay_time ?? HINTS.decay_time };
+  return made;
+}
+
+function singles(ring, kind) {
+  if (!("count" in ring)) return [ring];
+  const { count, offset = 0, ...shared } = ring;
+  return Array.from({ length: Math.min(count, 60) }, (_, k) => ({ ...shared, angle: Number(((offset + (360 * k) / count) % 360).toPrecision(8)) }));
+}
+
+// A fluid or material: one of the library's by name, or constants of one's own.
+function library(path, name, value, choices, known, entryName, key) {
+  const id = `lib-${path}`;
+  const named = known.findIndex((item) => item[entryName] === value || (value && same(item[entryName], value)));
+  const own = named < 0 ? el("option", { value: "", selected: true }, value?.[key] ? `${value[key]} (own)` : "own") : null;
+  const select = el("select", { id, "data-path": path, onchange: () => select.value !== "" && change(path, structuredClone(known[select.value][entryName])) },
+    own, ...known.map((item, i) => el("option", { value: i, selected: i === named, title: item.reference }, item.name)));
+  const line = el("div", { class: "field" }, el("label", { for: id }, entryName === "fluid" ? place_of(path) : "Material"), select);
+  const kind = choices.find((one) => matches(one, value)) ?? choices[0];
+  const constants = value && typeof value === "object" ? group(`${path}.constants`, "Constants", false, "", table(kind, path, name, value, true)) : null;
+  return el("div", { "data-group": path }, line, constants);
+}
+
+function place_of(path) {
+  const number = Number(path.match(/\[(\d+)\]$/)[1]);
+  const last = by("form").dataset.fluids - 1;
+  return number === 0 ? "Inside" : number === last ? "Outside" : last === 2 ? "Gap" : `Gap ${number}`;
+}
+
+function same(a, b) {
+  if (a === b) return true;
+  if (!a || !b || typeof a !== "object" || typeof b !== "object") return false;
+  return [...new Set([...Object.keys(a), ...Object.keys(b)])].every((key) => same(a[key] ?? null, b[key] ?? null));
+}
+
+function leaf(schema, path, name, value) {
+  const id = `at-${path}`, shared = { id, "data-path": path, title: [schema.description, limits(schema)].filter(Boolean).join("\n") };
+  const words = { proportional: "Proportional gain", derivative: "Derivative gain", linear_stiffness: "Linear stiffness", inner_shell: "Inner one of its shells", duration: "Duration (a/c)", time_step: "Time step (a/c)", modes: "Orders" };
+  const text = el("label", { for: id }, words[name] ?? title(name));
+  if (schema.enum) {
+    const select = el("select", { ...shared, onchange: () => change(path, select.value) }, ...schema.enum.map((one) => el("option", { value: one, selected: one === value }, one)));
+    return el("div", { class: "field" }, text, select);
+  }
+  if (schema.type === "boolean") {
+    const box = el("input", { ...shared, type: "checkbox", checked: Boolean(value ?? schema.default), onchange: () => change(path, box.checked) });
+    return el("div", { class: "field" }, text, box);
+  }
+  if (name === "explosive") {
+    const select = el("select", { ...shared, onchange: () => change(path, select.value) }, ...world.explosives.map((one) => el("option", { value: one, selected: one === (value ?? schema.default) }, one)));
+    return el("div", { class: "field" }, text, select);
+  }
+  if (schema.type === "string") {
+    const input = el("input", { ...shared, type: "text", class: "name", value: value ?? schema.default ?? "", onchange: () => change(path, schema.list ? listed(input.value) : input.value) });
+    return el("div", { class: "field" }, text, input);
+  }
+  return quantity(schema, path, text, value ?? (schema.optional ? "" : schema.default), shared);
+}
+
+function listed(text) {
+  return text.trim() === "all" ? "all" : text.split(",").map((part) => part.trim()).filter(Boolean).map((part) => (part !== "" && Number.isFinite(Number(part)) ? Number(part) : part));
+}
+
+function quantity(schema, path, text, value, shared) {
+  const unit = schema.unit ?? "";
+  const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: editable(value, unit),
+    placeholder: schema.optional ? "material’s own" : pretty(schema.examples?.[0] ?? ""),
+    onchange: () => change(path, schema.optional && !input.value.trim() ? null : numeral(input.value)) });
+  const field = el("div", { class: "field" }, text, input);
+  const range = rangeOf(path);
+  if (range) {
+    const slider = el("input", { type: "range", min: 0, max: steps(range), step: 1, "data-path": path, "aria-label": `${text.textContent}, slider`,
+      oninput: () => {
+        const next = valueAt(range, Number(slider.value));
+        input.value = editable(next, unit);
+        slider.setAttribute("aria-valuetext", show(next, unit));
+        change(path, next, { live: true });
+      } });
+    place(slider, Number(value), unit);
+    field.append(slider);
+  }
+  return field;
+}
+
+function place(slider, value, unit) {
+  const range = rangeOf(slider.dataset.path);
+  if (slider !== document.activeElement) slider.value = handleAt(range, value);
+  slider.setAttribute("aria-valuetext", show(value, unit));
+}
+
+function numeral(text) {
+  const clean = plain(text);
+  return clean !== "" && Number.isFinite(Number(clean)) ? Number(clean) : clean;
+}
+
+// The library's own words beside the field they are about, or beside the nearest part around it.
+export function mark(problem) {
+  const form = by("form"), general = by("form-problem");
+  for (const old of form.querySelectorAll(".problem")) old.remove();
+  for (const input of form.querySelectorAll("[aria-invalid]")) { input.removeAttribute("aria-invalid"); input.removeAttribute("aria-describedby"); }
+  general.hidden = true;
+  if (!problem) return;
+  const words = `${problem.problem}; ${problem.remedy}`;
+  const spot = nearest(form, problem.where);
+  if (!spot) {
+    general.textContent = problem.where ? `${problem.where}: ${words}` : words;
+    general.hidden = false;
+    return;
+  }
+  for (let box = spot.closest("details"); box; box = box.parentElement.closest("details")) box.open = true;
+  const message = el("p", { class: "problem", id: "field-problem", role: "alert" }, words);
+  if (spot.matches("input, select")) {
+    spot.setAttribute("aria-invalid", "true");
+    spot.setAttribute("aria-describedby", "field-problem");
+    spot.parentElement.append(message);
+  } else (spot.querySelector(":scope > .body") ?? spot).prepend(message);
+}
+
+function nearest(form, where) {
+  for (let path = where; path; path = path.replace(/(\.\w+|\[\d+\]|^\w+)$/, "")) {
+    const found = form.querySelector(`[data-path="${CSS.escape(path)}"]:not([type="range"])`) ?? form.querySelector(`[data-group="${CSS.escape(path)}"]`);
+    if (found) return found;
+  }
+  return null;
+}

@@ -1,0 +1,81 @@
+// The conversation with the solver: a preview at once, full resolution by itself afterwards, and never an older answer over a newer one.
+import { client, request } from "./api.js";
+import { finished } from "./events.js";
+
+const PATIENCE = 900; // ms without a change before full resolution starts
+let revision = 0;
+export const times = []; // ms from a change to its curves drawn, the newest last
+
+export class Slot {
+  // `name` of the slot; `show(result)` draws, `problem(problem)`, `progress(job or null)`, `fail(error)`.
+  constructor(name, tell) {
+    Object.assign(this, { name, tell, wanted: null, busy: false, shown: 0, full: null, timer: 0, result: null });
+  }
+
+  // Ask for a system; the newest wish wins. One request is on its way at a time: a drag gets every answer that there is time for.
+  want(system, { resolution = "preview", full = null, since = performance.now() } = {}) {
+    this.wanted = { system, resolution, full, since, revision: ++revision };
+    this.stopFull();
+    if (!this.busy) this.next();
+  }
+
+  async next() {
+    const wish = this.wanted;
+    if (!wish || wish.revision <= this.shown) return;
+    this.busy = true;
+    try {
+      const { system, resolution } = wish;
+      const answer = await request("/api/solve", { body: { client, slot: this.name, revision: wish.revision, system, resolution } });
+      if (this.wanted.revision === wish.revision || (answer && this.shown < wish.revision)) this.take(wish, answer);
+    } catch (error) {
+      if (this.wanted.revision === wish.revision) { this.shown = wish.revision; this.tell.fail(error); }
+    } finally {
+      this.busy = false;
+      if (this.wanted.revision > wish.revision) this.next();
+    }
+  }
+
+  take(wish, answer) {
+    if (!answer) return;
+    this.shown = wish.revision;
+    if (!answer.ok) {
+      this.stopFull();
+      return this.tell.problem(answer.problem);
+    }
+    this.keep(wish, answer, false);
+    times.push(performance.now() - wish.since);
+    if (wish.full && this.wanted.revision === wish.revision) this.timer = setTimeout(() => this.refine(), PATIENCE);
+  }
+
+  keep(wish, answer, full) {
+    this.result = { ...answer, full, revision: wish.revision, system: wish.system };
+    this.tell.show(this.result);
+  }
+
+  // Full resolution of what is shown.
+  refine() {
+    const wish = this.wanted;
+    this.stopFull();
+    const { system, full } = wish;
+    const work = finished({ kind: "solve", slot: `${this.name}-full`, revision: ++revision, system, resolution: full }, (job) => this.full === work && this.tell.progress?.(job));
+    this.full = work;
+    work.promise.then(async (job) => {
+      const answer = await request(`/api/runs/${job.run}`);
+      if (this.full === work && this.wanted.revision === wish.revision && answer?.run) this.keep(wish, { ok: true, ...answer }, true);
+    }).catch((error) => {
+      if (this.full === work && !error.cancelled) this.tell.fail(error);
+    }).finally(() => {
+      if (this.full !== work) return;
+      this.full = null;
+      this.tell.progress?.(null);
+    });
+  }
+
+  stopFull() {
+    clearTimeout(this.timer);
+    const work = this.full;
+    this.full = null;
+    work?.cancel();
+    if (work) this.tell.progress?.(null);
+  }
+}

@@ -1,0 +1,51 @@
+// Peak and RMS values as bars, with the change in per cent; warnings in plain words above them.
+import { el, by, svg } from "./dom.js";
+import { RUNS } from "./curves.js";
+import { percent, show, showPercent } from "./units.js";
+
+export function draw(runs) {
+  const { current } = runs;
+  if (!current) return;
+  const others = ["bare", "pinned"].filter((key) => runs[key]);
+  const warnings = current.warnings.length ? el("ul", { class: "warnings", "aria-label": "Warnings" }, ...current.warnings.map((text) => el("li", {}, sentence(text)))) : null;
+  const table = el("table", { class: "peaks" },
+    el("caption", {}, `Largest magnitudes over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), el("td", {}), el("th", { scope: "col", class: "number" }, "Current"), ...others.flatMap((key) => [el("th", { scope: "col", class: "number" }, RUNS[key].name.replace(/^./, (c) => c.toUpperCase())), el("th", { scope: "col", class: "number" }, "Change")]))),
+    ...groups(current).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), ...bars.map((bar) => line(bar, runs, others, extent(bar, current, runs, others))))));
+  by("peaks").replaceChildren(...(warnings ? [warnings] : []), el("div", { class: "wide" }, table), el("p", { class: "note" }, accuracy(current)));
+}
+
+function groups(result) {
+  const named = result.shells.map((shell) => [`${shell.name.replace(/^./, (c) => c.toUpperCase())} shell, ${show(shell.radius, "m")}`, result.bars.filter((bar) => bar.shell === shell.index)]);
+  const rest = result.bars.filter((bar) => bar.shell === undefined || bar.shell === null);
+  return [...named, ["Absorbers", rest]].filter(([, bars]) => bars.length);
+}
+
+const twin = (run, bar) => run?.bars.find((one) => one.name === bar.name && (one.shell ?? null) === (bar.shell ?? null))?.value;
+
+// Bars of one unit share a scale, so that their lengths can be compared down the table.
+function extent(bar, current, runs, others) {
+  const alike = current.bars.filter((one) => one.unit === bar.unit && one.name.split("_")[0] === bar.name.split("_")[0]);
+  return Math.max(...alike.flatMap((one) => [one.value, ...others.map((key) => twin(runs[key], one) ?? 0)]));
+}
+
+function line(bar, runs, others, most) {
+  const width = (value) => `${most ? Math.max(0, (100 * value) / most) : 0}%`;
+  const values = others.map((key) => [key, twin(runs[key], bar)]);
+  const height = 15 / (1 + others.length);
+  const picture = svg("svg", { "aria-hidden": "true" }, svg("rect", { x: 0, y: 1, height: height + 1, width: width(bar.value), rx: 1.5, fill: "var(--current)" }),
+    ...values.map(([key, value], i) => svg("rect", { x: 0, y: 2 + (i + 1) * height, height: height - 1, width: width(value ?? 0), rx: 1, fill: `var(--${RUNS[key].colour})` })));
+  const where = bar.time === null || bar.time === undefined ? "" : `at t = ${show(bar.time, "")} a/c${bar.angle === null || bar.angle === undefined ? "" : `, ${show(bar.angle, "deg")}`}`;
+  return el("tr", { title: where }, el("th", { scope: "row" }, bar.label), el("td", { class: "bars" }, picture), el("td", { class: "number", "data-bar": `${bar.name}/${bar.shell ?? ""}` }, show(bar.value, bar.unit)),
+    ...values.flatMap(([, value]) => {
+      const change = value === undefined ? null : percent(bar.value, value);
+      return [el("td", { class: "number" }, show(value ?? null, bar.unit)), el("td", { class: `number ${change === null || Math.abs(change) < 0.05 ? "" : change < 0 ? "better" : "worse"}` }, showPercent(change))];
+    }));
+}
+
+function accuracy({ estimates, full, resolution }) {
+  const worst = Math.max(...estimates.stress.filter((one) => one !== null), 0);
+  return `Estimated relative error of the stress from the orders left out: ${show(worst, "", 2)} at ${resolution.modes} orders, step ${show(resolution.time_step, "")} a/c${full ? "" : " (preview)"}.`;
+}
+
+const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");

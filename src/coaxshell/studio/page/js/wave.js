@@ -1,0 +1,198 @@
+// The wave: pressure around the shells and the stress on them, bare and current side by side, played or scrubbed.
+import { by, el } from "./dom.js";
+import { film, frameAt, pressureAt } from "./film.js";
+import { PRESSURE_BAR, STRESS_BAR, WORDS, stressColour } from "./maps.js";
+import { colour } from "./theme.js";
+import { show } from "./units.js";
+
+const PANELS = [{ name: "bare", label: "Bare" }, { name: "current", label: "Current" }];
+const PIXELS = 480; // of a canvas, a side
+const SPEEDS = [[0.1, "0.1 transits/s"], [0.25, "0.25 transits/s"], [0.5, "0.5 transits/s"], [1, "1 transit/s"]];
+const STEP = 0.05; // of the cross-hair by arrow keys, in units of a
+
+const films = {}; // by panel
+const parts = {}; // elements
+let told; // called with the time shown
+let loading = null, time = 0, last = 0, playing = false, before = 0, probe = null;
+
+export function setUp(onTime) {
+  told = onTime;
+  parts.play = el("button", { type: "button", id: "play", class: "main", onclick: () => (playing ? pause() : play()) }, "Play");
+  parts.scrub = el("input", { type: "range", id: "scrub", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time", oninput: () => { pause(); seek(Number(parts.scrub.value)); } });
+  parts.speed = el("select", { id: "speed", "aria-label": "Speed" }, ...SPEEDS.map(([value, text]) => el("option", { value, selected: value === 0.5 }, text)));
+  parts.time = el("output", { id: "wave-time", for: "scrub" });
+  parts.state = el("p", { class: "note", id: "wave-state", role: "status" });
+  parts.stop = el("button", { type: "button", class: "quiet", id: "wave-stop", hidden: true, onclick: () => loading?.abort() }, "Cancel");
+  parts.point = el("output", { class: "note", id: "wave-point" }, "Point at the field, or move the cross with the arrow keys, to read the pressure.");
+  parts.scales = el("div", { class: "scales" });
+  const panels = PANELS.map(({ name, label }) => {
+    const canvas = el("canvas", { id: `field-${name}`, width: PIXELS, height: PIXELS, tabindex: 0, role: "img", "aria-label": `Pressure field of the ${name} system`, onpointermove: (event) => pointed(event, canvas), onpointerdown: (event) => pointed(event, canvas), onkeydown: keyed });
+    parts[name] = canvas;
+    return el("figure", { class: "field-panel", id: `panel-${name}` }, canvas, el("figcaption", {}, label));
+  });
+  by("wave").replaceChildren(el("div", { class: "player" }, parts.play, parts.scrub, parts.time, parts.speed), el("div", { class: "bar status" }, parts.state, parts.stop), el("div", { class: "fields" }, ...panels), parts.point, parts.scales);
+}
+
+// Load the films of the runs unless they are there; the newest call wins.
+export async function load(runs) {
+  const wanted = PANELS.filter(({ name }) => runs[name]);
+  for (const { name } of PANELS) {
+    by(`panel-${name}`).hidden = !runs[name];
+    if (!runs[name]) delete films[name];
+  }
+  if (wanted.every(({ name }) => films[name]?.run === runs[name].run)) return;
+  loading?.abort();
+  const mine = (loading = new AbortController());
+  parts.stop.hidden = false;
+  const shares = {};
+  const progress = () => { parts.state.textContent = `Computing the field: ${Math.round((100 * Object.values(shares).reduce((a, b) => a + b, 0)) / wanted.length)}\u202f%`; };
+  try {
+    for (const { name } of wanted) {
+      shares[name] = 0;
+      progress();
+      if (films[name]?.run !== runs[name].run) films[name] = await film(runs[name], mine.signal, (fraction) => { shares[name] = fraction; progress(); });
+      shares[name] = 1;
+    }
+    parts.state.textContent = "";
+    last = Math.max(...wanted.map(({ name }) => films[name].time.at(-1)));
+    parts.scrub.max = last;
+    draw();
+  } catch (failure) {
+    parts.state.textContent = failure.name === "AbortError" ? (loading === mine ? "Cancelled." : parts.state.textContent) : failure.message;
+  }
+  if (loading === mine) { loading = null; parts.stop.hidden = true; }
+}
+
+export function forget() { for (const name of Object.keys(films)) delete films[name]; }
+
+export function seek(to) {
+  time = Math.min(Math.max(to, 0), last);
+  parts.scrub.value = time;
+  draw();
+  told(time);
+}
+
+export function pause() { playing = false; parts.play.textContent = "Play"; }
+
+function play() {
+  if (!Object.keys(films).length) return;
+  if (time >= last) time = 0;
+  playing = true;
+  before = performance.now();
+  parts.play.textContent = "Pause";
+  requestAnimationFrame(tick);
+}
+
+function tick(now) {
+  if (!playing) return;
+  const next = time + ((now - before) / 1000) * Number(parts.speed.value);
+  before = now;
+  if (next >= last) pause();
+  seek(next);
+  if (playing) requestAnimationFrame(tick);
+}
+
+// Both panels share the scales of the bare system, so that they can be compared.
+function limits() {
+  const one = films.bare ?? films.current;
+  return { pressure: 127 * one.scale, stress: one.stress_limit };
+}
+
+export function draw() {
+  const shown = films.current ?? films.bare;
+  if (!shown) return;
+  parts.time.textContent = `t = ${time.toFixed(2)} (${show(time * shown.transit_time_seconds, "s", 3)})`;
+  const limit = limits();
+  for (const { name } of PANELS) if (films[name]) panel(parts[name], films[name], limit);
+  parts.scales.replaceChildren(scale("pressure", limit.pressure, PRESSURE_BAR), scale("hoop stress", limit.stress, STRESS_BAR));
+  read();
+}
+
+const buffers = new WeakMap();
+
+function panel(canvas, one, limit) {
+  const { size } = one, frame = frameAt(one, time), context = canvas.getContext("2d");
+  if (buffers.get(canvas)?.width !== size) buffers.set(canvas, new OffscreenCanvas(size, size));
+  const buffer = buffers.get(canvas), inner = buffer.getContext("2d"), image = inner.createImageData(size, size);
+  const words = new Uint32Array(image.data.buffer), start = frame * size * size;
+  const stretch = one.scale / (limit.pressure / 127);
+  for (let line = 0; line < size; line += 1) {
+    const from = start + (size - 1 - line) * size, to = line * size; // the lowest y comes first
+    for (let column = 0; column < size; column += 1) {
+      const level = Math.round((one.pressure[from + column] - 128) * stretch);
+      words[to + column] = WORDS[128 + Math.max(-127, Math.min(127, level))];
+    }
+  }
+  inner.putImageData(image, 0, 0);
+  context.imageSmoothingEnabled = true;
+  context.drawImage(buffer, 0, 0, PIXELS, PIXELS);
+  rings(context, one, frame, limit);
+  cross(context, one);
+}
+
+function rings(context, one, frame, limit) {
+  const toPixels = PIXELS / (2 * one.half_width), centre = PIXELS / 2;
+  context.lineCap = "butt";
+  one.radii.forEach((radius, shell) => {
+    const stress = one.rings.get(shell);
+    context.lineWidth = 7;
+    context.strokeStyle = "rgb(60 60 60)";
+    context.beginPath();
+    context.arc(centre, centre, radius * toPixels, 0, 2 * Math.PI);
+    context.stroke();
+    if (!stress) return;
+    context.lineWidth = 5;
+    for (let degree = 0; degree < 360; degree += 2) {
+      const from = (-(degree - 1) * Math.PI) / 180, to = (-(degree + 1.2) * Math.PI) / 180;
+      context.strokeStyle = stressColour(stress[frame * 360 + degree] / limit.stress);
+      context.beginPath();
+      context.arc(centre, centre, radius * toPixels, from, to, true);
+      context.stroke();
+    }
+  });
+  context.fillStyle = "rgb(40 40 40)";
+  for (const [x, y] of one.absorbers) {
+    context.beginPath();
+    context.arc(centre + x * toPixels, centre - y * toPixels, 2.4, 0, 2 * Math.PI);
+    context.fill();
+  }
+}
+
+function cross(context, one) {
+  if (!probe) return;
+  const toPixels = PIXELS / (2 * one.half_width), x = PIXELS / 2 + probe.x * toPixels, y = PIXELS / 2 - probe.y * toPixels;
+  context.strokeStyle = "rgb(20 20 20)";
+  context.lineWidth = 1.2;
+  context.beginPath();
+  for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) { context.moveTo(x + 3 * dx, y + 3 * dy); context.lineTo(x + 9 * dx, y + 9 * dy); }
+  context.stroke();
+}
+
+function scale(label, limit, gradient) {
+  return el("div", { class: "scale" }, el("span", {}, show(-limit, "Pa", 3)), el("i", { style: `background:${gradient}`, "aria-hidden": "true" }), el("span", {}, show(limit, "Pa", 3)), el("span", { class: "name" }, label));
+}
+
+function pointed(event, canvas) {
+  const one = films.current ?? films.bare, box = canvas.getBoundingClientRect();
+  if (!one || !box.width) return;
+  probe = { x: ((event.clientX - box.left) / box.width * 2 - 1) * one.half_width, y: (1 - ((event.clientY - box.top) / box.height) * 2) * one.half_width };
+  if (playing) read(); else draw();
+}
+
+function keyed(event) {
+  const turn = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, STEP], ArrowDown: [0, -STEP] }[event.key];
+  if (event.key === " ") { event.preventDefault(); parts.play.click(); }
+  if (!turn) return;
+  event.preventDefault();
+  probe = { x: (probe?.x ?? 0) + turn[0], y: (probe?.y ?? 0) + turn[1] };
+  draw();
+}
+
+function read() {
+  if (!probe) return;
+  const at = `x = ${probe.x.toFixed(2)}, y = ${probe.y.toFixed(2)} (radii)`.replaceAll("-", "−");
+  const values = PANELS.filter(({ name }) => films[name]).map(({ name, label }) => `${label.toLowerCase()} ${show(pressureAt(films[name], frameAt(films[name], time), probe.x, probe.y), "Pa", 3)}`);
+  parts.point.textContent = `${at}: ${values.join(", ")}`;
+}
+
+document.addEventListener("theme", () => { if (colour("text")) draw(); });
