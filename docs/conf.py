@@ -39,7 +39,7 @@ exclude_patterns = [
     "**/sg_execution_times.rst",
     "sg_execution_times.rst",
 ]
-suppress_warnings = ["config.cache", "toc.not_included"]  # the gallery's settings hold names that Sphinx does not need to compare
+suppress_warnings = ["config.cache"]  # the gallery's settings hold names that Sphinx does not need to compare
 nitpicky = False
 
 # Markdown

@@ -51,7 +51,7 @@ with TemporaryDirectory() as folder:
     report = against(file, system, time_step=2e-3, modes=60)
 
 for row in report.rows:
-    print(f"{row.what:45s} {row.found:55s} {row.error:.2g}")
+    print(f"{row.error:7.2g}  {row.what:38s} {row.found}")
 
 # %%
 # The report's plots, here the first:
