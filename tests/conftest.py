@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import settings
 from scipy.special import gamma
 
 import coaxshell as cx
@@ -14,6 +15,10 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import LinearSpectra, linear_spectra
 from coaxshell.verification import bench
+
+# A busy machine must not fail a test: no example has a deadline.
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
 
 WATER = cx.Fluid(density=1000, sound_speed=1400)
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=177.45e9, poisson_ratio=0.3)

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -41,6 +42,12 @@ def test_the_package_is_typed_and_its_data_lies_inside():
     assert "coaxshell/py.typed" in names
     assert any(name.startswith("coaxshell/model/presets/") for name in names)
     assert any(name.startswith("coaxshell/verification/data/") for name in names)
+
+
+def test_every_extra_is_documented():
+    project = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    page = (PROJECT / "docs" / "installation.md").read_text(encoding="utf-8")
+    assert [extra for extra in project["optional-dependencies"] if f"| `{extra}` |" not in page] == []
 
 
 @pytest.mark.slow
