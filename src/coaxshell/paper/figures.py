@@ -84,7 +84,8 @@ _RECIPES: tuple[FigureRecipe | StudyRecipe, ...] = (
         "snapshots of the acoustic field and of the stress",
         _BARE,
         _snapshots,
-        "Total pressure in the three fluids, relative to the peak of the incident wave, and hoop stress on the shells at several instants.",
+        "Total pressure in the three fluids, over the exterior fluid's density times its sound speed squared, and hoop stress on the shells at "
+        "several instants.",
     ),
     StudyRecipe(
         "5",
@@ -152,7 +153,8 @@ _RECIPES: tuple[FigureRecipe | StudyRecipe, ...] = (
         "acoustic field and stress, bare against hybrid",
         _COMPARED,
         _snapshots,
-        "Total pressure relative to the incident peak, and hoop stress on the shells, without control (left) and with both kinds (right).",
+        "Total pressure over the exterior fluid's density times its sound speed squared, and hoop stress on the shells, without control (left) "
+        "and with both kinds (right).",
     ),
     FigureRecipe(
         "14",
