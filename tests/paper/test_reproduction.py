@@ -47,7 +47,9 @@ def judged(runs, changed, scaled):
 
 
 def test_every_figure_and_every_claim_is_in_the_report(results, judged, tmp_path):
-    found = replace(results, judged=judged, seconds={**results.seconds, "one | more": 1.0})
+    found = replace(
+        results, judged=judged, seconds={**results.seconds, "one | more": 1.0}, processor={**results.processor, "one | more": 1.0}
+    )
     pages = {path.suffix: path.read_text(encoding="utf-8") for path in write(found, tmp_path)}
     assert [figure.recipe.number for figure in found.figures] == list(FIGURES)
     for number in FIGURES:

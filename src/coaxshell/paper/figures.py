@@ -84,7 +84,8 @@ _RECIPES: tuple[FigureRecipe | StudyRecipe, ...] = (
         "snapshots of the acoustic field and of the stress",
         _BARE,
         _snapshots,
-        "Total pressure in the three fluids, over the exterior fluid's density times its sound speed squared, and hoop stress on the shells at "
+        "Total pressure in the three fluids, over the exterior fluid's density times its sound speed squared, and "
+        "hoop stress on the shells at "
         "several instants.",
     ),
     StudyRecipe(
@@ -153,7 +154,8 @@ _RECIPES: tuple[FigureRecipe | StudyRecipe, ...] = (
         "acoustic field and stress, bare against hybrid",
         _COMPARED,
         _snapshots,
-        "Total pressure over the exterior fluid's density times its sound speed squared, and hoop stress on the shells, without control (left) "
+        "Total pressure over the exterior fluid's density times its sound speed squared, and hoop stress on the "
+        "shells, without control (left) "
         "and with both kinds (right).",
     ),
     FigureRecipe(

@@ -113,10 +113,9 @@ def _slips(results: Results) -> str:
 
 
 def _times(results: Results) -> str:
-    rows = [(name, f"{seconds:.1f}") for name, seconds in results.seconds.items()]
     estimate = f"<p>{escape(texts.estimate_text(results.estimate))}</p>" if results.estimate else ""
     return f"{estimate}<p>All of it again: <code>{escape(_command(results))}</code>; finished parts are taken up.</p>" + _table(
-        texts.TIME_HEADINGS, _escaped(rows)
+        texts.TIME_HEADINGS, _escaped(texts.time_rows(results))
     )
 
 
@@ -143,8 +142,7 @@ def markdown(results: Results) -> str:
     parts.append("## Run times, and how to repeat")
     if results.estimate:
         parts.append(texts.estimate_text(results.estimate))
-    rows = [(name, f"{seconds:.1f}") for name, seconds in results.seconds.items()]
-    parts += [f"All of it again: `{_command(results)}`; finished parts are taken up.", table(texts.TIME_HEADINGS, rows)]
+    parts += [f"All of it again: `{_command(results)}`; finished parts are taken up.", table(texts.TIME_HEADINGS, texts.time_rows(results))]
     return "\n\n".join(parts) + "\n"
 
 

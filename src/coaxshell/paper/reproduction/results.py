@@ -36,7 +36,7 @@ class DrawnFigure:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Seconds of all of Figure 9's runs: by the direct engine, extrapolated from a sample, and by ours, as measured."""
+    """Processor seconds of all of Figure 9's runs: by the direct engine, extrapolated from a sample, and by ours, as measured."""
 
     sample: tuple[int, ...]
     direct: tuple[float, ...]
@@ -67,8 +67,8 @@ class Results:
         Of slips, as :class:`coaxshell.paper.slips.effects.Effect`.
     film : tuple of (bytes, ending) or None
     estimate : Estimate or None
-    seconds : mapping of str to float
-        By part.
+    seconds, processor : mapping of str to float
+        Of clock and of processor time, by part.
     elapsed : float
         Of this call, from its start to the report.
     resumed : int
@@ -83,6 +83,7 @@ class Results:
     film: tuple[bytes, str] | None = None
     estimate: Estimate | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
+    processor: Mapping[str, float] = field(default_factory=dict)
     elapsed: float = 0.0
     resumed: int = 0
     workers: int = 1
@@ -120,7 +121,7 @@ def estimate_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) ->
     if piece is None:
         return None
     counted = [
-        values["seconds"]
+        values["processor"]
         for part, (_, values) in pieces.items()
         if part.kind == "runs" and part.about.endswith("absorbers") and part.variant == CORRECTED
     ]

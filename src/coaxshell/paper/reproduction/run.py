@@ -82,6 +82,7 @@ def reproduce(
         None if film is None else (film[0]["film"].tobytes(), film[1]["suffix"]),
         estimate_of(pieces),
         {part.title: values["seconds"] for part, (_, values) in pieces.items()},
+        {part.title: values["processor"] for part, (_, values) in pieces.items()},
         time.perf_counter() - start,
         resumed,
         worker_count(workers),

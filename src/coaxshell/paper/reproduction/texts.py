@@ -34,7 +34,7 @@ EFFECT_HEADINGS = (
     "with the slip (MPa)",
     "inner stress, L2",
 )
-TIME_HEADINGS = ("part", "seconds")
+TIME_HEADINGS = ("part", "seconds", "processor seconds")
 
 
 def settings_text(resolution: Resolution) -> str:
@@ -57,8 +57,8 @@ def figure_command(figure: DrawnFigure, resolution: Resolution) -> str:
 def circumstances_of(results: Results) -> str:
     """Return how the run went in a sentence or two."""
     kept = f" {results.resumed} of its {len(results.seconds)} parts were there from an earlier call." if results.resumed else ""
-    work = sum(results.seconds.values())
-    spent = f"{results.elapsed:.0f} s on {results.workers} process(es); the parts took {work:.0f} s in all"
+    work = sum(results.processor.values())
+    spent = f"{results.elapsed:.0f} s on {results.workers} process(es); the parts took {work:.0f} s of processor time"
     return f"{settings_text(results.resolution)}. {spent}.{kept}"
 
 
@@ -79,10 +79,15 @@ def estimate_text(estimate: Estimate) -> str:
     )
     ours = "" if estimate.ours is None else f" Ours took {estimate.ours:.0f} s for all, the structure prepared once a part."
     return (
-        f"Measured on single runs with that many absorbers, one BLAS thread: {singles}. All {estimate.runs} "
+        f"Processor time of single runs with that many absorbers, one BLAS thread: {singles}. All {estimate.runs} "
         f"numbers of Figure 9 by the direct "
-        f"engine would take about {estimate.whole:.0f} s, extrapolated from the sample's mean.{ours}"
+        f"engine would take about {estimate.whole:.0f} s of processor time, extrapolated from the sample's mean.{ours}"
     )
+
+
+def time_rows(results: Results) -> list[tuple[str, ...]]:
+    """Return the times of the parts."""
+    return [(name, f"{seconds:.1f}", f"{results.processor[name]:.1f}") for name, seconds in results.seconds.items()]
 
 
 def slip_rows() -> list[tuple[str, ...]]:
