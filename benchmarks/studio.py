@@ -22,6 +22,7 @@ from coaxshell.studio.worker import solve
 
 CLIENTS, SECONDS = 50, 20.0
 SYSTEMS = {name: presets.load(name).model_dump(mode="json") for name in ("absorbers", "hybrid")}
+SLIDERS = (("absorbers", "absorbers.mass", 5.0), ("hybrid", "absorbers.mass", 5.0), ("hybrid", "control.derivative", -150.0))
 PAUSE = 0.05
 """Seconds between two movements of a slider, whether or not the last one has been answered."""
 
@@ -40,11 +41,15 @@ def main() -> None:
 async def _measured(address: str, pid: int) -> None:
     limits = httpx2.Limits(max_connections=400)
     async with httpx2.AsyncClient(base_url=address, timeout=120, limits=limits) as http:
-        for preset, change in (("absorbers", "mass"), ("hybrid", "mass")):
-            alone = [await _solve(http, f"alone-{preset}", step, preset, change, 5.0 + step) for step in range(20)]
+        for preset, path, low in (
+            ("absorbers", "absorbers.mass", 5.0),
+            ("hybrid", "absorbers.mass", 5.0),
+            ("hybrid", "control.derivative", -150.0),
+        ):
+            alone = [await _solve(http, f"alone-{preset}-{path[:5]}", step, preset, path, low + step) for step in range(20)]
             assert {status for _, status in alone} == {200}
-            told = f"median {_ms(statistics.median(x for x, _ in alone[4:]))}, first {_ms(alone[0][0])}; in this process {_plain(preset)}"
-            print(f"{preset}, {change} of the absorbers, one client at M = 60, dt = 4e-3: {told}", flush=True)
+            told = f"median {_ms(statistics.median(x for x, _ in alone[4:]))}, first {_ms(alone[0][0])}"
+            print(f"{preset}, {path}, one client at M = 60, dt = 4e-3: {told}; in this process {_plain(preset, path, low)}", flush=True)
         for half in (1, 2, 3):
             answered: list[float] = []
             replaced: list[float] = []
@@ -62,7 +67,7 @@ async def _hammer(http: Any, half: int, number: int, answered: list[float], repl
     end, step, waiting = time.perf_counter() + SECONDS, 0, set[asyncio.Task[None]]()
 
     async def one(revision: int, mass: float) -> None:
-        seconds, status = await _solve(http, f"c{number}", revision, "absorbers", "mass", mass)
+        seconds, status = await _solve(http, f"c{number}", revision, "absorbers", "absorbers.mass", mass)
         (answered if status == 200 else replaced).append(seconds)
 
     while time.perf_counter() < end:
@@ -76,9 +81,10 @@ async def _hammer(http: Any, half: int, number: int, answered: list[float], repl
     await asyncio.gather(*waiting)
 
 
-async def _solve(http: Any, client: str, revision: int, preset: str, change: str, value: float) -> tuple[float, int]:
+async def _solve(http: Any, client: str, revision: int, preset: str, path: str, value: float) -> tuple[float, int]:
     system = dict(SYSTEMS[preset])
-    system["absorbers"] = {**system["absorbers"], change: value}
+    part, entry = path.split(".")
+    system[part] = {**system[part], entry: value}
     start = time.perf_counter()
     answer = await http.post("/api/solve", json={"client": client, "slot": "current", "revision": revision, "system": system})
     return time.perf_counter() - start, int(answer.status_code)
@@ -93,11 +99,11 @@ async def _watch(http: Any, light: list[float]) -> None:
         await asyncio.sleep(0.1)
 
 
-def _plain(preset: str) -> str:
-    """Return the time of the same in this process: structure prepared, absorbers marched."""
+def _plain(preset: str, path: str, low: float) -> str:
+    """Return the time of the same in this process: with what a worker keeps between two of them."""
     system, settings, times = presets.load(preset), settings_of("preview", live=True), []
     for step in range(6):
-        changed = system.with_overrides({"absorbers.mass": 5.0 + step})
+        changed = system.with_overrides({path: low + step})
         start = time.perf_counter()
         solve(changed, settings)
         times.append(time.perf_counter() - start)

@@ -48,6 +48,22 @@ def test_other_absorbers_on_a_structure_already_prepared_give_the_same_numbers(c
     assert_allclose(arrays["stress/0"], expected, rtol=1e-5, atol=1e-6 * np.abs(expected).max())
 
 
+def test_a_change_of_gains_or_layers_gives_the_same_numbers(client):
+    for path, value in (("control.proportional", -1.5e4), ("control.derivative", -90.0), ("shells[0].layers[1].thickness", 7e-3)):
+        system = presets.load("hybrid").with_overrides({path: value})
+        _, arrays = solved(client, system.model_dump(mode="json"))
+        expected = cx.simulate(system, **SMALL).stress("inner").values.T
+        assert_allclose(arrays["stress/0"], expected, rtol=1e-5, atol=1e-6 * np.abs(expected).max())
+
+
+def test_the_same_revision_twice_is_answered_twice(client):
+    def ask(_):
+        return solve(client, described("hybrid"), who="twice", revision=3, resolution={"duration": 3.0, "time_step": 0.01, "modes": 31})
+
+    with ThreadPoolExecutor(4) as pool:
+        assert {answer.status_code for answer in pool.map(ask, range(4))} <= {200, 204}
+
+
 def test_an_older_revision_is_answered_with_nothing(client):
     assert solve(client, described("bare"), who="revisions", revision=7).status_code == 200
     late = solve(client, described("bare"), who="revisions", revision=6)

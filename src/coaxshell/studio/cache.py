@@ -35,11 +35,19 @@ class Cache(Generic[T]):
         return found[0]
 
     def put(self, key: Hashable, value: T) -> None:
-        """Keep a value, or weigh it again; the oldest others leave for it. One that is too large alone is not kept."""
-        self._held[key] = (value, self.size(value))
+        """Keep a value, or weigh it again; the oldest others leave for it. One that is too large alone is not kept, and they stay."""
+        size = self.size(value)
+        if size > self.most:
+            self._held.pop(key, None)
+            return
+        self._held[key] = (value, size)
         self._held.move_to_end(key)
         while self.bytes > self.most:
             self._held.popitem(last=False)
+
+    def latest(self, fits: Callable[[T], bool]) -> T | None:
+        """Return the value used last among those that fit, or None."""
+        return next((value for value, _ in reversed(self._held.values()) if fits(value)), None)
 
     @property
     def bytes(self) -> int:

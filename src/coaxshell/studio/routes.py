@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -19,6 +20,7 @@ from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.state import Run, Studio
 
 MOST_REVISION = 2**53
+T = TypeVar("T")
 
 
 def studio_of(request: Request) -> Studio:
@@ -41,10 +43,15 @@ async def validate(request: Request) -> Response:
     return await conversation(await bodies.read_table(request))
 
 
+async def read(work: Callable[[], T], data: dict[str, Any]) -> T:
+    """Return what is made of a description: here where it takes a millisecond, beside the event loop where it may take longer."""
+    return work() if len(str(data)) < bodies.LONG else await run_in_threadpool(work)
+
+
 async def conversation(data: dict[str, Any], **more: Any) -> Response:
     """Return the answer to a description, valid or not, with further entries."""
     try:
-        answer = await run_in_threadpool(lambda: descriptions.told(descriptions.system_of(data)))
+        answer = await read(lambda: descriptions.told(descriptions.system_of(data)), data)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({**answer, **more})
@@ -65,18 +72,15 @@ async def solve(request: Request) -> Response:
     if revision < slot.revision:
         return Response(status_code=204)
     slot.revision = revision
-    if slot.work is not None:
-        studio.workers.drop(slot.work)
-        slot.work = None
     try:
-        # Under load this waits for its turn: what has become old meanwhile is not even read.
-        pair = await run_in_threadpool(lambda: wanted(data, live=True) if revision == slot.revision else None)
-        if pair is None or revision < slot.revision:
+        pair = await read(lambda: wanted(data, live=True), data)
+        if revision < slot.revision:
             return Response(status_code=204)
         run = studio.run_of(*pair)
         content = studio.curves.get(run.name)
         if content is None:
-            slot.work = work = studio.workers.submit(worker.solve, *run.pair, place=run.place)
+            # What still waits for this slot gives way; what runs already is finished, so that a slider that never rests is answered.
+            slot.work = work = studio.workers.submit(worker.solve, *run.pair, place=run.place, instead_of=slot.work)
             content = await work.future
             studio.curves.put(run.name, content)
     except InputError as error:
@@ -86,8 +90,9 @@ async def solve(request: Request) -> Response:
         if task is not None and task.cancelling():
             raise  # the request itself, not the work for it
         return Response(status_code=204)
-    if revision < slot.revision:
+    if revision < slot.answered:
         return Response(status_code=204)
+    slot.answered = revision
     return arrays.answer(content, client=client, slot=name, revision=revision, run=run.name)
 
 

@@ -44,9 +44,10 @@ class Run:
 
 @dataclass
 class Slot:
-    """The newest revision of a place of a page, and the work for it."""
+    """The newest revision of a place of a page, asked for and answered, and the work for it."""
 
     revision: int = -1
+    answered: int = -1
     work: Work | None = None
 
 

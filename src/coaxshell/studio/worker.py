@@ -18,6 +18,7 @@ from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
+from coaxshell.studio import limits
 from coaxshell.studio.cache import Cache, held_bytes
 
 STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
@@ -122,20 +123,27 @@ def answer(system: System, settings: Settings) -> Response:
     if found is not None:
         return found
     place = structure_key(system, settings)
-    prepared = _Here.structures.get(place)
-    if prepared is None:
-        prepared = prepare(
-            system.replace(absorbers=()),
-            duration=settings.duration,
-            time_step=settings.time_step,
-            modes=settings.modes,
-            refinement=settings.refinement,
-            progress=report,
-        )
+    prepared = _Here.structures.get(place) or _structure(system.replace(absorbers=()), settings)
     response = prepared.simulate(system.absorbers, progress=report)
     _Here.structures.put(place, prepared)
     _Here.answers.put(key, response)
     return response
+
+
+def _structure(system: System, settings: Settings) -> PreparedSystem:
+    """Return a structure prepared from what the one used last shares with it, or from nothing."""
+    live = settings.steps * settings.refinement <= limits.PREVIEW_STEPS  # finer ones would share hundreds of megabytes
+    kin = _Here.structures.latest(lambda kept: kept.settings == settings) if live else None
+    if kin is not None:
+        return kin.retuned(system)
+    return prepare(
+        system,
+        duration=settings.duration,
+        time_step=settings.time_step,
+        modes=settings.modes,
+        refinement=settings.refinement,
+        progress=report,
+    )
 
 
 def solve(system: System, settings: Settings) -> Any:

@@ -86,13 +86,19 @@ class Workers:
         place: Hashable = None,
         live: bool = True,
         started: Callable[[], None] | None = None,
+        instead_of: Work | None = None,
     ) -> Work:
-        """Queue a task; RefusedError when too many wait."""
+        """Queue a task, in the place of another if that still waits; RefusedError when too many wait."""
         queue = self._queues[live]
-        if len(queue) >= (limits.LIVE_WAITING if live else limits.JOBS_WAITING):
+        replaced = instead_of is not None and instead_of in queue
+        if not replaced and len(queue) >= (limits.LIVE_WAITING if live else limits.JOBS_WAITING):
             raise RefusedError(429, "busy", "server", f"{len(queue)} tasks are waiting", "try again in a moment")
         work = Work(next(self._numbers), task, arguments, place, live, asyncio.get_running_loop().create_future(), started=started)
-        queue.append(work)
+        if replaced and instead_of is not None:
+            queue[queue.index(instead_of)] = work
+            instead_of.future.cancel()
+        else:
+            queue.append(work)
         self._feed()
         return work
 
