@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import re
 import statistics
 import subprocess
@@ -54,10 +55,13 @@ async def _measured(address: str, pid: int) -> None:
             answered: list[float] = []
             replaced: list[float] = []
             light: list[float] = []
+            before = _processor(pid), time.process_time()
             await asyncio.gather(_watch(http, light), *(_hammer(http, half, number, answered, replaced) for number in range(CLIENTS)))
+            server, own = _processor(pid) - before[0], time.process_time() - before[1]
             print(
                 f"{CLIENTS} clients, {SECONDS:g} s, round {half}: {len(answered)} answered ({_spread(answered)}), {len(replaced)} replaced "
-                f"by newer ones, a light route meanwhile {_spread(light)}; memory of all processes {_memory(pid):.0f} MB",
+                f"by newer ones, a light route meanwhile {_spread(light)}; memory of all processes {_memory(pid):.0f} MB; "
+                f"processor time of the server without its workers {server:.1f} s, of this client {own:.1f} s",
                 flush=True,
             )
 
@@ -104,10 +108,17 @@ def _plain(preset: str, path: str, low: float) -> str:
     system, settings, times = presets.load(preset), settings_of("preview", live=True), []
     for step in range(6):
         changed = system.with_overrides({path: low + step})
-        start = time.perf_counter()
+        start = time.perf_counter(), time.process_time()
         solve(changed, settings)
-        times.append(time.perf_counter() - start)
-    return f"median {_ms(statistics.median(times[1:]))}, first {_ms(times[0])}"
+        times.append((time.perf_counter() - start[0], time.process_time() - start[1]))
+    wall, processor = (statistics.median(column) for column in zip(*times[1:], strict=True))
+    return f"{_ms(wall)}, {_ms(processor)} of processor time"
+
+
+def _processor(pid: int) -> float:
+    """Return the processor time of one process, s."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _memory(pid: int) -> float:
