@@ -88,6 +88,10 @@ def test_events_tell_of_jobs_and_it_ends_cleanly_on_interrupt(server):
     assert list(folder.iterdir()), "it has a folder of its own"
     heavy = {**body, "system": described("hybrid"), "revision": 2, "resolution": {"duration": 10.0, "time_step": 1e-3, "modes": 150}}
     http.post("/api/jobs", json=heavy)
+    live = {"client": "tab", "slot": "live", "revision": 1, "system": described("hybrid"), "resolution": {"modes": 100}}
+    statuses: list[int] = []
+    waiting = threading.Thread(target=lambda: statuses.append(http.post("/api/solve", json=live).status_code), daemon=True)
+    waiting.start()
     listener = threading.Thread(target=lambda: http.get("/api/events?client=tab"), daemon=True)
     listener.start()
     time.sleep(0.3)
@@ -96,6 +100,8 @@ def test_events_tell_of_jobs_and_it_ends_cleanly_on_interrupt(server):
     process.send_signal(signal.SIGINT)
     assert process.wait(20) == 0
     assert process.stderr.read() == ""
+    waiting.join(20)
+    assert statuses in ([200], [503])
     assert list(folder.iterdir()) == []
     end = time.monotonic() + 10  # multiprocessing's own tracker ends a moment after the others
     while left := [child for child in children if Path(f"/proc/{child}").exists()]:

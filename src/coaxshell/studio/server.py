@@ -59,7 +59,7 @@ def listening(port: int) -> socket.socket:
 
 
 class _Server(uvicorn.Server):
-    """Tells when it is ready, and ends the streams of events first of all, since they would never end by themselves."""
+    """Tells when it is ready, and ends all work and streams first of all, since requests wait for them."""
 
     def __init__(self, config: uvicorn.Config, guard: Guard, ready: Callable[[], None]) -> None:
         super().__init__(config)
@@ -71,5 +71,5 @@ class _Server(uvicorn.Server):
             self._ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        self._guard.app.state.studio.close_streams()
+        self._guard.app.state.studio.close()
         await super().shutdown(sockets)

@@ -72,6 +72,7 @@ class Workers:
         self._processes = [self._started() for _ in range(processes)]
         self._queues: dict[bool, deque[Work]] = {True: deque(), False: deque()}
         self._tasks: set[asyncio.Task[None]] = set()
+        self._closed = False
 
     def _started(self) -> _Process:
         board, stage = self._context.RawArray("d", [0.0, 0.0]), self._context.RawArray("c", 64)
@@ -89,6 +90,8 @@ class Workers:
         instead_of: Work | None = None,
     ) -> Work:
         """Queue a task, in the place of another if that still waits; RefusedError when too many wait."""
+        if self._closed:
+            raise RefusedError(503, "closing", "server", "is ending", "start it again")
         queue = self._queues[live]
         replaced = instead_of is not None and instead_of in queue
         if not replaced and len(queue) >= (limits.LIVE_WAITING if live else limits.JOBS_WAITING):
@@ -117,6 +120,8 @@ class Workers:
         return float(work.process.board[worker.FRACTION]), work.process.stage.value.decode(errors="replace")
 
     def _feed(self) -> None:
+        if self._closed:
+            return
         for live in (True, False):
             queue = self._queues[live]
             while queue:
@@ -148,7 +153,7 @@ class Workers:
             outcome: worker.Outcome = await asyncio.wrap_future(future)
         except BrokenProcessPool:
             process.executor.shutdown(wait=False)
-            if process in self._processes:
+            if not self._closed and process in self._processes:
                 self._processes[self._processes.index(process)] = self._started()
             _settle(work, InputError("system", "the worker that solved it has died", "most likely for want of memory: ask for less"))
         except BaseException as error:
@@ -160,6 +165,8 @@ class Workers:
         else:
             if outcome.state == "done" and not work.future.done():
                 work.future.set_result(outcome.value)
+            elif work.future.done():
+                pass
             elif outcome.state == "input":
                 _settle(work, InputError(*outcome.value))
             else:
@@ -169,10 +176,13 @@ class Workers:
             self._feed()
 
     def close(self) -> None:
-        """Stop everything now."""
+        """Stop everything now; who waits is told."""
+        self._closed = True
+        waiting = [work for queue in self._queues.values() for work in queue]
+        for work in [*waiting, *(process.work for process in self._processes if process.work is not None)]:
+            _settle(work, RefusedError(503, "closing", "server", "is ending", "start it again"))
         for queue in self._queues.values():
-            while queue:
-                queue.pop().future.cancel()
+            queue.clear()
         for process in self._processes:
             running = list((process.executor._processes or {}).values())
             process.executor.shutdown(wait=False, cancel_futures=True)
