@@ -105,6 +105,7 @@ def test_figures_of_the_paper(run, saved, number):
         (["snapshots", "bare", "--times", "soon"], ["--times", "'soon'"]),
         (["snapshots", "bare", "--units", "bar"], ["--units", "'bar'", "relative"]),
         (["snapshots", "bare", "--pixels", "3"], ["--pixels", "3", "16 to 4000"]),
+        (["snapshots", "bare", "--columns", "0"], ["--columns: 0 is", "1 to 20"]),
         (["snapshots", "bare", "--width", "-1"], ["--width", "-1"]),
         (["snapshots", "bare", "--pressure-limit", "0"], ["--pressure-limit", "0", "positive"]),
         (["snapshots", "bare", "--stress-limit", "x"], ["--stress-limit", "'x'"]),

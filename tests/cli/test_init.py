@@ -65,7 +65,7 @@ def test_refuses_to_overwrite(refused, run, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--preset", "bear"], ["bear", "bare"]),
+        (["--preset", "bear"], ["error: --preset:", "bear", "bare"]),
         (["mine.yaml"], ["'mine.yaml'", ".toml"]),
         (["nowhere/mine.toml"], ["'nowhere'", "does not exist"]),
         (["/proc/mine.toml"], ["'/proc'"]),

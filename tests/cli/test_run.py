@@ -64,6 +64,7 @@ def test_modes_auto(run):
     [
         (["bear"], ["scenario", "'bear'", "bare, absorbers"]),
         (["missing.toml"], ["missing.toml", "cannot be read"]),
+        (["done.nc"], ["'done.nc'", "saved run", "coaxshell info"]),
         (["bare", "--set", "source.peak_presure=1e4"], ["source.peak_presure", "peak_pressure"]),
         (["bare", "--set", "source.peak_pressure=6 mm"], ["source.peak_pressure", "'6 mm'", "pressure", "Pa"]),
         (["bare", "--set", "source.peak_pressure=nan"], ["source.peak_pressure", "nan", "finite"]),
@@ -121,7 +122,7 @@ decay_time = "0.1 ms"
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("this is not TOML", ["TOML"]),
+        ("this is not TOML", ["error: bad.toml:", "TOML"]),
         ("", ["shells", "missing"]),
         ('fluids = ["water-1400"]\nshells = []\nsource = 3', ["source"]),
         (WINE, ["fluids[1]", "'wine'", "water-1400"]),

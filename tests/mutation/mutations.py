@@ -342,7 +342,7 @@ MUTATIONS = (
         "0.25 * cubic * stretch[:, kept] ** 4",
         "0.5 * cubic * stretch[:, kept] ** 4",
         "energy of a cubic spring",
-        "response/test_energy_parts.py response/test_energy.py",
+        "response/test_spring_energy.py",
     ),
     Mutation(
         "gap-transfer",

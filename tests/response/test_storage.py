@@ -106,9 +106,9 @@ def test_a_failure_in_mid_write_leaves_nothing(
 
 
 def test_places_that_cannot_be_written(response: Response, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="there is no directory"):
+    with pytest.raises(InputError, match="there is no folder"):
         response.save(tmp_path / "missing" / "run.nc")
-    with pytest.raises(InputError, match="it is a directory"):
+    with pytest.raises(InputError, match="it is a folder"):
         response.save(tmp_path)
     with pytest.raises(InputError, match="cannot be written"):
         response.save("/proc/run.nc")
@@ -131,7 +131,7 @@ def told(call: Callable[[Path], object], path: Path) -> str:
 @pytest.mark.parametrize("call", [load_response, info])
 def test_files_that_cannot_be_read(call: Callable[[Path], object], saved: Path, tmp_path: Path) -> None:
     assert "does not exist" in told(call, tmp_path / "none.nc")
-    assert "is a directory" in told(call, tmp_path)
+    assert "is a folder" in told(call, tmp_path)
     text = tmp_path / "text.nc"
     text.write_text("shells and fluids\n" * 100)
     assert "is not a NetCDF file" in told(call, text)

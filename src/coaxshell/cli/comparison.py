@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coaxshell.cli.scenario import load_system
-from coaxshell.cli.tables import ROWS, tell_warnings
+from coaxshell.cli.tables import tell_warnings
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -73,7 +73,7 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
 
 def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
     """Return (shell, quantity, first value, second value, reduction) for each shell and quantity that either run has."""
-    from coaxshell.response.summary_text import engineering
+    from coaxshell.response.summary_text import ROWS, engineering
 
     ours, theirs = ({shell.name: shell for shell in summary.shells} for summary in (first, second))
     rows = []

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli.files import replacing, writable
+from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
 
 
@@ -19,7 +20,8 @@ def init(
     """Write a commented scenario file to change and run."""
     from coaxshell.cli.template import scenario_text
 
-    text = scenario_text(preset)
+    with named_as_options(preset="preset"):
+        text = scenario_text(preset)
     target = writable(file, "FILE", (".toml",))
     if target.exists() and not force:
         raise InputError("FILE", f"{str(target)!r} exists already", "give another name, or --force to overwrite it")

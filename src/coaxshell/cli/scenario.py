@@ -28,6 +28,8 @@ def load_system(scenario: str, changes: Sequence[str] = ()) -> System:
         system = presets.load(scenario)
     elif Path(scenario).suffix.lower() == ".toml":
         system = System.from_toml(scenario)
+    elif Path(scenario).suffix.lower() == ".nc":
+        raise InputError("scenario", f"{scenario!r} is a saved run, solved already", "give a .toml file or a preset; see coaxshell info")
     else:
         raise InputError("scenario", f"there is no preset {scenario!r}", f"give a .toml file or one of: {', '.join(presets.names())}")
     return system.with_overrides(wanted) if wanted else system

@@ -13,6 +13,7 @@ from coaxshell.cli.files import writable
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.times import times as read_times
+from coaxshell.errors import InputError
 
 
 @with_resolution
@@ -25,7 +26,7 @@ def snapshots(
         typer.Option("--times", metavar="T,T,...", help="Instants in transits, as in 0.2,1.2,3.6 or 0:5:0.5. [default: the paper's]"),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.")] = Path("snapshots.png"),
-    columns: Annotated[int, typer.Option("--columns", min=1, max=20, help="Instants in a row.")] = 4,
+    columns: Annotated[int, typer.Option("--columns", help="Instants in a row, 1 to 20.")] = 4,
     width: field_options.WidthOption = "6",
     pixels: Annotated[int, typer.Option("--pixels", help="Pixels along a side of each field.")] = 450,
     units: field_options.UnitsOption = "auto",
@@ -43,6 +44,8 @@ def snapshots(
     from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots, save_figure
 
     target = writable(output, "--output", FIGURE_SUFFIXES)
+    if not 1 <= columns <= 20:
+        raise InputError("--columns", f"{columns} is not allowed", "give a whole number from 1 to 20")
     chosen = None if times is None else read_times(times)
     highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
     highest_stress = field_options.limit("--stress-limit", stress_limit)

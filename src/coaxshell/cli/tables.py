@@ -19,18 +19,6 @@ if TYPE_CHECKING:
     from coaxshell.response.peaks import Peak
     from coaxshell.response.summary import Summary
 
-ROWS = (
-    ("stress_head", "stress at head", "Pa"),
-    ("stress_tail", "stress at tail", "Pa"),
-    ("stress", "stress anywhere", "Pa"),
-    ("stress_rms", "stress RMS", "Pa"),
-    ("displacement_head", "displacement at head", "m"),
-    ("displacement_tail", "displacement at tail", "m"),
-    ("sensor_voltage", "sensor voltage", "V"),
-    ("actuator_voltage", "actuator voltage asked", "V"),
-)
-"""Fields of a shell's summary, with their labels and units, in the order of the tables."""
-
 
 def print_summary(response: Response) -> None:
     """Print the summary of a run on stdout and its warnings on stderr."""
@@ -58,6 +46,8 @@ def summary_table(summary: Summary) -> Table:
     from rich import box
     from rich.markup import escape
     from rich.table import Table
+
+    from coaxshell.response.summary_text import ROWS
 
     title, run, *_ = str(summary).splitlines()
     table = Table(title=f"{escape(title)}\n[not bold]{escape(run)}[/]", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)

@@ -178,5 +178,5 @@ class System(Described):
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Self:
-        """Read a system from a TOML file; InputError gives the full path of what is wrong."""
-        return cls.from_toml_string(toml.read(Path(path)), Path(path).parent)
+        """Read a system from a TOML file; InputError gives the full path of what is wrong, or the file if it is no TOML."""
+        return cls.model_validate(toml.loads(toml.read(Path(path)), Path(path).parent, str(path)))

@@ -21,19 +21,21 @@ def read(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except OSError as error:
-        raise InputError(str(path), f"cannot be read ({error.strerror})", "give the path of a TOML file") from None
+        raise InputError(
+            str(path), f"cannot be read ({(error.strerror or type(error).__name__).lower()})", "give the path of a TOML file"
+        ) from None
     except UnicodeError:
         raise InputError(str(path), "is not text in UTF-8", "give the path of a TOML file") from None
 
 
-def loads(text: str, folder: Path | None = None) -> dict[str, Any]:
-    """Parse TOML text into the fields of a system, with the names of materials and files resolved."""
+def loads(text: str, folder: Path | None = None, name: str = "TOML") -> dict[str, Any]:
+    """Parse TOML text into the fields of a system, with the names of materials and files resolved; errors of syntax name *name*."""
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError("TOML", str(error), "the text must be valid TOML") from None
+        raise InputError(name, str(error), "the text must be valid TOML") from None
     except (ValueError, RecursionError) as error:  # a number of thousands of digits, thousands of brackets
-        raise InputError("TOML", f"cannot be read ({str(error)[:60]})", "the text must be valid TOML of moderate depth") from None
+        raise InputError(name, f"cannot be read ({str(error)[:60]})", "the text must be valid TOML of moderate depth") from None
     known = _materials(data.pop("materials", {}))
     shells = data.get("shells")
     for i, shell in enumerate(shells if isinstance(shells, list) else []):

@@ -153,7 +153,6 @@ class _Stamp:
         from PIL import ImageFont
 
         self._font: Any = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), size)
-        self._height = size
 
     def write(self, picture: Bytes, text: str, left: int, top: int) -> None:
         """Write a text centred in the strip above the panels, its left edge given."""

@@ -84,11 +84,15 @@ def _attributes(solution: ModalSolution) -> dict[str, Any]:
     }
 
 
+OURS = "give a file written by coaxshell run --output or Response.save"
+"""What to do about a file that is not a saved run."""
+
+
 def format_problem(attributes: Mapping[Any, Any]) -> InputError | None:
     """Return what keeps us from reading a file with these attributes: not ours, or of a newer format; None if nothing does."""
     version = attributes.get("coaxshell_format_version")
     if version is None:
-        return InputError("", "was not written by coaxshell", "give a file written by Response.save")
+        return InputError("", "was not written by coaxshell", OURS)
     if int(version) > FORMAT_VERSION:
         by = attributes.get("coaxshell_version", "of a newer version")
         return InputError("", f"has format {int(version)} of coaxshell {by}, beyond {FORMAT_VERSION} of this version", "update coaxshell")

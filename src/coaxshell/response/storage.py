@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from coaxshell.errors import InputError
-from coaxshell.response.dataset import ARRAYS, format_problem, from_dataset, to_dataset
+from coaxshell.response.dataset import ARRAYS, OURS, format_problem, from_dataset, to_dataset
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution
 
@@ -43,9 +43,9 @@ def save(solution: ModalSolution, path: str | Path, *, compression: bool = False
         raise InputError("response", "was made with other formulas than a file could repeat", "save its histories as tables instead")
     target = Path(path)
     if not target.parent.is_dir():
-        raise InputError(str(path), f"cannot be written: there is no directory {str(target.parent)!r}", "create it first")
+        raise InputError(str(path), f"cannot be written: there is no folder {str(target.parent)!r}", "create it first")
     if target.is_dir():
-        raise InputError(str(path), "cannot be written: it is a directory", "give the name of a file, such as run.nc")
+        raise InputError(str(path), "cannot be written: it is a folder", "give the name of a file, such as run.nc")
     dataset = to_dataset(solution)
     packed = {"zlib": True, "complevel": 4, "shuffle": True} if compression else {}
     encoding = {name: {"_FillValue": None, **packed} for name in ARRAYS if name in dataset and dataset[name].size}
@@ -71,13 +71,13 @@ def _opened(path: str | Path) -> xr.Dataset:
     """Open one of our files without reading its arrays and without decoding anything; InputError if that is not possible."""
     source = Path(path)
     if not source.is_file():
-        raise InputError(str(path), "is a directory" if source.is_dir() else "does not exist", "give a file written by Response.save")
+        raise InputError(str(path), "is a folder" if source.is_dir() else "does not exist", OURS)
     try:
         dataset = xr.open_dataset(source, engine="h5netcdf", decode_times=False, mask_and_scale=False, decode_timedelta=False, cache=False)
     except PermissionError:
         raise InputError(str(path), "cannot be read (permission denied)", "choose another file") from None
     except UNREADABLE as error:
-        raise InputError(str(path), "is not a NetCDF file, or is cut short or damaged", "give a file written by Response.save") from error
+        raise InputError(str(path), "is not a NetCDF file, or is cut short or damaged", OURS) from error
     problem = format_problem(dataset.attrs)
     if problem is not None:
         dataset.close()

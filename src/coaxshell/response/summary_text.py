@@ -8,6 +8,18 @@ from typing import Any
 
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
 
+ROWS = (
+    ("stress_head", "stress at head", "Pa"),
+    ("stress_tail", "stress at tail", "Pa"),
+    ("stress", "stress anywhere", "Pa"),
+    ("stress_rms", "stress RMS", "Pa"),
+    ("displacement_head", "displacement at head", "m"),
+    ("displacement_tail", "displacement at tail", "m"),
+    ("sensor_voltage", "sensor voltage", "V"),
+    ("actuator_voltage", "actuator voltage asked", "V"),
+)
+"""Fields of a shell's summary, with their labels and units, in the order of the tables."""
+
 
 def engineering(value: float, unit: str) -> str:
     """Return a value with four digits and the SI prefix that fits: 181500 Pa is ``181.5 kPa``."""
@@ -53,18 +65,8 @@ def summary_text(summary: Mapping[str, Any]) -> str:
 
 
 def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    entries: list[tuple[str, str, str]] = [
-        ("stress_head", "stress at head", "Pa"),
-        ("stress_tail", "stress at tail", "Pa"),
-        ("stress", "stress anywhere", "Pa"),
-        ("stress_rms", "stress RMS", "Pa"),
-        ("displacement_head", "displacement at head", "m"),
-        ("displacement_tail", "displacement at tail", "m"),
-        ("sensor_voltage", "sensor voltage", "V"),
-        ("actuator_voltage", "actuator voltage asked", "V"),
-    ]
     rows: list[tuple[str, ...]] = []
-    for key, label, unit in entries:
+    for key, label, unit in ROWS:
         value = shell[key]
         if isinstance(value, Mapping):
             rows.append((shell["name"], label, engineering(value["value"], unit), f"{value['time']:.4g}", f"{value['angle']:.4g}"))
