@@ -75,5 +75,6 @@ export function finished(body, progress = () => {}) {
 }
 
 export async function stop(id) {
+  if (!jobs.has(id)) return; // of a server that has ended
   try { await request(`/api/jobs/${id}`, { method: "DELETE" }); } catch { /* it has ended by itself */ }
 }

@@ -69,6 +69,7 @@ function summary(path, value) {
   if (/^shells$/.test(path)) return value.map((shell) => show(shell.radius, "m", 3)).join(", ");
   if (/^shells\[\d+\]$/.test(path)) return show(value.radius, "m");
   if (/layers\[\d+\]$/.test(path)) return `${show(value.thickness, "m")} ${value.material?.name ?? ""}${value.role && value.role !== "core" ? `, ${value.role}` : ""}`;
+  if (/^absorbers\[\d+\]$/.test(path)) return `${show(value.angle ?? 0, "deg")}, ${show(value.mass, "kg/m")}`;
   if (/^source$/.test(path)) return Array.isArray(value) ? `${value.length} sources` : title(value.type.replace(/-/g, " ").toLowerCase());
   if (path === "resolution") return `${value.modes} orders, step ${value.time_step}`;
   if (/^control$/.test(path)) return `${show(value.proportional, "", 3)}, ${show(value.derivative, "", 3)}`;
@@ -82,7 +83,7 @@ function entry(schema, path, name, value, bare = false) {
   if (/\.material$/.test(path)) return library(path, name, value, choices, world.materials, "material", "name");
   if (choices.length > 1) return union(found, choices, path, name, value, bare);
   const kind = { ...choices[0], description: found.description ?? choices[0].description };
-  if (kind.const !== undefined) return null;
+  if (kind.const !== undefined || kind.type === "null") return null;
   if (kind.type === "array") return list(kind, path, name, value ?? []);
   if (kind.type === "object") return table(kind, path, name, value ?? {}, bare);
   return leaf(kind, path, name, value);

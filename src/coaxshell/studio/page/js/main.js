@@ -67,7 +67,7 @@ async function change(path, value, { live = false } = {}) {
   const since = performance.now();
   remember(path, live);
   if (path.startsWith("resolution.")) return resolve(path.slice(11), value);
-  page.system = written(page.system, path, value);
+  page.system = path === "shells" ? withShells(page.system, value) : written(page.system, path, value);
   if (live) {
     page.problem = null;
     form.mark(null);
@@ -88,6 +88,14 @@ async function change(path, value, { live = false } = {}) {
   }
   page.metrics = answer.metrics ?? [];
   adopt(answer.system, { since, keepForm: typeof value !== "object" && shape(answer.system) === page.shape });
+}
+
+// Fluids follow the number of shells, a further gap as the last one; a single shell has no absorbers.
+function withShells(system, shells) {
+  const fluids = [...system.fluids];
+  while (fluids.length < shells.length + 1) fluids.splice(-1, 0, structuredClone(fluids.at(-2)));
+  while (fluids.length > shells.length + 1 && fluids.length > 2) fluids.splice(-2, 1);
+  return { ...system, shells, fluids, absorbers: shells.length < 2 ? [] : system.absorbers };
 }
 
 function resolve(name, value) {
@@ -198,7 +206,7 @@ function drawTab(name) {
   if (name === "peaks") peaks.draw(page.runs);
   if (name === "studies") studies.offer();
   if (!page.runs.current) return;
-  if (name === "energy") tabTimer = setTimeout(() => energy.draw(page.runs.current.run), 300);
+  if (name === "energy") tabTimer = setTimeout(() => energy.draw(page.runs.current.run, Math.ceil(page.runs.current.arrays.time.values.length / 200)), 300);
   if (name === "wave") tabTimer = setTimeout(() => wave.load(page.runs), 300);
   if (name !== "wave") { wave.pause(); curves.cursor(null); } else wave.draw();
 }

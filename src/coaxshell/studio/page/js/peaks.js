@@ -12,11 +12,11 @@ export function draw(runs) {
     el("caption", {}, `Largest magnitudes over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), el("td", {}), el("th", { scope: "col", class: "number" }, "Current"), ...others.flatMap((key) => [el("th", { scope: "col", class: "number" }, RUNS[key].name.replace(/^./, (c) => c.toUpperCase())), el("th", { scope: "col", class: "number" }, "Change")]))),
     ...groups(current).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), ...bars.map((bar) => line(bar, runs, others, extent(bar, current, runs, others))))));
-  by("peaks").replaceChildren(...(warnings ? [warnings] : []), el("div", { class: "wide" }, table), el("p", { class: "note" }, accuracy(current)));
+  by("peaks").replaceChildren(...(warnings ? [warnings] : []), el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Peak and RMS values" }, table), el("p", { class: "note" }, accuracy(current)));
 }
 
 function groups(result) {
-  const named = result.shells.map((shell) => [`${shell.name.replace(/^./, (c) => c.toUpperCase())} shell, ${show(shell.radius, "m")}`, result.bars.filter((bar) => bar.shell === shell.index)]);
+  const named = result.shells.map((shell) => [`${shell.name === "shell" ? "Shell" : `${shell.name.replace(/^./, (c) => c.toUpperCase())} shell`}, ${show(shell.radius, "m")}`, result.bars.filter((bar) => bar.shell === shell.index)]);
   const rest = result.bars.filter((bar) => bar.shell === undefined || bar.shell === null);
   return [...named, ["Absorbers", rest]].filter(([, bars]) => bars.length);
 }

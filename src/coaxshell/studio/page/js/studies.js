@@ -102,10 +102,10 @@ function draw(plot, { coordinates, metrics: [metric] }) {
   const name = (axis) => `${axis.label ?? axis.name}${axis.unit && axis.unit !== "1" ? ` (${pretty(axis.unit)})` : ""}`;
   const divided = (values) => values.map((value) => (Array.isArray(value) ? divided(value) : value === null ? null : value / scale.factor));
   const label = `${metric.label ?? metric.name} (${scale.unit || "–"})`;
-  const { axis, layout } = frame({ height: 360, hovermode: "closest" });
+  const { style, axis, layout } = frame({ height: 360, hovermode: "closest" });
   const trace = second
     ? { type: "heatmap", x: first.values, y: second.values, z: divided(metric.values[0].map((_, j) => metric.values.map((line) => line[j]))), colorscale: "Viridis", colorbar: { title: { text: label, side: "right" } } }
     : { type: "scatter", mode: "lines+markers", x: first.values, y: divided(metric.values), line: { color: colour("current"), width: 1.6 }, marker: { size: 5 } };
-  Object.assign(layout, { xaxis: { ...axis, type: logarithmic(first), title: { text: name(first) } }, yaxis: { ...axis, type: second ? logarithmic(second) : "linear", title: { text: second ? name(second) : label } }, margin: { l: 72, r: 20, t: 12, b: 52 } });
+  Object.assign(layout, { xaxis: { ...axis, type: logarithmic(first), title: { text: name(first), font: style } }, yaxis: { ...axis, type: second ? logarithmic(second) : "linear", title: { text: second ? name(second) : label.replace(", ", "<br>"), font: style } }, margin: { l: 84, r: 20, t: 12, b: 52 } });
   window.Plotly.newPlot(plot, [trace], layout, SETTINGS);
 }

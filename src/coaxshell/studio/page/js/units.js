@@ -57,6 +57,6 @@ export function percent(value, reference) {
 
 export function showPercent(change) {
   if (change === null) return "–";
-  const text = Math.abs(change) < 0.05 ? "0.0" : Math.abs(change) >= 1000 ? Math.abs(change).toPrecision(3) : Math.abs(change).toFixed(1);
+  const text = Math.abs(change) < 0.05 ? "0.0" : Math.abs(change) >= 1000 ? String(Math.round(Math.abs(change))) : Math.abs(change).toFixed(1);
   return `${change < -0.05 ? "−" : change > 0.05 ? "+" : ""}${text}\u202f%`;
 }
