@@ -10,7 +10,7 @@ DEMO   := demo
 DOCS_CHECKS ?= not slow
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-all mutation lint types bench docs clean
+.PHONY: help demo chromium test test-all mutation lint types bench docs clean
 
 help:
 	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
@@ -48,14 +48,23 @@ demo: $(STAMP)
 	@$(BIN)/coaxshell animate $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --frames 100 --fps 20 --size 360 --quiet \
 	  --output $(DEMO)/film.mp4 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
 
+# The studio's page is tested in a real browser: Debian's, installed when it is missing and we may.
+chromium:
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || { \
+	  echo "installing chromium for the tests of the studio's page (once, about a minute)"; \
+	  as=$$([ "$$(id -u)" = 0 ] || echo "sudo -n"); \
+	  { $$as apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends chromium; } >/dev/null 2>&1 || \
+	  echo "error: chromium could not be installed, so the tests of the page will fail; on Debian: apt-get install chromium" >&2; }
+
 # Two test processes share the cores; BLAS threads of their own would only spin against each other.
+# The tests of the browser share one of them: they have one server and one browser between them.
 test: export OPENBLAS_NUM_THREADS = 1
-test: $(STAMP)
-	@$(BIN)/python -m pytest -q -n 2 -m "not slow"
+test: $(STAMP) chromium
+	@$(BIN)/python -m pytest -q -n 2 --dist loadgroup -m "not slow"
 
 test-all: export OPENBLAS_NUM_THREADS = 1
-test-all: $(STAMP_ALL)
-	@$(BIN)/python -m pytest -q -n 2
+test-all: $(STAMP_ALL) chromium
+	@$(BIN)/python -m pytest -q -n 2 --dist loadgroup
 	@$(MAKE) --no-print-directory docs DOCS_CHECKS="slow or not slow"
 
 mutation: $(STAMP)

@@ -1,0 +1,158 @@
+"""A real server, a real Chromium, and pages that fail their test on any outside request, console error or uncaught exception."""
+
+from __future__ import annotations
+
+import os
+import queue
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+from page_reading import PATIENCE, until
+from playwright.sync_api import sync_playwright
+
+HERE = Path(__file__).parent
+FLAGS = [
+    *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
+]
+
+
+def pytest_collection_modifyitems(items):
+    """Keep all of these in one test process: a server and a browser take seconds and memory."""
+    for item in items:
+        if HERE in Path(item.path).parents:
+            item.add_marker(pytest.mark.xdist_group("browser"))
+
+
+class Server:
+    """``coaxshell studio`` as a process of its own."""
+
+    def __init__(self, port: int = 0) -> None:
+        command = [sys.executable, "-m", "coaxshell", "studio", "--port", str(port), "--no-browser"]
+        environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
+        lines: queue.Queue[str] = queue.Queue()
+        self._reader = threading.Thread(target=lambda: [lines.put(line) for line in self._process.stdout], daemon=True)
+        self._reader.start()
+        said = []
+        while not said or "http://" not in said[-1]:
+            said.append(lines.get(timeout=PATIENCE))
+        self.address = "http://" + said[-1].partition("http://")[2].split()[0]
+
+    @property
+    def port(self) -> int:
+        return urlsplit(self.address).port
+
+    def stop(self) -> None:
+        """End it as Ctrl-C would."""
+        if self._process.poll() is None:
+            self._process.terminate()
+            try:
+                self._process.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        self._reader.join(timeout=20)
+        self._process.stdout.close()
+
+
+@pytest.fixture(scope="session")
+def server():
+    server = Server()
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def own_server():
+    """Give what starts servers that a test may stop; those left over are stopped."""
+    started: list[Server] = []
+
+    def start(port: int = 0) -> Server:
+        started.append(Server(port))
+        return started[-1]
+
+    yield start
+    for one in started:
+        one.stop()
+
+
+@pytest.fixture
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture(scope="session")
+def browser():
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if chromium is None:
+        pytest.fail("no Chromium on this machine; on Debian: apt-get install chromium", pytrace=False)
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=chromium, args=FLAGS, headless=True)
+        yield browser
+        browser.close()
+
+
+class Watched:
+    """What pages did that none may do."""
+
+    def __init__(self) -> None:
+        self.faults: list[str] = []
+        self.forgiven: list[str] = []
+        """Pieces of console messages that a test expects, such as a refused connection while the server is down."""
+
+    def watch(self, page) -> None:
+        page.on("request", self._request)
+        page.on("console", lambda message: message.type == "error" and self._fault(f"console: {message.text}"))
+        page.on("response", lambda response: response.status >= 400 and self._fault(f"{response.status}: {response.url}"))
+        page.on("pageerror", lambda error: self._fault(f"exception: {error}"))
+
+    def _request(self, request) -> None:
+        parts = urlsplit(request.url)
+        if parts.scheme not in ("data", "blob", "about") and parts.hostname != "127.0.0.1":
+            self.faults.append(f"request that leaves this machine: {request.url}")
+
+    def _fault(self, text: str) -> None:
+        if not any(piece in text for piece in self.forgiven):
+            self.faults.append(text)
+
+
+@pytest.fixture
+def watched():
+    watched = Watched()
+    yield watched
+    assert watched.faults == []
+
+
+@pytest.fixture
+def open_page(browser, server, watched):
+    """Give what opens the page in a fresh window of its own and waits for the first answer."""
+    contexts = []
+
+    def start(address: str | None = None, *, width=1280, height=720, theme="light", wait=True):
+        context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme, accept_downloads=True)
+        context.set_default_timeout(1e3 * PATIENCE)
+        contexts.append(context)
+        page = context.new_page()
+        watched.watch(page)
+        page.goto(address or server.address)
+        if wait:
+            until(page, "window.coaxshell?.state.runs.current && window.coaxshell.state.runs.bare")
+        return page
+
+    yield start
+    for context in contexts:
+        context.close()
+
+
+@pytest.fixture
+def page(open_page):
+    return open_page()

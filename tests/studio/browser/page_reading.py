@@ -1,0 +1,66 @@
+"""What a page shows, as numbers, and the same numbers from the library."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+import coaxshell as cx
+
+PATIENCE = 90
+"""Seconds: a machine that does other things beside is slow, not wrong."""
+
+PREVIEW = {"duration": 5.0, "time_step": 4e-3, "modes": 60}
+
+RUN = """slot => {
+  const run = window.coaxshell.state.runs[slot];
+  const plain = ([name, array]) => [name, {values: Array.from(array.values), shape: array.shape}];
+  const arrays = Object.fromEntries(Object.entries(run.arrays).map(plain));
+  return {arrays, bars: run.bars, resolution: run.resolution, run: run.run};
+}"""
+
+
+def until(page, expression, argument=None):
+    """Wait until an expression of the page is true; asked from outside, because the page's own rules forbid it to evaluate text."""
+    end = time.monotonic() + PATIENCE
+    asked = expression if "=>" in expression else f"() => Boolean({expression})"  # a bare answer would be sent whole, arrays and all
+    while not page.evaluate(asked, argument):
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {PATIENCE} s: {expression}; the page says {page.locator('#state').inner_text()!r}")
+        page.wait_for_timeout(50)
+
+
+def run_of(page, slot="current"):
+    """Return arrays, bars, resolution and system of a run on the page."""
+    found = page.evaluate(RUN, slot)
+    found["arrays"] = {name: np.array(array["values"]).reshape(array["shape"]) for name, array in found["arrays"].items()}
+    return found
+
+
+def solved(system: cx.System, resolution=None) -> cx.Response:
+    """Return the library's own answer."""
+    settings = {name: value for name, value in (resolution or PREVIEW).items() if name in ("duration", "time_step", "modes", "refinement")}
+    return cx.simulate(system, **settings)
+
+
+def system_of(page) -> cx.System:
+    """Return the system that the page holds."""
+    return cx.System.model_validate(page.evaluate("window.coaxshell.state.system"))
+
+
+def rest(page):
+    """Wait until the page shows the answer to the newest wish."""
+    until(
+        page,
+        "() => { const {state} = window.coaxshell; const run = state.runs.current;"
+        " return run && JSON.stringify(run.system) === JSON.stringify(state.system); }",
+    )
+
+
+def shown_curves(page):
+    """Return {(name of the run, axis): y} of the curves drawn, as plotly holds them."""
+    found = page.evaluate(
+        "document.getElementById('curves').data.map(trace => [trace.name, trace.xaxis ?? 'x', Array.from(trace.y), Array.from(trace.x)])"
+    )
+    return [(name, axis, np.array(y, dtype=float), np.array(x, dtype=float)) for name, axis, y, x in found]

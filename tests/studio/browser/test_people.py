@@ -1,0 +1,58 @@
+"""Fit for people: no violation that axe-core finds, light and dark, every tab; keyboard; nothing wider than its window."""
+
+from __future__ import annotations
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from page_reading import until
+
+TABS = ("peaks", "wave", "energy", "studies")
+
+
+def violations(page):
+    found = Axe().run(page).response["violations"]
+    return [f"{one['id']}: {one['help']} ({', '.join(node['html'][:120] for node in one['nodes'][:3])})" for one in found]
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing_wrong(open_page, theme):
+    page = open_page(theme=theme)
+    for tab in TABS:
+        page.locator(f"#tab-{tab}").click()
+        assert violations(page) == [], f"{tab}, {theme}"
+    page.locator("#form details").evaluate_all("boxes => boxes.forEach(box => { box.open = true; })")
+    assert violations(page) == [], f"the whole form, {theme}"
+
+
+def test_axe_finds_nothing_wrong_with_a_problem_shown_on_a_phone(open_page):
+    page = open_page(width=390, height=844)
+    field = page.locator('input[type="text"][data-path="absorbers.mass"]')
+    field.fill("heavy")
+    field.press("Enter")
+    page.locator("#field-problem").wait_for()
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (390, 844)], ids=["desk", "phone"])
+def test_nothing_is_wider_than_the_window(open_page, size):
+    page = open_page(width=size[0], height=size[1])
+    for tab in TABS:
+        page.locator(f"#tab-{tab}").click()
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+
+
+def test_the_tabs_move_by_arrow_keys(page):
+    page.locator("#tab-peaks").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("document.activeElement.id") == "tab-wave"
+    page.keyboard.press("End")
+    assert page.evaluate("document.activeElement.id") == "tab-studies"
+
+
+def test_the_theme_can_be_switched_and_is_kept(page):
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    page.locator("#theme").click()
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    page.reload()
+    until(page, "window.coaxshell?.state.runs.current")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"

@@ -1,0 +1,114 @@
+"""The page solves what the library solves: on loading, on every change, and in full resolution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from page_reading import rest, run_of, shown_curves, solved, system_of, until
+
+import coaxshell as cx
+
+SINGLE = 2e-6
+"""Histories travel in single precision."""
+
+
+def assert_same_stress(page, response):
+    run = run_of(page)
+    for index, shell in enumerate(("inner", "outer")):
+        ours = np.asarray(response.stress(shell, angle=[0, 180])).T
+        assert_allclose(run["arrays"][f"stress/{index}"], ours, rtol=0, atol=SINGLE * np.abs(ours).max())
+    summary = response.summary()
+    values = {(bar["name"], bar["shell"]): bar["value"] for bar in run["bars"] if "shell" in bar and bar["shell"] is not None}
+    for index, shell in enumerate(summary.shells):
+        assert_allclose(values["stress", index], shell.stress.value, rtol=1e-9)
+        assert_allclose(values["stress_rms", index], shell.stress_rms, rtol=1e-9)
+
+
+def test_the_first_page_shows_the_library_s_hybrid_case(page):
+    assert system_of(page) == cx.presets.load("hybrid")
+    assert_same_stress(page, solved(cx.presets.load("hybrid")))
+    drawn = shown_curves(page)
+    assert {name for name, *_ in drawn} >= {"current", "bare"}
+    stress = run_of(page)["arrays"]["stress/0"][0]
+    shapes = [y / np.abs(y).max() for name, _, y, _ in drawn if name == "current"]
+    assert any(len(y) == len(stress) and np.allclose(y, stress / np.abs(stress).max(), atol=1e-5) for y in shapes)
+    assert page.locator("#peaks table").is_visible()
+
+
+def test_a_slider_changes_the_curves_to_the_library_s_numbers(page):
+    slider = page.locator('input[type="range"][data-path="absorbers.count"]')
+    slider.focus()
+    for _ in range(3):
+        slider.press("ArrowLeft")
+    rest(page)
+    system = system_of(page)
+    assert system.absorbers.count == 22
+    assert_same_stress(page, solved(system))
+    times = page.evaluate("window.coaxshell.times")
+    assert len(times) >= 2
+
+
+def test_a_typed_quantity_is_read_with_its_unit_and_can_be_undone(page):
+    field = page.locator('input[type="text"][data-path="source.peak_pressure"]')
+    page.locator('details[data-group="source"] > summary').click()
+    field.fill("50 kPa")
+    field.press("Enter")
+    until(page, "window.coaxshell.state.system.source.peak_pressure === 5e4")
+    rest(page)
+    assert_same_stress(page, solved(cx.presets.load("hybrid").with_overrides({"source.peak_pressure": "50 kPa"})))
+    page.locator("#undo").click()
+    until(page, "window.coaxshell.state.system.source.peak_pressure === 2.5e4")
+
+
+def test_bad_input_is_told_beside_its_field_in_the_library_s_words(page):
+    page.locator('details[data-group="absorbers"]').evaluate("box => { box.open = true; }")
+    field = page.locator('input[type="text"][data-path="absorbers.mass"]')
+    field.fill("-3 kg")
+    field.press("Enter")
+    message = page.locator("#field-problem")
+    message.wait_for()
+    with pytest.raises(cx.InputError) as told:
+        cx.presets.load("hybrid").with_overrides({"absorbers.mass": "-3 kg"})
+    assert told.value.problem in message.inner_text()
+    assert told.value.remedy in message.inner_text()
+    assert field.get_attribute("aria-invalid") == "true"
+    assert "Not solved" in page.locator("#state").inner_text()
+    field.fill("3 kg")
+    field.press("Enter")
+    until(page, "window.coaxshell.state.system.absorbers.mass === 3")
+    rest(page)
+    assert page.locator("#field-problem").count() == 0
+
+
+def test_full_resolution_follows_by_itself_and_can_be_cancelled(page):
+    field = page.locator('input[type="text"][data-path="absorbers.mass"]')
+    field.fill("7.3 kg")  # nobody has asked for this one before
+    field.press("Enter")
+    page.locator("#progress").wait_for()
+    page.locator("#cancel").click()
+    page.locator("#progress").wait_for(state="hidden")
+    page.locator("#refine").wait_for()
+    assert "Preview" in page.locator("#state").inner_text()
+    page.locator("#refine").click()
+    until(page, "window.coaxshell.state.runs.current.full")
+    run = run_of(page)
+    assert (run["resolution"]["modes"], run["resolution"]["time_step"]) == (150, 1e-3)
+    assert len(run["arrays"]["time"]) == 5001
+
+
+def test_a_pinned_run_stays_while_the_system_changes(page):
+    page.locator("#pin").click()
+    until(page, "window.coaxshell.state.runs.pinned")
+    before = run_of(page, "pinned")["arrays"]["stress/0"]
+    page.locator("#preset").select_option(label="active")
+    until(page, "window.coaxshell.state.system.name && window.coaxshell.state.system.absorbers.length === 0")
+    rest(page)
+    pinned, current = run_of(page, "pinned")["arrays"]["stress/0"], run_of(page)["arrays"]["stress/0"]
+    shared = min(pinned.shape[1], before.shape[1])
+    stride = (pinned.shape[1] - 1) // (shared - 1)
+    assert_allclose(pinned[:, ::stride], before, rtol=0, atol=0.05 * np.abs(before).max())
+    assert np.abs(current - before[:, : current.shape[1]]).max() > 0.1 * np.abs(before).max()
+    assert "pinned" in {name for name, *_ in shown_curves(page)}
+    page.locator("#pin").click()
+    until(page, "!window.coaxshell.state.runs.pinned")

@@ -1,0 +1,48 @@
+"""A sweep started from the page comes to the library's numbers; one that runs can be cancelled; a bad one is told."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.testing import assert_allclose
+from page_reading import PREVIEW, until
+
+import coaxshell as cx
+
+ENTRIES = (
+    "entries => { const f = document.getElementById('sweep').elements; for (const [k, v] of Object.entries(entries)) f[k].value = v; }"
+)
+
+
+def start(page, **entries):
+    page.locator("#tab-studies").click()
+    page.locator("#sweep").wait_for()
+    page.evaluate(ENTRIES, {name.rstrip("_"): str(value) for name, value in entries.items()})
+    page.locator("#sweep button.main").click()
+
+
+def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(page):
+    page.locator("#preset").select_option(label="absorbers")
+    until(page, "window.coaxshell.state.system.control === null")
+    start(page, path="absorbers.count", from_=10, to=14, count=3, scale="linear", metric="inner.peak_stress")
+    until(page, "document.getElementById('study-plot')?.data?.length")
+    shown = np.array(page.evaluate("Array.from(document.getElementById('study-plot').data[0].y)"), dtype=float)
+    ours = cx.sweep(
+        cx.presets.load("absorbers"), over={"absorbers.count": [10, 12, 14]}, metrics=["inner.peak_stress"], workers=1, **PREVIEW
+    )
+    values = np.asarray(ours["inner.peak_stress"], dtype=float)
+    assert_allclose(shown / shown[0], values / values[0], rtol=1e-6)
+    with page.expect_download() as saved:
+        page.locator('#study-jobs a[href$="/file"]').first.click()
+    assert saved.value.failure() is None
+
+
+def test_a_sweep_can_be_cancelled(page):
+    start(page, path="absorbers.mass", from_=1, to=100, count=200, scale="linear", metric="inner.peak_stress")
+    page.locator("#study-jobs").get_by_role("button", name="Cancel").first.click()
+    page.locator('#study-jobs [data-state="cancelled"]').wait_for()
+
+
+def test_an_impossible_sweep_is_told_in_words(page):
+    start(page, path="absorbers.mass", from_=-5, to=10, count=3, scale="log", metric="inner.peak_stress")
+    page.locator("#sweep-problem").wait_for()
+    assert page.locator("#sweep-problem").inner_text()

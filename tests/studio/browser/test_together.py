@@ -1,0 +1,74 @@
+"""Two tabs at once, a server that ends and comes back, links, files."""
+
+from __future__ import annotations
+
+import pytest
+from numpy.testing import assert_allclose
+from page_reading import rest, run_of, solved, system_of, until
+
+import coaxshell as cx
+
+
+def test_two_tabs_do_not_disturb_each_other(open_page):
+    first, second = open_page(), open_page()
+    second.locator("#preset").select_option(label="absorbers")
+    first.locator("#preset").select_option(label="active")
+    for page, name in ((first, "active"), (second, "absorbers")):
+        until(page, "name => window.coaxshell.state.system.name === name", cx.presets.load(name).name)
+        rest(page)
+        assert system_of(page) == cx.presets.load(name)
+        value = next(bar["value"] for bar in run_of(page)["bars"] if bar["name"] == "stress" and bar["shell"] == 0)
+        assert_allclose(value, solved(cx.presets.load(name), run_of(page)["resolution"]).summary().shells[0].stress.value, rtol=1e-9)
+
+
+def test_the_page_outlives_a_restart_of_the_server(own_server, open_page, watched, free_port):
+    watched.forgiven += ["ERR_CONNECTION_REFUSED", "ERR_INCOMPLETE_CHUNKED_ENCODING", "ERR_CONNECTION_RESET", "ERR_EMPTY_RESPONSE"]
+    server = own_server(free_port)
+    page = open_page(server.address)
+    server.stop()
+    page.get_by_text("does not answer").first.wait_for()
+    own_server(free_port)
+    until(page, "!document.getElementById('state').textContent.includes('does not answer')")
+    page.locator("#preset").select_option(label="absorbers")
+    until(page, "window.coaxshell.state.system.control === null")
+    rest(page)
+    assert run_of(page)["arrays"]["time"].size > 1000
+
+
+def test_a_link_holds_the_whole_system(page, open_page):
+    page.locator("#preset").select_option(label="absorbers")
+    until(page, "window.coaxshell.state.system.control === null")
+    until(page, "location.hash.startsWith('#s=')")
+    page.wait_for_timeout(800)  # the address follows half a second behind
+    again = open_page(page.url)
+    assert system_of(again) == cx.presets.load("absorbers")
+
+
+@pytest.mark.parametrize("ending", ["toml", "nc"])
+def test_a_file_comes_in_and_goes_out_again(page, tmp_path, ending):
+    mine = cx.presets.load("bare").with_overrides({"source.peak_pressure": 1.5e5}).replace(name="mine")
+    path = tmp_path / f"mine.{ending}"
+    if ending == "toml":
+        mine.to_toml(path)
+    else:
+        cx.simulate(mine, duration=1.0, time_step=0.02, modes=8).save(path)
+    page.locator("#file").set_input_files(path)
+    until(page, "window.coaxshell.state.system.name === 'mine'")
+    rest(page)
+    assert system_of(page) == mine
+    page.locator("#download > button").click()
+    with page.expect_download() as started:
+        page.locator(f'#download-list a[href*="download.{ending}"]').click()
+    saved = tmp_path / f"back.{ending}"
+    started.value.save_as(saved)
+    back = cx.System.from_toml(saved) if ending == "toml" else cx.load_response(saved).system
+    assert back == mine
+
+
+def test_a_file_that_is_no_scenario_is_refused_in_words(page, tmp_path):
+    path = tmp_path / "broken.toml"
+    path.write_text("shells = 3\n")
+    page.locator("#file").set_input_files(path)
+    until(page, "!document.getElementById('toast').hidden")
+    assert "shells" in page.locator("#toast").inner_text()
+    assert system_of(page) == cx.presets.load("hybrid")
