@@ -51,7 +51,7 @@ if TYPE_CHECKING:
         presets,
     )
     from coaxshell.response import PreparedSystem, Response, load_response, prepare, simulate
-    from coaxshell.studies import sweep
+    from coaxshell.studies import Choice, Integer, Objective, Optimum, Range, optimise, sweep
 
 _ROOMS = {
     "coaxshell.model": (
@@ -60,7 +60,7 @@ _ROOMS = {
         "Vacuum absorber_ring fluids materials presets"
     ),
     "coaxshell.response": "PreparedSystem Response load_response prepare simulate",
-    "coaxshell.studies": "sweep",
+    "coaxshell.studies": "Choice Integer Objective Optimum Range optimise sweep",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 
@@ -69,21 +69,26 @@ __all__ = [
     "VACUUM",
     "Absorber",
     "AbsorberRing",
+    "Choice",
     "Elastic",
     "Explosive",
     "Exponential",
     "Fluid",
     "Gaussian",
     "InputError",
+    "Integer",
     "Layer",
     "LineShock",
     "LineWave",
+    "Objective",
+    "Optimum",
     "PDControl",
     "PhysicsWarning",
     "Piezoelectric",
     "PlaneShock",
     "PlaneWave",
     "PreparedSystem",
+    "Range",
     "Response",
     "RigidShell",
     "Sampled",
@@ -99,6 +104,7 @@ __all__ = [
     "fluids",
     "load_response",
     "materials",
+    "optimise",
     "prepare",
     "presets",
     "simulate",

@@ -13,6 +13,7 @@ from coaxshell.cli.export import export
 from coaxshell.cli.figure import figure
 from coaxshell.cli.info import info
 from coaxshell.cli.init import init
+from coaxshell.cli.optimise import optimise
 from coaxshell.cli.presets import presets
 from coaxshell.cli.reproduce import reproduce
 from coaxshell.cli.response_function import response_function
@@ -51,5 +52,20 @@ def coaxshell(
         typer.echo(context.get_help())
 
 
-for _command in (run, presets, init, info, figure, reproduce, snapshots, animate, export, sweep, verify, response_function, studio):
+for _command in (
+    run,
+    presets,
+    init,
+    info,
+    figure,
+    reproduce,
+    snapshots,
+    animate,
+    export,
+    sweep,
+    optimise,
+    verify,
+    response_function,
+    studio,
+):
     app.command()(_command)

@@ -28,6 +28,14 @@ def writable(path: Path, option: str, suffixes: Sequence[str]) -> Path:
     return path
 
 
+def new_folder(path: Path, option: str, mark: str) -> Path:
+    """Return *path* if a result can be written there as a folder: new, empty, or an earlier result with a file *mark* in it."""
+    if path.exists() and not (path / mark).is_file() and (not path.is_dir() or any(path.iterdir())):
+        raise InputError(option, f"{str(path)!r} holds something else than a result", "give a new or an empty folder")
+    writable(path.with_name(f"{path.name}.toml"), option, (".toml",))
+    return path
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary name beside *path*; rename it to *path* at the end, or remove it when something goes wrong."""

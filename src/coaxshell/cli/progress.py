@@ -47,12 +47,13 @@ def _lines(left: bool) -> Report:
     begun: dict[str, tuple[float, float]] = {}
 
     def report(fraction: float, stage: str) -> None:
-        begun.setdefault(stage, (time.monotonic(), fraction))
+        name, _, news = stage.partition(": ")  # the news beside a stage's name changes while it lasts
+        begun.setdefault(name, (time.monotonic(), fraction))
         tenth = int(min(max(fraction, 0.0), 1.0) * _LINES + 1e-9)
-        if tenth > last.get(stage, 0):
-            last[stage] = tenth
-            told = f", {_time_left(*begun[stage], fraction)} left" if left and fraction > begun[stage][1] else ""
-            sys.stderr.write(f"{stage}: {100 * tenth // _LINES} %{told}\n")
+        if tenth > last.get(name, 0):
+            last[name] = tenth
+            told = f", {_time_left(*begun[name], fraction)} left" if left and fraction > begun[name][1] else ""
+            sys.stderr.write(f"{name}: {100 * tenth // _LINES} %{told}{f', {news}' if news else ''}\n")
             sys.stderr.flush()
 
     return report

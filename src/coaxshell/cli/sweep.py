@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
-from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.executor import chosen_executor
 from coaxshell.cli.files import replacing, writable
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.progress import progress
-from coaxshell.cli.values import whole
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -53,9 +52,7 @@ def sweep(
         from coaxshell.plotting import FIGURE_SUFFIXES
 
         writable(figure, "--figure", FIGURE_SUFFIXES)
-    number = None if workers is None else whole("--workers", workers)
-    if number is not None and dask is not None:
-        raise InputError("--workers", "has no effect with --dask, whose cluster has its own", "give one or the other")
+    number = options.worker_number(workers, dask)
 
     from coaxshell.studies import SweepStudy, read_study, sweep_design
 
@@ -63,7 +60,7 @@ def sweep(
     if figure is not None and len(design.fields) > 2:
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")
-    with _kept(folder, len(design.cases)), _executor(dask) as executor, progress(quiet, left=True) as report:
+    with _kept(folder, len(design.cases)), chosen_executor(dask) as executor, progress(quiet, left=True) as report:
         dataset = sweep_design(
             system, design, metrics, resolution, executor=executor, workers=number, store=folder, resume=resume, progress=report
         )
@@ -71,17 +68,6 @@ def sweep(
     if store is None:
         shutil.rmtree(folder, ignore_errors=True)
     _tell(dataset, target, csv, figure)
-
-
-@contextmanager
-def _executor(address: str | None) -> Iterator[Executor | None]:
-    if address is None:
-        yield None
-        return
-    from coaxshell.studies import dask_executor
-
-    with dask_executor(address) as executor:
-        yield executor
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from coaxshell.plotting.film_files import FILM_SUFFIXES
 from coaxshell.plotting.frames import FieldView
 from coaxshell.plotting.histories import QUANTITIES, PlottedQuantity, mark_peak, plot_history
 from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
+from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_front, plot_parallel
 from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
@@ -35,15 +36,19 @@ __all__ = [
     "figure_comparison",
     "figure_energy",
     "figure_named_curves",
+    "figure_optimum",
     "figure_pressure_rms",
     "figure_snapshots",
     "figure_sweep",
     "mark_peak",
     "plot_comparison",
+    "plot_convergence",
     "plot_energy",
     "plot_field",
+    "plot_front",
     "plot_history",
     "plot_named_curves",
+    "plot_parallel",
     "plot_sweep",
     "save_figure",
     "save_film",

@@ -19,7 +19,7 @@ from coaxshell.model.layers import Shell
 from coaxshell.model.naming import suggestion
 from coaxshell.model.system import System
 from coaxshell.response import Response
-from coaxshell.studies.reading import Reading
+from coaxshell.studies.reading import DesignReading, Reading
 from coaxshell.studies.user_functions import UserFunction, from_callable, from_text
 
 MetricLike = str | Callable[[Response], float]
@@ -53,6 +53,7 @@ FLUID_QUANTITIES = {"rms_pressure": Quantity("Pa", "RMS pressure over area and t
 ABSORBER_QUANTITIES = {
     "absorber_count": Quantity("1", "number of absorbers"),
     "absorber_mass": Quantity("kg/m", "mass added by the absorbers"),
+    "absorber_spacing": Quantity("m", "smallest distance between neighbouring absorbers"),
     "absorber_displacement": Quantity("m", "largest displacement of an absorber's mass"),
     "absorber_force": Quantity("N/m", "largest force of an absorber on a shell"),
     "dissipated_energy": Quantity("J/m", "energy dissipated in the absorbers' dampers"),
@@ -65,6 +66,7 @@ WITHOUT_SHELL = {
     "absorbers": {
         "count": "absorber_count",
         "mass": "absorber_mass",
+        "spacing": "absorber_spacing",
         "peak_displacement": "absorber_displacement",
         "peak_force": "absorber_force",
         "dissipated_energy": "dissipated_energy",
@@ -99,9 +101,15 @@ class Metric:
     quantity: str = ""
     function: UserFunction | None = None
 
-    def __call__(self, reading: Reading) -> float:
+    @property
+    def of_design(self) -> bool:
+        """Whether it is read from the system alone, without a run."""
+        return self.function is None and hasattr(DesignReading, self.quantity)
+
+    def __call__(self, reading: DesignReading) -> float:
         """Return its value; InputError if a function of the user's fails or gives no finite number."""
         if self.function is not None:
+            assert isinstance(reading, Reading)
             return self.function(reading.response, self.name)
         found = getattr(reading, self.quantity)
         value = float(found(self.place) if callable(found) else found)

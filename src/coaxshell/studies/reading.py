@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,7 +19,49 @@ from coaxshell.response.synthesis import circle_angles
 from coaxshell.response.voltages import actuator_limit, demanded_voltage
 
 
-class Reading:
+class DesignReading:
+    """What metrics take from a system alone, without a run; SI, absorbers and shells per metre of length.
+
+    Parameters
+    ----------
+    system : System
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+
+    def mass(self, shell: int) -> float:
+        """Return the mass of a shell, kg/m."""
+        return shell_mass(self._wall(shell))
+
+    def _wall(self, shell: int) -> Shell:
+        wall = self.system.shells[shell]
+        assert isinstance(wall, Shell)  # metrics refuse rigid shells before the run
+        return wall
+
+    @cached_property
+    def absorber_count(self) -> float:
+        """How many absorbers there are."""
+        return float(len(self.system.absorber_list))
+
+    @cached_property
+    def absorber_mass(self) -> float:
+        """Mass of all absorbers, kg/m."""
+        return absorber_mass(self.system)
+
+    @cached_property
+    def absorber_spacing(self) -> float:
+        """Smallest distance between neighbouring absorbers of one gap along the inner of the two shells they link, m."""
+        return absorber_spacing(self.system)
+
+    @cached_property
+    def total_mass(self) -> float:
+        """Mass of all shells and absorbers, kg/m."""
+        shells = sum(shell_mass(wall) for wall in self.system.shells if isinstance(wall, Shell))
+        return shells + self.absorber_mass
+
+
+class Reading(DesignReading):
     """What metrics take from one response; SI throughout, absorbers and shells per metre of length.
 
     Parameters
@@ -27,9 +70,9 @@ class Reading:
     """
 
     def __init__(self, response: Response) -> None:
+        super().__init__(response.system)
         self.response = response
         self.solution = response.solution
-        self.system = response.system
         self._whole = slice(0, self.solution.time.size)
         self._width = len(circle_angles(self.solution.normal.shape[2], self.solution.normal.shape[1]))
         self._head = self.system.sources[0].angle
@@ -101,30 +144,11 @@ class Reading:
         """Return the estimate of what the orders above M would add to the stress, relative."""
         return float(self.solution.estimates.modal_stress[shell])
 
-    def mass(self, shell: int) -> float:
-        """Return the mass of a shell, kg/m."""
-        return shell_mass(self._wall(shell))
-
-    def _wall(self, shell: int) -> Shell:
-        wall = self.system.shells[shell]
-        assert isinstance(wall, Shell)  # metrics refuse rigid shells before the run
-        return wall
-
     def rms_pressure(self, region: str | int) -> float:
         """Return the root mean square of the total pressure over a fluid region and time, Pa; the exterior up to 3 a."""
         history = self.response.pressure_rms(region)
         time, values = history["time"].to_numpy(), history.to_numpy()
         return math.sqrt(float(np.trapezoid(values**2, time)) / float(time[-1] - time[0]))
-
-    @cached_property
-    def absorber_count(self) -> float:
-        """How many absorbers there are."""
-        return float(len(self.system.absorber_list))
-
-    @cached_property
-    def absorber_mass(self) -> float:
-        """Mass of all absorbers, kg/m."""
-        return absorber_mass(self.system)
 
     @cached_property
     def absorber_displacement(self) -> float:
@@ -147,12 +171,6 @@ class Reading:
         return float(absorber_energy(last).dissipated[-1]) * self.solution.problem.scales.line_energy
 
     @cached_property
-    def total_mass(self) -> float:
-        """Mass of all shells and absorbers, kg/m."""
-        shells = sum(shell_mass(wall) for wall in self.system.shells if isinstance(wall, Shell))
-        return shells + self.absorber_mass
-
-    @cached_property
     def time_window_error(self) -> float:
         """Estimate of the error of the inverse transform, relative."""
         return float(self.solution.estimates.time_window)
@@ -171,3 +189,16 @@ def shell_mass(shell: Shell) -> float:
 def absorber_mass(system: System) -> float:
     """Return the mass of all absorbers of a system per metre of length, kg/m."""
     return float(sum(absorber.mass for absorber in system.absorber_list))
+
+
+def absorber_spacing(system: System) -> float:
+    """Return the smallest distance between neighbouring absorbers of one gap, m: the arc along the inner of the shells they link.
+
+    A gap's whole circumference where it has a single absorber, that of the outermost shell where there are none.
+    """
+    spacings = [math.tau * system.reference_radius]
+    for i in {absorber.inner_shell for absorber in system.absorber_list}:
+        angles = sorted(absorber.angle % 360.0 for absorber in system.absorber_list if absorber.inner_shell == i)
+        steps = [after - before for before, after in pairwise([*angles, angles[0] + 360.0])]
+        spacings.append(math.radians(min(steps)) * system.shells[i].radius)
+    return min(spacings)

@@ -24,6 +24,7 @@ def run_cases(
     executor: Executor | None = None,
     workers: int | None = None,
     store: Store | None = None,
+    keep: bool = False,
     progress: Report | None = None,
 ) -> list[Outcome]:
     """Return the outcome of every case, in order.
@@ -38,6 +39,8 @@ def run_cases(
         Processes of a pool of our own, one a core by default; 1 works in this process.
     store : Store, optional
         Where finished cases are kept, and looked for first.
+    keep : bool
+        Leave the last structure's kernels in this process for the next call; :func:`coaxshell.studies.evaluation.forget` ends that.
     progress : callable, optional
         Called with the fraction of cases done and a word.
 
@@ -74,7 +77,8 @@ def run_cases(
                     store.save(keys[case.number], outcome)
             report(len(outcomes) / len(systems), "cases")
     finally:
-        forget()
+        if not keep:
+            forget()
     return [outcomes[number] for number in range(len(systems))]
 
 

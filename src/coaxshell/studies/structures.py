@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from coaxshell.model.system import System
 from coaxshell.response import PreparedSystem, Response, prepare, simulate
@@ -40,10 +41,16 @@ class Structures:
             return simulate(system, **settings)
         structure = structure_of(system)
         if self._prepared is None or self._structure != structure:
-            del settings["engine"]
-            self._prepared = None  # let go of the old kernels before new ones are made
-            self._prepared, self._structure = prepare(structure, **settings), structure
+            self._prepared, self._structure = self._made(structure, settings), structure
         return self._prepared.simulate(system.absorbers)
+
+    def _made(self, structure: System, settings: dict[str, Any]) -> PreparedSystem:
+        """Return a prepared structure: the last one retuned, which shares what the two have in common and gives the same numbers."""
+        if self._prepared is not None and self.resolution.modes != "auto":  # retuning keeps the number of modes
+            return self._prepared.retuned(structure)
+        del settings["engine"]
+        self._prepared = None  # let go of the old kernels before new ones are made
+        return prepare(structure, **settings)
 
 
 def solve_each(systems: Mapping[str, System], resolution: Resolution, progress: Report | None = None) -> Iterator[tuple[str, Response]]:

@@ -1,0 +1,73 @@
+"""``coaxshell optimise``: a study file, searched for its best system."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coaxshell.cli import options
+from coaxshell.cli.executor import chosen_executor
+from coaxshell.cli.files import new_folder, writable
+from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.progress import progress
+
+
+def optimise(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what may change, what to make small: see docs/optimisation.md.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="DIR", help="Folder for best.toml, optimum.json, history.csv. [default: STUDY.optimum in this folder]"
+        ),
+    ] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option("--figure", metavar="FILE", help="Draw convergence and front, or the best against the baseline; .png, .pdf or .svg."),
+    ] = None,
+    journal: Annotated[
+        Path | None,
+        typer.Option(
+            "--journal", metavar="DIR", help="Keep every evaluation here. [default: STUDY.journal in this folder, removed when all is done]"
+        ),
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with what the journal holds.")] = False,
+    workers: options.WorkersOption = None,
+    dask: options.DaskOption = None,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Search for the best system within some ranges.
+
+    Interrupted, by Ctrl-C or anything else, it goes on with --resume and ends as if it had not been.
+    """
+    target = new_folder(output or Path(f"{study.stem}.optimum"), "--output", "optimum.json")
+    if figure is not None:
+        from coaxshell.plotting import FIGURE_SUFFIXES
+
+        writable(figure, "--figure", FIGURE_SUFFIXES)
+    number = options.worker_number(workers, dask)
+
+    from coaxshell.studies import OptimisationStudy, optimise_problem, read_study
+
+    problem = read_study(study, OptimisationStudy).problem(study.parent)
+    folder = journal or Path(f"{study.stem}.journal")
+    with chosen_executor(dask) as executor, progress(quiet, left=True) as report:
+        optimum = optimise_problem(problem, executor=executor, workers=number, journal=folder, resume=resume, progress=report)
+    optimum.save(target)
+    if figure is not None:
+        from coaxshell.plotting import figure_optimum, save_figure
+
+        save_figure(figure_optimum(optimum), figure)
+    typer.echo(str(optimum))
+    typer.echo(f"wrote {target}" + (f", {figure}" if figure is not None else ""))
+    if not optimum.complete:
+        done = len(optimum.history)
+        raise Interrupted(
+            f"interrupted after {done} of {problem.evaluations} evaluations; the best so far is in {str(target)!r}: go on with --resume"
+        )
+    if journal is None:
+        shutil.rmtree(folder, ignore_errors=True)

@@ -1,0 +1,1 @@
+"""Search for the best system: variables, objectives and constraints, methods, the answer."""

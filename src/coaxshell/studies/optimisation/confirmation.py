@@ -1,0 +1,68 @@
+"""Baseline and best of an optimisation again, at finer resolutions than that of its search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.model.base import within
+from coaxshell.model.system import System
+from coaxshell.studies.optimisation.search import Crew
+from coaxshell.studies.optimisation.targets import Targets
+from coaxshell.studies.resolution import Resolution
+
+Scenarios = Callable[[System], Any]
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """Targets of two systems at one resolution, by name; empty for a system whose run was refused there."""
+
+    resolution: Resolution
+    baseline: dict[str, float]
+    best: dict[str, float]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return {"resolution": self.resolution.arguments(), "baseline": self.baseline, "best": self.best}
+
+
+def finer(resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Resolution, ...]:
+    """Return the resolutions of a confirmation: that of the search with some settings changed, and the same at half the time step.
+
+    Raises
+    ------
+    InputError
+        A setting is unknown or not allowed.
+    """
+    if not confirm:
+        return ()
+    allowed = resolution.arguments()
+    for name in confirm:
+        if name not in allowed:
+            raise InputError(f"confirm.{name}", "is not a setting of a run", f"allowed: {', '.join(allowed)}")
+    fine = replace(resolution, **confirm)
+    try:
+        fine.check()
+    except InputError as error:
+        raise within("confirm", error) from None
+    return fine, replace(fine, time_step=fine.time_step / 2)
+
+
+def confirmed(
+    baseline: System, best: System, resolutions: tuple[Resolution, ...], targets: Targets, scenarios: Scenarios, crew: Crew
+) -> tuple[Confirmation, ...]:
+    """Return both systems' targets at each resolution."""
+    found = []
+    for resolution in resolutions:
+        told = []
+        for system in (baseline, best):
+            outcomes = crew.run(list(scenarios(system)), targets, resolution, None)
+            failed = any(outcome.failed for outcome in outcomes)
+            told.append({} if failed else targets.values(np.array([outcome.values for outcome in outcomes], dtype=np.float64)))
+        found.append(Confirmation(resolution, told[0], told[1]))
+    return tuple(found)

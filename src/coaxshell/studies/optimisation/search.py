@@ -1,0 +1,210 @@
+"""The evaluations of an optimisation: generations of designs, each evaluated once, kept in a store and counted against a budget."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.model.system import System
+from coaxshell.studies.evaluation import Outcome, forget
+from coaxshell.studies.executors import process_pool, worker_count
+from coaxshell.studies.optimisation.targets import FAILED, UNSOLVED, Targets
+from coaxshell.studies.optimisation.variables import Space
+from coaxshell.studies.reading import DesignReading
+from coaxshell.studies.resolution import Resolution
+from coaxshell.studies.running import run_cases
+from coaxshell.studies.store import Store
+
+FloatArray = npt.NDArray[np.float64]
+Scenarios = Callable[[System], Sequence[System | InputError]]
+"""From a design to itself and, after it, its samples under uncertain properties."""
+
+
+class EnoughError(Exception):
+    """All evaluations asked for are made."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One evaluated design.
+
+    Attributes
+    ----------
+    number : int
+        From 0, in the order in which the method asked.
+    generation : int
+    values : tuple
+        Of the variables.
+    targets : dict of str to float
+        Objectives and constrained metrics by name; those that were not computed are missing.
+    objectives : tuple of float
+        What is made small; NaN if not computed.
+    violation : float
+        0 for a feasible design.
+    reason : str
+        Why there are no values, or which limits kept it from being run; "" otherwise.
+    """
+
+    number: int
+    generation: int
+    values: tuple[Any, ...]
+    targets: dict[str, float]
+    objectives: tuple[float, ...]
+    violation: float
+    reason: str = ""
+
+    @property
+    def feasible(self) -> bool:
+        """Whether it keeps all limits."""
+        return self.violation == 0.0
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Order among the designs of a study of one objective: by violation, then by objective."""
+        return self.violation, self.objectives[0] if self.feasible else 0.0
+
+
+class Crew:
+    """Workers that stay from generation to generation; a pool that breaks is replaced.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor, optional
+    workers : int, optional
+        As for :func:`coaxshell.studies.running.run_cases`.
+    """
+
+    def __init__(self, executor: Executor | None, workers: int | None) -> None:
+        self._given, self._workers = executor, worker_count(workers)
+        self._stack = ExitStack()
+        self._pool: Executor | None = None
+
+    def __enter__(self) -> Crew:
+        return self
+
+    def __exit__(self, *unused: object) -> None:
+        self._stack.close()
+        forget()
+
+    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Resolution, store: Store | None) -> list[Outcome]:
+        """Return the outcome of each system, in order."""
+        if self._given is None and self._pool is None and self._workers > 1:
+            self._pool = self._stack.enter_context(process_pool(self._workers))
+        pool = self._given or self._pool
+        outcomes = run_cases(systems, targets.metrics, resolution, executor=pool, workers=self._workers, store=store, keep=True)
+        lost = [k for k, outcome in enumerate(outcomes) if outcome.reason.startswith("WorkerDiedError")]
+        if lost and self._given is None:
+            self._stack.close()
+            self._pool = None
+            again = run_cases([systems[k] for k in lost], targets.metrics, resolution, workers=self._workers, store=store, keep=True)
+            for k, outcome in zip(lost, again, strict=True):
+                outcomes[k] = outcome
+        return outcomes
+
+
+class Evaluations:
+    """Evaluate points of the unit cube, generation by generation, until the budget is spent.
+
+    Parameters
+    ----------
+    space, targets, scenarios, resolution
+        The problem.
+    crew : Crew
+    budget : int
+    store : Store, optional
+    told : callable
+        Called with all candidates after every generation.
+    """
+
+    def __init__(
+        self,
+        space: Space,
+        targets: Targets,
+        scenarios: Scenarios,
+        resolution: Resolution,
+        crew: Crew,
+        budget: int,
+        store: Store | None,
+        told: Callable[[list[Candidate]], None],
+    ) -> None:
+        self.space, self.targets, self.scenarios, self.resolution = space, targets, scenarios, resolution
+        self.crew, self.budget, self.store, self.told = crew, budget, store, told
+        self.candidates: list[Candidate] = []
+        self._known: dict[tuple[Any, ...], Candidate] = {}
+        self._generation = 0
+
+    def __call__(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return objectives (K, objectives) and violations (K,) of a generation; EnoughError when the budget is spent with it."""
+        asked = [self.space.values(point) for point in points[: self.budget - len(self.candidates)]]
+        fresh = list(dict.fromkeys(values for values in asked if values not in self._known))
+        for values, (targets, reason) in zip(fresh, self._evaluated([self.space.system(values) for values in fresh]), strict=True):
+            self._known[values] = self._judged(values, targets, reason)
+        for values in asked:
+            first = self._known[values]
+            self.candidates.append(
+                Candidate(len(self.candidates), self._generation, values, first.targets, first.objectives, first.violation, first.reason)
+            )
+        self._generation += 1
+        self.told(self.candidates)
+        if len(self.candidates) >= self.budget:
+            raise EnoughError
+        latest = self.candidates[-len(asked) :]
+        return np.array([one.objectives for one in latest]), np.array([one.violation for one in latest])
+
+    def baseline(self) -> Candidate:
+        """Return the base system, run whether it keeps the limits or not, and outside the count."""
+        ((targets, reason),) = self._evaluated([self.space.base], refuse=False)
+        return self._judged(self.space.present(), targets, reason)
+
+    def _evaluated(self, systems: Sequence[System | InputError], refuse: bool = True) -> list[tuple[dict[str, float], str]]:
+        """Return the targets of each design (what could be computed) and the reason if that is not all."""
+        found: list[tuple[dict[str, float], str] | None] = [self._of_design(system) if refuse else None for system in systems]
+        waiting = [(k, system) for k, system in enumerate(systems) if found[k] is None and isinstance(system, System)]
+        samples = [list(self.scenarios(system)) for _, system in waiting]
+        flat = [one for several in samples for one in several]
+        outcomes = iter(self.crew.run(flat, self.targets, self.resolution, self.store) if flat else ())
+        for (k, _), several in zip(waiting, samples, strict=True):
+            mine = [next(outcomes) for _ in several]
+            failed = next((outcome for outcome in mine if outcome.failed), None)
+            if failed is not None:
+                found[k] = ({}, failed.reason)
+            else:
+                found[k] = (self.targets.values(np.array([outcome.values for outcome in mine], dtype=np.float64)), "")
+        return [one for one in found if one is not None]
+
+    def _of_design(self, system: System | InputError) -> tuple[dict[str, float], str] | None:
+        """Return the broken limits of a design that needs no run to be refused; None if it has to be run."""
+        if isinstance(system, InputError):
+            return {}, str(system)
+        reading = DesignReading(system)
+        limits = [limit for limit in self.targets.limits if limit.target.metric.of_design and not limit.target.statistic]
+        values = {limit.target.name: limit.target.metric(reading) for limit in limits}
+        broken = [limit.text for limit in limits if limit.excess(values[limit.target.name]) > 0]
+        return (values, f"not run: breaks {' and '.join(broken)}") if broken else None
+
+    def _judged(self, values: tuple[Any, ...], targets: dict[str, float], reason: str) -> Candidate:
+        violation = self.targets.violation(targets)
+        if reason:
+            violation += UNSOLVED if targets else FAILED
+            objectives: tuple[float, ...] = (float("nan"),) * len(self.targets.goals)
+        else:
+            objectives = self.targets.objectives(targets)
+        return Candidate(-1, -1, values, targets, objectives, violation, reason)
+
+
+def non_dominated(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return the feasible designs that no other one beats in every objective, equal ones once, by their first objective."""
+    found: list[Candidate] = []
+    values = np.empty((0, 0))
+    for one in sorted((c for c in candidates if c.feasible), key=lambda c: (*c.objectives, c.number)):
+        if not found or not (values <= one.objectives).all(axis=1).any():
+            found.append(one)
+            values = np.vstack([values, one.objectives]) if len(found) > 1 else np.array([one.objectives])
+    return found
