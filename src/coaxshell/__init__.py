@@ -51,7 +51,20 @@ if TYPE_CHECKING:
         presets,
     )
     from coaxshell.response import PreparedSystem, Response, load_response, prepare, simulate
-    from coaxshell.studies import Choice, Integer, Objective, Optimum, Range, optimise, sweep
+    from coaxshell.studies import (
+        Choice,
+        Integer,
+        LogNormal,
+        Normal,
+        Objective,
+        Optimum,
+        Range,
+        Uniform,
+        optimise,
+        robustness,
+        sensitivity,
+        sweep,
+    )
 
 _ROOMS = {
     "coaxshell.model": (
@@ -60,7 +73,7 @@ _ROOMS = {
         "Vacuum absorber_ring fluids materials presets"
     ),
     "coaxshell.response": "PreparedSystem Response load_response prepare simulate",
-    "coaxshell.studies": "Choice Integer Objective Optimum Range optimise sweep",
+    "coaxshell.studies": "Choice Integer LogNormal Normal Objective Optimum Range Uniform optimise robustness sensitivity sweep",
 }
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 
@@ -80,6 +93,8 @@ __all__ = [
     "Layer",
     "LineShock",
     "LineWave",
+    "LogNormal",
+    "Normal",
     "Objective",
     "Optimum",
     "PDControl",
@@ -98,6 +113,7 @@ __all__ = [
     "Step",
     "System",
     "UnderwaterExplosion",
+    "Uniform",
     "Vacuum",
     "__version__",
     "absorber_ring",
@@ -107,6 +123,8 @@ __all__ = [
     "optimise",
     "prepare",
     "presets",
+    "robustness",
+    "sensitivity",
     "simulate",
     "sweep",
 ]

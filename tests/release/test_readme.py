@@ -30,7 +30,7 @@ SMALLER = {
     "verify --against": ["--modes", "8", "--quiet"],
 }
 # These wait for a browser or take minutes: that they take the options shown is all that is asked here.
-ONLY_PARSED = {"studio", "reproduce", "sweep", "optimise"}
+ONLY_PARSED = {"studio", "reproduce", "sweep", "optimise", "sensitivity"}
 
 
 def blocks(language: str) -> list[str]:

@@ -18,6 +18,7 @@ from coaxshell.cli.presets import presets
 from coaxshell.cli.reproduce import reproduce
 from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
+from coaxshell.cli.sensitivity import sensitivity
 from coaxshell.cli.snapshots import snapshots
 from coaxshell.cli.studio import studio
 from coaxshell.cli.sweep import sweep
@@ -64,6 +65,7 @@ for _command in (
     export,
     sweep,
     optimise,
+    sensitivity,
     verify,
     response_function,
     studio,

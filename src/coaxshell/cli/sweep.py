@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.executor import chosen_executor
 from coaxshell.cli.files import replacing, writable
-from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.interruption import kept
 from coaxshell.cli.progress import progress
 from coaxshell.errors import InputError
 
@@ -60,7 +58,7 @@ def sweep(
     if figure is not None and len(design.fields) > 2:
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")
-    with _kept(folder, len(design.cases)), chosen_executor(dask) as executor, progress(quiet, left=True) as report:
+    with kept(folder, len(design.cases)), chosen_executor(dask) as executor, progress(quiet, left=True) as report:
         dataset = sweep_design(
             system, design, metrics, resolution, executor=executor, workers=number, store=folder, resume=resume, progress=report
         )
@@ -68,16 +66,6 @@ def sweep(
     if store is None:
         shutil.rmtree(folder, ignore_errors=True)
     _tell(dataset, target, csv, figure)
-
-
-@contextmanager
-def _kept(folder: Path, cases: int) -> Iterator[None]:
-    """Turn Ctrl-C into a sentence that says what is kept."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        done = sum(1 for path in folder.glob("*.json") if path.name != "study.json")
-        raise Interrupted(f"interrupted; {done} of {cases} cases are kept in {str(folder)!r}: go on with --resume") from None
 
 
 def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | None) -> None:

@@ -15,6 +15,7 @@ from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plo
 from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_front, plot_parallel
 from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
+from coaxshell.plotting.sensitivity import figure_sensitivity, plot_distribution, plot_sensitivity
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
 from coaxshell.plotting.style import COLOURS, style
 from coaxshell.plotting.sweep import figure_sweep, plot_sweep
@@ -38,17 +39,20 @@ __all__ = [
     "figure_named_curves",
     "figure_optimum",
     "figure_pressure_rms",
+    "figure_sensitivity",
     "figure_snapshots",
     "figure_sweep",
     "mark_peak",
     "plot_comparison",
     "plot_convergence",
+    "plot_distribution",
     "plot_energy",
     "plot_field",
     "plot_front",
     "plot_history",
     "plot_named_curves",
     "plot_parallel",
+    "plot_sensitivity",
     "plot_sweep",
     "save_figure",
     "save_film",

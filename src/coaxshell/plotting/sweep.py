@@ -75,7 +75,7 @@ def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes
     if ax is None:
         with style():
             ax = new_figure(0.62 * PAGE_WIDTH, 2.9).subplots()
-    factor, unit = _scale(values.to_numpy(), str(values.attrs.get("units", "")))
+    factor, unit = scale(values.to_numpy(), str(values.attrs.get("units", "")))
     scaled = factor * values.to_numpy()
     label = f"{metric} ({unit})" if unit else metric
     if len(fields) == 1:
@@ -148,7 +148,7 @@ def _pretty(unit: str) -> str:
     return unit
 
 
-def _scale(values: npt.NDArray[np.float64], unit: str) -> tuple[float, str]:
+def scale(values: npt.NDArray[np.float64], unit: str) -> tuple[float, str]:
     """Return the factor and the unit with an SI prefix that suit the largest magnitude."""
     finite = np.abs(values[np.isfinite(values)])
     largest = float(finite.max()) if finite.size else 0.0

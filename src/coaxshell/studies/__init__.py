@@ -12,21 +12,31 @@ from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.structures import solve_each
 from coaxshell.studies.study_file import SweepStudy, read_study
 from coaxshell.studies.sweeping import sweep, sweep_design
+from coaxshell.studies.uncertainty.laws import LogNormal, Normal, Uniform
+from coaxshell.studies.uncertainty.sensitivity import robustness, sensitivity, uncertainty_of
+from coaxshell.studies.uncertainty.study import SensitivityStudy
 
 __all__ = [
     "Choice",
     "Integer",
+    "LogNormal",
+    "Normal",
     "Objective",
     "OptimisationStudy",
     "Optimum",
     "Range",
     "Resolution",
+    "SensitivityStudy",
     "SweepStudy",
+    "Uniform",
     "dask_executor",
     "optimise",
     "optimise_problem",
     "read_study",
+    "robustness",
+    "sensitivity",
     "solve_each",
     "sweep",
     "sweep_design",
+    "uncertainty_of",
 ]

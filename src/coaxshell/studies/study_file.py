@@ -115,12 +115,18 @@ def read_study(path: str | Path, kind: type[S]) -> S:
     return kind.model_validate(data)
 
 
-def flat(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return {path: value} of nested tables: ``absorbers.count = 3`` and ``"absorbers.count" = 3`` are the same to a reader."""
+SPANS = frozenset({"from", "to", "type"})
+
+
+def flat(tables: Mapping[str, Any], entries: frozenset[str] = SPANS) -> dict[str, Any]:
+    """Return {path: value} of nested tables: ``absorbers.count = 3`` and ``"absorbers.count" = 3`` are the same to a reader.
+
+    A table with any of the given *entries* is a value.
+    """
     found: dict[str, Any] = {}
     for key, value in tables.items():
-        if isinstance(value, Mapping) and not {"from", "to"} & set(value) and "type" not in value:
-            found |= {f"{key}{inner if inner.startswith('[') else '.' + inner}": item for inner, item in flat(value).items()}
+        if isinstance(value, Mapping) and not entries & set(value):
+            found |= {f"{key}{inner if inner.startswith('[') else '.' + inner}": item for inner, item in flat(value, entries).items()}
         else:
             found[key] = value
     return found

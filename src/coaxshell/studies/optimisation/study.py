@@ -8,9 +8,10 @@ from typing import Any, Literal
 from pydantic import Field
 
 from coaxshell.studies.optimisation.optimising import Problem, problem_of
-from coaxshell.studies.study_file import Study
+from coaxshell.studies.study_file import Study, flat
+from coaxshell.studies.uncertainty.laws import LAWS
 
-_ENTRIES = frozenset({"from", "to", "values", "uniform", "normal", "lognormal"})
+_ENTRIES = frozenset({"from", "to", "values"})
 
 
 class OptimisationStudy(Study):
@@ -43,23 +44,12 @@ class OptimisationStudy(Study):
         """Return it with all parts checked; InputError names what is wrong. Files are relative to *folder*."""
         return problem_of(
             self.system(folder),
-            tables(self.variables),
+            flat(self.variables, _ENTRIES),
             self.objectives,
             self.constraints,
             self.resolution.checked(),
-            (tables(self.uncertain), self.samples),
+            (flat(self.uncertain, LAWS), self.samples),
             (self.method, self.evaluations, self.population, self.start, self.seed),
             self.confirm,
             str(folder),
         )
-
-
-def tables(given: dict[str, Any]) -> dict[str, Any]:
-    """Return {path: table} of nested tables, where choices and distributions are values too."""
-    found: dict[str, Any] = {}
-    for key, value in given.items():
-        if isinstance(value, dict) and not _ENTRIES & set(value):
-            found |= {f"{key}{inner if inner.startswith('[') else '.' + inner}": item for inner, item in tables(value).items()}
-        else:
-            found[key] = value
-    return found

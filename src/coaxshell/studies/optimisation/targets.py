@@ -16,6 +16,7 @@ from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, Dimension, to_si
 from coaxshell.response import Response
 from coaxshell.studies.metrics import Metric, metrics_of
+from coaxshell.studies.uncertainty.statistics import ROBUST, statistic
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -23,8 +24,7 @@ UNSOLVED, FAILED = 1e6, 1e12
 """Added to the violation of a design that breaks a limit before any run, and of one whose run is refused: worse than any limit broken
 in a run, and worst of all."""
 
-STATISTICS = ("mean", "p95", "worst")
-_STATISTIC = re.compile(rf"({'|'.join(STATISTICS)})\((.+)\)")
+_STATISTIC = re.compile(rf"({'|'.join(ROBUST)})\((.+)\)")
 _LIMIT = re.compile(r"(.+?)\s*(<=|>=)\s*(.+)")
 
 
@@ -59,10 +59,7 @@ class Target:
         """Return its value from those of the nominal system and, after it, of each sample of the uncertain ones."""
         if not self.statistic:
             return float(samples[0])
-        uncertain = samples[1:]
-        if self.statistic == "mean":
-            return float(uncertain.mean())
-        return float(uncertain.max() if self.statistic == "worst" else np.quantile(uncertain, 0.95))
+        return statistic(self.statistic, samples[1:])
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,1 @@
-"""Uncertain properties: how far an answer depends on them, and what they make of a design."""
+"""Uncertain properties: how far an answer depends on each of them, and what they make of a design."""

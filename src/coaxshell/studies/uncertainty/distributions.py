@@ -1,53 +1,29 @@
-"""Uncertain properties of a system as distributions, and the fixed points at which a study samples them."""
+"""Uncertain properties of a system, and the fixed points at which a study samples them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, is_dataclass
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import norm, qmc
+from scipy.stats import qmc
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, to_si
 from coaxshell.studies.paths import Field, field_of, varied
+from coaxshell.studies.uncertainty.laws import ENTRIES, Distribution, LogNormal, Normal, Uniform, check, law_of
+
+__all__ = ["Coordinate", "Distribution", "LogNormal", "Normal", "Uncertain", "Uniform", "coordinates_of", "uncertain_of", "unit_points"]
 
 FloatArray = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Uniform:
-    """Equally likely between two ends, in SI or text with a unit; with ``relative=True`` factors of the nominal value."""
-
-    low: Any
-    high: Any
-    relative: bool = False
-
-
-@dataclass(frozen=True)
-class Normal:
-    """Normal with a mean and a standard deviation; with ``relative=True`` factors of the nominal value, as ``Normal(1, 0.05, True)``."""
-
-    mean: Any
-    deviation: Any
-    relative: bool = False
-
-
-@dataclass(frozen=True)
-class LogNormal:
-    """The logarithm is normal: *median*, and *factor* > 1 within which (times or over) 68 % lie; may be relative."""
-
-    median: Any
-    factor: float
-    relative: bool = False
-
-
-Distribution = Uniform | Normal | LogNormal
+LARGEST_CUT = 0.01
+"""Share of a distribution that may lie beyond a field's limits; it is cut off and the rest scaled up."""
+MOST_SAMPLES = 2**16
+_CLOSEST = 2.0**-32  # to 0 and 1, where a normal distribution has no value; Sobol points are multiples of 2^-30
 
 
 @dataclass(frozen=True)
@@ -57,13 +33,35 @@ class Coordinate:
     field: Field
     distribution: Distribution
 
-    def quantile(self, share: float) -> float:
-        """Return the value (or factor) below which a share of the distribution lies."""
-        law = self.distribution
-        if isinstance(law, Uniform):
-            return float(law.low + share * (law.high - law.low))
-        score = float(norm.ppf(share))
-        return float(law.mean + score * law.deviation) if isinstance(law, Normal) else float(law.median * law.factor**score)
+    @property
+    def labelled(self) -> Field:
+        """The field as which drawn numbers are labelled: itself, or a factor of it."""
+        if not self.distribution.relative:
+            return self.field
+        return replace(self.field, units="1", long_name=f"factor of {self.field.path}", quantity=None)
+
+    def limits(self, present: float) -> tuple[float, float]:
+        """Return the smallest and the largest number that the field allows, as factors if the distribution is relative."""
+        quantity = self.field.quantity
+        assert quantity is not None  # coordinates_of refuses other fields
+        ends = [max(x for x in (quantity.above, quantity.least, -math.inf) if x is not None)]
+        ends += [min(x for x in (quantity.below, quantity.most, math.inf) if x is not None)]
+        if self.distribution.relative:
+            ends = sorted(end / present for end in ends)
+        return ends[0], ends[1]
+
+    def quantile(self, share: float, present: float) -> float:
+        """Return the number below which a share of the distribution lies, what is beyond the field's limits cut off.
+
+        Parameters
+        ----------
+        share : float
+            From 0 to 1.
+        present : float
+            Nominal value of the field, of which a relative distribution gives factors.
+        """
+        low, high = (self.distribution.share(end) for end in self.limits(present))
+        return self.distribution.quantile(low + min(max(share, _CLOSEST), 1.0 - _CLOSEST) * (high - low))
 
 
 @dataclass(frozen=True)
@@ -83,21 +81,27 @@ class Uncertain:
         """Return a system and, after it, its samples."""
         return [system, *(self.sample(system, point) for point in self.points)]
 
+    def drawn(self, system: System, point: tuple[float, ...]) -> list[float]:
+        """Return the number (or factor) of every coordinate at a point of the unit cube."""
+        return [
+            coordinate.quantile(share, field_of(system, coordinate.field.path).present if coordinate.distribution.relative else 1.0)
+            for coordinate, share in zip(self.coordinates, point, strict=True)
+        ]
+
     def sample(self, system: System, point: tuple[float, ...]) -> System | InputError:
         """Return a system with its uncertain properties at a point of the unit cube, or the reason why there is none."""
         changes: dict[str, Any] = {}
         try:
-            for coordinate, share in zip(self.coordinates, point, strict=True):
-                changes |= _changes(system, coordinate, coordinate.quantile(share))
+            for coordinate, number in zip(self.coordinates, self.drawn(system, point), strict=True):
+                changes |= _changes(system, coordinate, number)
             return varied(system, changes)
         except InputError as error:
             return error
 
     def identity(self) -> list[Any]:
         """Return what tells it from another, as plain data."""
-        return [[one.field.path, type(one.distribution).__name__, asdict(one.distribution)] for one in self.coordinates] + [
-            list(p) for p in self.points
-        ]
+        laws: list[Any] = [[one.field.path, type(one.distribution).__name__, asdict(one.distribution)] for one in self.coordinates]
+        return laws + [list(point) for point in self.points]
 
 
 def _changes(system: System, coordinate: Coordinate, drawn: float) -> dict[str, Any]:
@@ -113,22 +117,30 @@ def uncertain_of(system: System, given: Mapping[str, Any], samples: int, seed: i
 
     Parameters
     ----------
-    given : mapping of path to Uniform, Normal, LogNormal, or a table such as ``{normal = [1, 0.05], relative = true}``
+    system : System
+    given : mapping of path to distribution
+        :class:`Uniform`, :class:`Normal`, :class:`LogNormal`, or a table (:func:`coaxshell.studies.uncertainty.laws.law_of`).
     samples : int
     seed : int
 
     Raises
     ------
     InputError
-        An unknown path, no such distribution, a wrong unit, an empty or a degenerate distribution.
+        An unknown path, no such distribution, a wrong unit, an empty, a degenerate or an impossible distribution.
     """
     if not given:
         return Uncertain((), ())
-    if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= 2**16:
-        raise InputError("samples", f"{samples!r} is not allowed", "give a whole number from 2 to 65536")
     coordinates = coordinates_of(system, given, "uncertain")
-    unit = qmc.Sobol(len(coordinates), rng=seed).random(2 ** math.ceil(math.log2(samples)))[:samples]
-    return Uncertain(coordinates, tuple(tuple(map(float, point)) for point in unit))
+    return Uncertain(coordinates, tuple(tuple(map(float, point)) for point in unit_points(len(coordinates), samples, seed)))
+
+
+def unit_points(dimensions: int, samples: int, seed: int) -> FloatArray:
+    """Return scrambled Sobol points of the unit cube, shape (samples, dimensions); InputError if *samples* or *seed* is not allowed."""
+    if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
+        raise InputError("samples", f"{samples!r} is not allowed", f"give a whole number from 2 to {MOST_SAMPLES}")
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError("seed", f"{seed!r} is not allowed", "give a whole number of 0 or more")
+    return qmc.Sobol(dimensions, rng=seed).random(2 ** math.ceil(math.log2(samples)))[:samples]
 
 
 def coordinates_of(system: System, given: Mapping[str, Any], where: str) -> tuple[Coordinate, ...]:
@@ -142,48 +154,43 @@ def coordinates_of(system: System, given: Mapping[str, Any], where: str) -> tupl
             field = field_of(system, path)
         except InputError as error:
             raise InputError(place, error.problem, error.remedy) from None
-        if field.quantity is None:
+        if field.quantity is None or not isinstance(field.present, float):
             raise InputError(place, "is not a real number", "only real numbers can be uncertain")
-        found.append(Coordinate(field, _in_si(field, _distribution(law, place), place)))
+        coordinate = Coordinate(field, _in_si(field, law_of(law, place), place))
+        _possible(coordinate, place)
+        found.append(coordinate)
     return tuple(found)
 
 
-_KINDS: dict[str, type[Distribution]] = {"uniform": Uniform, "normal": Normal, "lognormal": LogNormal}
-
-
-def _distribution(given: Any, where: str) -> Distribution:
-    if isinstance(given, Uniform | Normal | LogNormal):
-        return given
-    if isinstance(given, Mapping) and len(kinds := [key for key in given if key in _KINDS]) == 1 and not set(given) - {*kinds, "relative"}:
-        numbers = given[kinds[0]]
-        if isinstance(numbers, list | tuple) and len(numbers) == 2:
-            return _KINDS[kinds[0]](numbers[0], numbers[1], bool(given.get("relative", False)))
-    remedy = (
-        "write {uniform = [low, high]}, {normal = [mean, deviation]} or {lognormal = [median, factor]}, with relative = true for factors"
-    )
-    raise InputError(where, f"{shown(given)} is not a distribution", remedy)
-
-
 def _in_si(field: Field, law: Distribution, where: str) -> Distribution:
-    assert is_dataclass(law)
-    names = list(asdict(law))[:2]
-    plain = DIMENSIONS["number"]
+    """Return a distribution with its numbers in SI."""
     assert field.quantity is not None
-    kinds = (
-        [plain, plain] if law.relative else [field.quantity.dimension, plain if isinstance(law, LogNormal) else field.quantity.dimension]
-    )
-    try:
-        first, second = (to_si(getattr(law, name), kind) for name, kind in zip(names, kinds, strict=True))
-    except InputError as error:
-        raise InputError(where, error.problem, error.remedy) from None
-    if isinstance(law, Uniform) and not first < second:
-        raise InputError(where, f"the range from {first!r} to {second!r} is empty", "the first must be less than the second")
-    if isinstance(law, Normal) and not second > 0:
-        raise InputError(where, f"a standard deviation of {second!r} is not allowed", "must be greater than 0")
-    if isinstance(law, LogNormal) and not (first > 0 and second > 1):
+    plain = DIMENSIONS["number"]
+    own = plain if law.relative else field.quantity.dimension
+    numbers = []
+    words = next(words for kind, words in ENTRIES.values() if isinstance(law, kind))
+    for entry, word, kind in zip(fields(law), words, (own, plain if isinstance(law, LogNormal) else own), strict=False):
+        try:
+            numbers.append(to_si(getattr(law, entry.name), kind))
+        except InputError as error:
+            raise InputError(f"{where}.{word}", error.problem, error.remedy) from None
+    first, second = numbers
+    made = Uniform(first, second, law.relative, law.log) if isinstance(law, Uniform) else type(law)(first, second, law.relative)
+    check(made, where)
+    return made
+
+
+def _possible(coordinate: Coordinate, where: str) -> None:
+    """Refuse a distribution that asks for values which the field does not allow, or whose limits would cut off much of it."""
+    law, present = coordinate.distribution, coordinate.field.present
+    if law.relative and present == 0:
+        raise InputError(where, "its nominal value is 0, of which all factors are 0", "give a distribution of the value itself")
+    for number in (law.low, law.high) if isinstance(law, Uniform) else (law.quantile(0.5),):
+        coordinate.field.value(number * present if law.relative else number, where)
+    low, high = (law.share(end) for end in coordinate.limits(present))
+    cut = 1.0 - (high - low)
+    if cut > LARGEST_CUT:
+        problem = f"{100 * cut:.3g} % of this distribution are values that are not allowed"
         raise InputError(
-            where,
-            f"a median of {first!r} with a factor of {second!r} is not allowed",
-            "the median must be greater than 0, the factor than 1",
+            where, problem, f"at most {100 * LARGEST_CUT:g} % are cut off: give a smaller spread, or a uniform or lognormal one"
         )
-    return type(law)(first, second, law.relative)

@@ -1,0 +1,35 @@
+"""A study of uncertain properties as a study file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from coaxshell.studies.metrics import metrics_of
+from coaxshell.studies.study_file import MetricTexts, Study, flat
+from coaxshell.studies.uncertainty.laws import LAWS
+from coaxshell.studies.uncertainty.plan import Plan, plan_of
+
+
+class SensitivityStudy(Study):
+    """Describe a study of uncertain properties."""
+
+    uncertain: dict[str, Any]
+    """Distributions by dotted path."""
+    metrics: MetricTexts
+    """What to read: names, or a table of names of your own."""
+    indices: bool = True
+    """Whether Sobol indices are wanted, or the statistics alone, which take fewer runs."""
+    samples: int = 256
+    """Base points, a power of two: samples * (properties + 2) runs with indices, as many runs as samples without."""
+    seed: int = 0
+    """Makes points and intervals repeatable."""
+    confidence: float = 0.95
+    """Of the intervals."""
+
+    def plan(self, folder: Path) -> Plan:
+        """Return it with all parts checked; InputError names what is wrong. Files are relative to *folder*."""
+        system = self.system(folder)
+        sampling = (self.samples, self.seed, self.confidence)
+        metrics = metrics_of(self.metrics, system, str(folder))
+        return plan_of(system, flat(self.uncertain, LAWS), metrics, self.resolution.checked(), sampling, indices=self.indices)
