@@ -73,7 +73,7 @@ def plot_convergence(optimum: Optimum, ax: Axes) -> Axes:
     ax.set_xlim(0, len(numbers))
     ax.set_xlabel("evaluations")
     ax.set_ylabel(f"{goal.name} ({unit})" if unit else goal.name)
-    ax.legend(loc="upper right", ncols=3)
+    _legend(ax)
     return ax
 
 
@@ -105,7 +105,7 @@ def plot_front(optimum: Optimum, ax: Axes) -> Axes:
         ax.set_ylim(bottom - 0.06 * (top - bottom or 1), top + 0.06 * (top - bottom or 1))
     for axis, target, (_, unit) in ((ax.xaxis, across, scales[0]), (ax.yaxis, up, scales[1])):
         axis.set_label_text(f"{target.name} ({unit})" if unit else target.name)
-    ax.legend(loc="upper right", ncols=3)
+    _legend(ax)
     return ax
 
 
@@ -127,19 +127,27 @@ def plot_parallel(optimum: Optimum, ax: Axes) -> Axes:
     ax.plot([], [], color=COLOURS["sky"], label="front" if len(optimum.targets.goals) > 1 else "best tenth")
     ax.plot(where, shares(optimum.best), color=COLOURS["blue"], linewidth=1.8, marker="o", markersize=4, label="best")
     ax.plot(where, shares(optimum.baseline), color=COLOURS["orange"], linestyle="none", marker="*", markersize=8, label="baseline")
-    many = len(variables) > 5
-    names = [f"{v.name}{': ' if many else chr(10)}{_interval(v)}" for v in variables]
-    ax.set_xticks(where, names, rotation=40 if many else 0, ha="right" if many else "center")
+    few = len(variables) <= 8
+    names = [_interval(v) if few else v.name for v in variables]
+    ax.set_xticks(where, names, rotation=0 if few else 45, ha="center" if few else "right", fontsize=7 if few else 6)
     ax.set_xlim(-0.4, len(variables) - 0.6)
     ax.set_ylim(-0.04, 1.04)
     ax.set_ylabel("place within the range")
-    ax.legend(loc="upper right", ncols=3)
+    _legend(ax)
     return ax
 
 
+def _legend(ax: Axes) -> None:
+    """Put the legend above the axes, where no curve is."""
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
+
+
 def _interval(variable: Variable) -> str:
+    """Return name and range of a variable on lines short enough to stand beside others."""
     ends = [str(variable.levels[i]) for i in (0, -1)] if variable.levels else [f"{variable.low:.3g}", f"{variable.high:.3g}"]
-    return f"{ends[0]} to {ends[1]} {variable.units}".removesuffix(" 1")
+    place, _, name = variable.name.rpartition(".")
+    lines = [f"{place}." if place else "", name, f"{ends[0]} to {ends[1]}", "" if variable.units == "1" else variable.units]
+    return "\n".join(line for line in lines if line)
 
 
 def _unit(target: Target, values: Sequence[float]) -> tuple[float, str]:

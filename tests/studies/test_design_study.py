@@ -1,0 +1,33 @@
+"""The studies of docs/design-study.md: their files are valid, and the stored best systems give the stored numbers."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from numpy.testing import assert_allclose
+
+import coaxshell as cx
+from coaxshell.studies import OptimisationStudy, read_study
+
+STUDIES = Path(__file__).parents[2] / "docs" / "studies"
+NAMES = ["a-equal-absorbers", "b-mirror-pairs", "c-hybrid", "d-mass-front"]
+
+
+def test_every_study_has_a_result():
+    assert sorted(path.stem for path in STUDIES.glob("*.toml")) == NAMES
+    assert sorted(path.name for path in (STUDIES / "results").iterdir()) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_best_system_gives_the_number_told(name):
+    problem = read_study(STUDIES / f"{name}.toml", OptimisationStudy).problem(STUDIES)
+    told = json.loads((STUDIES / "results" / name / "optimum.json").read_text(encoding="utf-8"))
+    assert told["evaluations"] == problem.evaluations
+    assert told["method"] == problem.method
+    assert told["feasible"]
+    system = cx.System.from_toml(STUDIES / "results" / name / "best.toml")
+    found = cx.simulate(system, **problem.resolution.arguments()).summary()
+    assert_allclose(found.shells[0].stress.value, told["best"]["targets"]["inner.peak_stress"], rtol=1e-6)
+    assert_allclose(sum(one.mass for one in system.absorber_list), told["best"]["targets"]["absorbers.mass"], rtol=1e-9)
