@@ -19,6 +19,9 @@ class CubicSprings:
         k_nl and kappa of every link.
     """
 
+    tolerance = 1e-11
+    patience = 0.1
+
     def __init__(self, cubic: FloatArray, lent: FloatArray) -> None:
         self._cubic, self._lent = cubic, lent
         self._offset = lent.copy()
@@ -56,6 +59,10 @@ class SpringsAndActuators:
         Links, 2N.
     voltages : LimitedVoltages
     """
+
+    tolerance = 1e-10
+    patience = 0.3
+    """Renewal costs as much as many iterations here."""
 
     def __init__(self, springs: CubicSprings, links: int, voltages: LimitedVoltages) -> None:
         self._springs, self._links, self._voltages = springs, links, voltages

@@ -30,7 +30,7 @@ from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
 from coaxshell.solver.spectral import Progress
 
 _LONGEST_BLOCK = 32
-_BLOCK_UNKNOWNS = 256
+_BLOCK_UNKNOWNS = 512
 """Unknowns of a block: above, its matrices leave the processor's cache."""
 
 

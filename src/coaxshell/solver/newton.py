@@ -16,16 +16,18 @@ import numpy as np
 
 from coaxshell.acoustics.operators import FloatArray
 
-_TOLERANCE = 1e-11
 MAX_ITERATIONS = 60
 _FEW_ITERATIONS = 4
 _ROUNDING = 4e-15
-_REFRESH_RATE = 0.1
-"""The tangent is renewed when an iteration gains less than a factor of ten."""
 
 
 class InterfaceLaw(Protocol):
     """What nonlinear laws add to linear ones, n(z)."""
+
+    tolerance: float
+    """Error of z, relative."""
+    patience: float
+    """The tangent is renewed when an iteration gains less than this factor."""
 
     def excess(self, z: FloatArray) -> FloatArray:
         """Return n(z)."""
@@ -84,7 +86,7 @@ class ImplicitStep:
         ------
         ConvergenceError
         """
-        law = self._law
+        law, tolerance = self._law, self._law.tolerance
         z = 3.0 * (self._last - self._before) + self._oldest
         target = self._target(known)
         last = 0.0  # 0: not measured with the present tangent
@@ -94,15 +96,15 @@ class ImplicitStep:
             change = new - z
             z = new
             size = law.relative(change, z)
-            if size <= _TOLERANCE:
+            if size <= tolerance:
                 break
             if last > 0.0:
                 self._rate = max(self._rate, size / last)
-                if size * self._rate <= _TOLERANCE and self._rate < 1.0:
+                if size * self._rate <= tolerance and self._rate < 1.0:
                     break
                 if iteration > _FEW_ITERATIONS and float(np.abs(change).max()) <= _ROUNDING * float(np.abs(target).max()):
                     break  # terms far larger than their sum
-                if self._rate > _REFRESH_RATE:
+                if self._rate > law.patience:
                     self._renew(z)
                     target = self._target(known)
                     size = 0.0
