@@ -15,7 +15,10 @@ import coaxshell
 from coaxshell.cli import main
 from coaxshell.cli.progress import progress
 
-COMMANDS = ("run", "presets", "init", "info", "figure", "snapshots", "animate", "export", "verify", "response-function")
+COMMANDS = (
+    *("run", "presets", "init", "info", "figure", "snapshots", "animate", "export", "verify", "response-function"),
+    *("sweep", "optimise", "sensitivity", "reproduce", "studio"),
+)
 
 
 def test_help_lists_every_command(run):

@@ -36,7 +36,7 @@ def sensitivity(
     dask: options.DaskOption = None,
     quiet: options.QuietOption = False,
 ) -> None:
-    """Find which uncertain properties matter, and what they make of a system.
+    """Find which uncertain properties matter, and how much.
 
     Interrupted, by Ctrl-C or anything else, it goes on with --resume.
     """
