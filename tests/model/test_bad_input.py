@@ -177,7 +177,7 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "TOML source kind": (lambda: toml('type = "spherical-shock"', ""), ("source.type:", "missing", "plane-shock")),
     "TOML ring": (lambda: toml("mass = 10", 'mass = "10 s"'), ("absorbers.mass:", "'10 s'", "a mass per metre of length")),
     "TOML control": (lambda: toml("derivative = -150", "derivative = inf"), ("control.derivative:", "inf", "not finite")),
-    "no file": (lambda: cx.System.from_toml("/nowhere/x.toml"), ("/nowhere/x.toml:", "No such file", "TOML file")),
+    "no file": (lambda: cx.System.from_toml("/nowhere/x.toml"), ("/nowhere/x.toml:", "no such file", "TOML file")),
     # overrides and names
     "unknown path": (lambda: HYBRID.replace_path("source.peak", 1), ("source.peak:", "SphericalShock", "did you mean 'peak_pressure'?")),
     "unknown shell": (lambda: HYBRID.replace_path("shells[7].radius", 1), ("shells[7]:", "'7'", "0, 1, inner, outer")),

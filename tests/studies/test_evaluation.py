@@ -31,12 +31,13 @@ def outcomes(batch_list):
 def test_grouping_changes_nothing_and_prepares_each_structure_once(hybrid, cases, resolution, monkeypatch):
     metrics = metrics_of(ASKED, hybrid)
     prepared = []
+    make = structures.Structures._made
 
-    def counted(*arguments, **options):
+    def counted(self, *arguments):
         prepared.append(arguments)
-        return cx.prepare(*arguments, **options)
+        return make(self, *arguments)
 
-    monkeypatch.setattr(structures, "prepare", counted)
+    monkeypatch.setattr(structures.Structures, "_made", counted)
     forget()
     together = outcomes(batches(cases, metrics, resolution, 1))
     assert len(prepared) == 2  # the two sources

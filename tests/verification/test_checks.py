@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from coaxshell.acoustics import operators
-from coaxshell.structure import ring
 from coaxshell.verification import checks, chosen, run
 from coaxshell.verification.bench import Bench, bare_double_shell, tables
 
@@ -41,11 +40,13 @@ def test_a_wrong_fluid_is_seen(monkeypatch):
 def test_a_wrong_wall_is_seen(monkeypatch):
     from coaxshell.solver import scaling
 
-    def wrong(section, m):
-        right = ring.ring_stiffness(section, m)
+    stiffness = scaling.Problem.stiffness
+
+    def wrong(problem, index, m):
+        right = stiffness(problem, index, m)
         return type(right)(*(1.001 * entry for entry in right))
 
-    monkeypatch.setattr(scaling, "ring_stiffness", wrong)
+    monkeypatch.setattr(scaling.Problem, "stiffness", wrong)
     assert failing("statics", "ring-frequencies", "independent", "form-function") == {
         "statics",
         "ring-frequencies",

@@ -13,8 +13,10 @@ SINGLE = 2e-6
 """Histories travel in single precision."""
 
 
-def assert_same_stress(page, response):
+def assert_same_stress(page, system):
+    """Compare what is shown with the library's answer at the resolution of what is shown: the full one may have come meanwhile."""
     run = run_of(page)
+    response = solved(system, run["resolution"])
     for index, shell in enumerate(("inner", "outer")):
         ours = np.asarray(response.stress(shell, angle=[0, 180])).T
         assert_allclose(run["arrays"][f"stress/{index}"], ours, rtol=0, atol=SINGLE * np.abs(ours).max())
@@ -27,7 +29,9 @@ def assert_same_stress(page, response):
 
 def test_the_first_page_shows_the_library_s_hybrid_case(page):
     assert system_of(page) == cx.presets.load("hybrid")
-    assert_same_stress(page, solved(cx.presets.load("hybrid")))
+    until(page, "window.coaxshell.state.runs.current.full")  # nothing more is on its way that could change it meanwhile
+    page.wait_for_timeout(300)
+    assert_same_stress(page, cx.presets.load("hybrid"))
     drawn = shown_curves(page)
     assert {name for name, *_ in drawn} >= {"current", "bare"}
     stress = run_of(page)["arrays"]["stress/0"][0]
@@ -44,7 +48,7 @@ def test_a_slider_changes_the_curves_to_the_library_s_numbers(page):
     rest(page)
     system = system_of(page)
     assert system.absorbers.count == 22
-    assert_same_stress(page, solved(system))
+    assert_same_stress(page, system)
     times = page.evaluate("window.coaxshell.times")
     assert len(times) >= 2
 
@@ -56,7 +60,7 @@ def test_a_typed_quantity_is_read_with_its_unit_and_can_be_undone(page):
     field.press("Enter")
     until(page, "window.coaxshell.state.system.source.peak_pressure === 5e4")
     rest(page)
-    assert_same_stress(page, solved(cx.presets.load("hybrid").with_overrides({"source.peak_pressure": "50 kPa"})))
+    assert_same_stress(page, cx.presets.load("hybrid").with_overrides({"source.peak_pressure": "50 kPa"}))
     page.locator("#undo").click()
     until(page, "window.coaxshell.state.system.source.peak_pressure === 2.5e4")
 
