@@ -44,7 +44,7 @@ def test_cases_that_fail_are_told_and_the_others_go_on(client):
 @pytest.mark.parametrize(
     ("change", "where"),
     [
-        ({"metrics": ["/tmp/user.py:metric"]}, "metrics[0]"),
+        ({"metrics": ["/elsewhere/user.py:metric"]}, "metrics[0]"),
         ({"metrics": [["inner.peak_stress"]]}, "metrics[0]"),
         ({"over": {"absorbers.mass": {"from": 1, "to": 2, "count": 10**9}}}, "over.absorbers.mass"),
         ({"over": {"absorbers.mass": {"from": 1, "to": 2, "step": 1e-9}}}, "over.absorbers.mass.step"),
