@@ -49,6 +49,17 @@ def refused(run):
     return call
 
 
+@pytest.fixture
+def study(request, tmp_path):
+    """Return a function that writes a study file, the STUDY of the module or a variant, and returns its name."""
+
+    def write(text=request.module.STUDY):
+        (tmp_path / "study.toml").write_text(text)
+        return "study.toml"
+
+    return write
+
+
 SMALL = ("--modes", "6", "--time-step", "0.02", "--duration", "1")
 
 

@@ -27,15 +27,6 @@ modes = 6
 """
 
 
-@pytest.fixture
-def study(tmp_path):
-    def write(text=STUDY):
-        (tmp_path / "study.toml").write_text(text)
-        return "study.toml"
-
-    return write
-
-
 def test_a_study_file_is_the_python_call(run, study, tmp_path):
     outcome = run("sensitivity", study(), "--workers", "1", "--figure", "f.png")
     assert outcome.code == 0, outcome.err

@@ -28,6 +28,14 @@ def writable(path: Path, option: str, suffixes: Sequence[str]) -> Path:
     return path
 
 
+def drawable(path: Path | None, option: str = "--figure") -> None:
+    """Refuse a figure that cannot be written; InputError names the option."""
+    if path is not None:
+        from coaxshell.plotting.saving import FIGURE_SUFFIXES
+
+        writable(path, option, FIGURE_SUFFIXES)
+
+
 def new_folder(path: Path, option: str, mark: str) -> Path:
     """Return *path* if a result can be written there as a folder: new, empty, or an earlier result with a file *mark* in it."""
     if path.exists() and not (path / mark).is_file() and (not path.is_dir() or any(path.iterdir())):

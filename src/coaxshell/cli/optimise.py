@@ -9,10 +9,9 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.executor import chosen_executor
-from coaxshell.cli.files import new_folder, writable
+from coaxshell.cli.files import drawable, new_folder
 from coaxshell.cli.interruption import Interrupted
-from coaxshell.cli.progress import progress
+from coaxshell.cli.studying import study_options
 
 
 def optimise(
@@ -35,7 +34,7 @@ def optimise(
             "--journal", metavar="DIR", help="Keep every evaluation here. [default: STUDY.journal in this folder, removed when all is done]"
         ),
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what the journal holds.")] = False,
+    resume: options.ResumeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
     quiet: options.QuietOption = False,
@@ -45,18 +44,14 @@ def optimise(
     Interrupted, by Ctrl-C or anything else, it goes on with --resume and ends as if it had not been.
     """
     target = new_folder(output or Path(f"{study.stem}.optimum"), "--output", "optimum.json")
-    if figure is not None:
-        from coaxshell.plotting import FIGURE_SUFFIXES
-
-        writable(figure, "--figure", FIGURE_SUFFIXES)
-    number = options.worker_number(workers, dask)
+    drawable(figure)
 
     from coaxshell.studies import OptimisationStudy, optimise_problem, read_study
 
     problem = read_study(study, OptimisationStudy).problem(study.parent)
     folder = journal or Path(f"{study.stem}.journal")
-    with chosen_executor(dask) as executor, progress(quiet, left=True) as report:
-        optimum = optimise_problem(problem, executor=executor, workers=number, journal=folder, resume=resume, progress=report)
+    with study_options(folder, resume, workers, dask, quiet) as how:
+        optimum = optimise_problem(problem, how)
     optimum.save(target)
     if figure is not None:
         from coaxshell.plotting import figure_optimum, save_figure

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
-
-from coaxshell.cli.values import whole
-from coaxshell.errors import InputError
 
 SetOption = Annotated[
     list[str] | None,
@@ -31,11 +29,13 @@ DaskOption = Annotated[
     str | None,
     typer.Option("--dask", metavar="ADDRESS", help="Work on the Dask cluster whose scheduler is here, as in tcp://10.0.0.1:8786."),
 ]
-
-
-def worker_number(workers: str | None, dask: str | None) -> int | None:
-    """Return the number of processes asked for, None for one a core; InputError if it is not a number or there is a cluster."""
-    number = None if workers is None else whole("--workers", workers)
-    if number is not None and dask is not None:
-        raise InputError("--workers", "has no effect with --dask, whose cluster has its own", "give one or the other")
-    return number
+DatasetOption = Annotated[
+    Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF. [default: STUDY.nc in this folder]")
+]
+StoreOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--store", metavar="DIR", help="Keep every finished case here. [default: STUDY.store in this folder, removed when all is done]"
+    ),
+]
+ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with what has been kept.")]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import writable
+from coaxshell.cli.files import drawable, writable
 from coaxshell.cli.solving import Request, with_resolution
 
 
@@ -47,10 +47,7 @@ def run(
     if output is not None:
         writable(output, "--output", (".nc",))
     for option, path in (("--figure", figure), ("--energy", energy)):
-        if path is not None:
-            from coaxshell.plotting import FIGURE_SUFFIXES
-
-            writable(path, option, FIGURE_SUFFIXES)
+        drawable(path, option)
     systems = [load_system(scenario, changes or ())]
     if compare is not None:
         systems.append(load_reference(compare, changes or ()))

@@ -9,29 +9,21 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.executor import chosen_executor
-from coaxshell.cli.files import replacing, writable
+from coaxshell.cli.files import drawable, replacing, writable
 from coaxshell.cli.interruption import kept
-from coaxshell.cli.progress import progress
+from coaxshell.cli.studying import study_options
 
 
 def sensitivity(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what is uncertain, what to read: see docs/sensitivity.md.")
     ],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF. [default: STUDY.nc in this folder]")
-    ] = None,
+    output: options.DatasetOption = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", metavar="FILE", help="Draw indices, or distributions without them; .png, .pdf or .svg.")
     ] = None,
-    store: Annotated[
-        Path | None,
-        typer.Option(
-            "--store", metavar="DIR", help="Keep every finished run here. [default: STUDY.store in this folder, removed when all is done]"
-        ),
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what the store holds.")] = False,
+    store: options.StoreOption = None,
+    resume: options.ResumeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
     quiet: options.QuietOption = False,
@@ -41,19 +33,15 @@ def sensitivity(
     Interrupted, by Ctrl-C or anything else, it goes on with --resume.
     """
     target = writable(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
-    if figure is not None:
-        from coaxshell.plotting import FIGURE_SUFFIXES
-
-        writable(figure, "--figure", FIGURE_SUFFIXES)
-    number = options.worker_number(workers, dask)
+    drawable(figure)
 
     from coaxshell.studies import SensitivityStudy, read_study, uncertainty_of
     from coaxshell.studies.uncertainty.table import found_text, told
 
     plan = read_study(study, SensitivityStudy).plan(study.parent)
     folder = store or Path(f"{study.stem}.store")
-    with kept(folder, len(plan.systems)), chosen_executor(dask) as executor, progress(quiet, left=True) as report:
-        found = uncertainty_of(plan, executor=executor, workers=number, store=folder, resume=resume, progress=report)
+    with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as how:
+        found = uncertainty_of(plan, how)
     with replacing(target) as partial:
         found.to_netcdf(partial, engine="h5netcdf")
     if figure is not None and told(found):

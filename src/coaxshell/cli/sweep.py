@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.executor import chosen_executor
-from coaxshell.cli.files import replacing, writable
+from coaxshell.cli.files import drawable, replacing, writable
 from coaxshell.cli.interruption import kept
-from coaxshell.cli.progress import progress
+from coaxshell.cli.studying import study_options
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,20 +20,13 @@ if TYPE_CHECKING:
 
 def sweep(
     study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what to vary, what to read: see docs/studies.md.")],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF. [default: STUDY.nc in this folder]")
-    ] = None,
+    output: options.DatasetOption = None,
     csv: Annotated[Path | None, typer.Option("--csv", metavar="FILE.csv", help="Write a table too, one case a line.")] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", metavar="FILE", help="Draw it too (over one or two fields); .png, .pdf or .svg.")
     ] = None,
-    store: Annotated[
-        Path | None,
-        typer.Option(
-            "--store", metavar="DIR", help="Keep every finished case here. [default: STUDY.store in this folder, removed when all is done]"
-        ),
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what the store holds.")] = False,
+    store: options.StoreOption = None,
+    resume: options.ResumeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
     quiet: options.QuietOption = False,
@@ -46,11 +38,7 @@ def sweep(
     target = writable(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
     if csv is not None:
         writable(csv, "--csv", (".csv",))
-    if figure is not None:
-        from coaxshell.plotting import FIGURE_SUFFIXES
-
-        writable(figure, "--figure", FIGURE_SUFFIXES)
-    number = options.worker_number(workers, dask)
+    drawable(figure)
 
     from coaxshell.studies import SweepStudy, read_study, sweep_design
 
@@ -58,10 +46,8 @@ def sweep(
     if figure is not None and len(design.fields) > 2:
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")
-    with kept(folder, len(design.cases)), chosen_executor(dask) as executor, progress(quiet, left=True) as report:
-        dataset = sweep_design(
-            system, design, metrics, resolution, executor=executor, workers=number, store=folder, resume=resume, progress=report
-        )
+    with kept(folder, len(design.cases)), study_options(folder, resume, workers, dask, quiet) as how:
+        dataset = sweep_design(system, design, metrics, resolution, how)
     _write(dataset, target, csv, figure)
     if store is None:
         shutil.rmtree(folder, ignore_errors=True)

@@ -9,6 +9,7 @@ from coaxshell.studies.optimisation.study import OptimisationStudy
 from coaxshell.studies.optimisation.targets import Objective
 from coaxshell.studies.optimisation.variables import Choice, Integer, Range
 from coaxshell.studies.resolution import Resolution
+from coaxshell.studies.running import How
 from coaxshell.studies.structures import solve_each
 from coaxshell.studies.study_file import SweepStudy, read_study
 from coaxshell.studies.sweeping import sweep, sweep_design
@@ -18,6 +19,7 @@ from coaxshell.studies.uncertainty.study import SensitivityStudy
 
 __all__ = [
     "Choice",
+    "How",
     "Integer",
     "LogNormal",
     "Normal",

@@ -28,9 +28,10 @@ class Resolution:
         """Return the same, but no longer than *duration* transits."""
         return replace(self, duration=min(self.duration, duration))
 
-    def check(self) -> None:
-        """Refuse a setting that no run accepts: InputError names it."""
+    def checked(self) -> Resolution:
+        """Return the same; InputError names a setting that no run accepts."""
         Settings(**asdict(self))
+        return self
 
     def arguments(self) -> dict[str, Any]:
         """Return them as keyword arguments of :func:`coaxshell.response.simulate`."""

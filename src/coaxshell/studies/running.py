@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from coaxshell.errors import InputError
+from coaxshell.model.base import within
 from coaxshell.model.system import System
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
 from coaxshell.studies.executors import capacity, completed
@@ -14,6 +18,52 @@ from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import Store
 
 Report = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class How:
+    """How a study is worked on; nothing of it changes a number.
+
+    Attributes
+    ----------
+    executor : concurrent.futures.Executor, optional
+        Where the work is done; a pool of processes of our own otherwise.
+    workers : int, optional
+        Processes of that pool, one a core by default; 1 works in this process.
+    store : str or Path, optional
+        Folder in which every finished case is kept.
+    resume : bool
+        Go on with what the store holds.
+    progress : callable, optional
+        Called with the fraction done and a word.
+    """
+
+    executor: Executor | None = None
+    workers: int | None = None
+    store: str | Path | None = None
+    resume: bool = False
+    progress: Report | None = None
+
+    def opened(self, parts: Mapping[str, Any], metrics: Sequence[Metric]) -> Store | None:
+        """Return the store of a study, told from others by its *parts*; None if nothing is to be kept."""
+        return None if self.store is None else Store(Path(self.store), parts, metrics, resume=self.resume)
+
+
+def run_study(
+    systems: Sequence[System | InputError],
+    metrics: tuple[Metric, ...],
+    resolution: Resolution,
+    how: How,
+    parts: Mapping[str, Any],
+    where: str = "",
+) -> list[Outcome]:
+    """Return the outcome of every case, in order; InputError, within *where*, if none of them is possible."""
+    refused = [item for item in systems if isinstance(item, InputError)]
+    if len(refused) == len(systems):
+        first = refused[0]
+        raise within(where, InputError(first.where, f"no case is possible: {first.problem}", first.remedy))
+    store = how.opened(parts, metrics)
+    return run_cases(systems, metrics, resolution, executor=how.executor, workers=how.workers, store=store, progress=how.progress)
 
 
 def run_cases(

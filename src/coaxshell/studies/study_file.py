@@ -40,12 +40,10 @@ class ResolutionEntry(Described):
 
     def checked(self) -> Resolution:
         """Return it as the resolution of runs; InputError if no run accepts it."""
-        resolution = Resolution(**self.model_dump())
         try:
-            resolution.check()
+            return Resolution(**self.model_dump()).checked()
         except InputError as error:
             raise within("resolution", error) from None
-        return resolution
 
 
 class Study(Described):

@@ -17,8 +17,7 @@ from coaxshell.studies.labelled import failures_text, labelled
 from coaxshell.studies.metrics import Metric, Metrics, metrics_of
 from coaxshell.studies.paths import varied
 from coaxshell.studies.resolution import Resolution
-from coaxshell.studies.running import run_cases
-from coaxshell.studies.store import Store
+from coaxshell.studies.running import How, run_study
 
 
 def sweep(
@@ -81,34 +80,15 @@ def sweep(
     InputError
         Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``, ``Store``.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement)
-    resolution.check()
+    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
     design = design_of(system, over, points, samples, seed)
-    asked = metrics_of(metrics, system)
-    return sweep_design(
-        system, design, asked, resolution, executor=executor, workers=workers, store=store, resume=resume, progress=progress
-    )
+    return sweep_design(system, design, metrics_of(metrics, system), resolution, How(executor, workers, store, resume, progress))
 
 
-def sweep_design(
-    system: System,
-    design: Design,
-    metrics: tuple[Metric, ...],
-    resolution: Resolution,
-    *,
-    executor: Executor | None = None,
-    workers: int | None = None,
-    store: str | Path | None = None,
-    resume: bool = False,
-    progress: Callable[[float, str], None] | None = None,
-) -> xr.Dataset:
+def sweep_design(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Resolution, how: How) -> xr.Dataset:
     """Return the dataset of a sweep whose parts have been checked; see :func:`sweep`."""
     systems = [_case(system, changes) for changes in design.cases]
-    refused = [item for item in systems if isinstance(item, InputError)]
-    if len(refused) == len(systems):
-        raise InputError(f"over.{refused[0].where}", f"no case is possible: {refused[0].problem}", refused[0].remedy)
-    kept = Store(Path(store), study_parts(system, design, metrics, resolution), metrics, resume=resume) if store is not None else None
-    outcomes = run_cases(systems, metrics, resolution, executor=executor, workers=workers, store=kept, progress=progress)
+    outcomes = run_study(systems, metrics, resolution, how, study_parts(system, design, metrics, resolution), where="over")
     message = failures_text(outcomes)
     if message:
         warnings.warn(message, PhysicsWarning, stacklevel=3)

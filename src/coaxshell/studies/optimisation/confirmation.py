@@ -45,9 +45,8 @@ def finer(resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Re
     for name in confirm:
         if name not in allowed:
             raise InputError(f"confirm.{name}", "is not a setting of a run", f"allowed: {', '.join(allowed)}")
-    fine = replace(resolution, **confirm)
     try:
-        fine.check()
+        fine = replace(resolution, **confirm).checked()
     except InputError as error:
         raise within("confirm", error) from None
     return fine, replace(fine, time_step=fine.time_step / 2)

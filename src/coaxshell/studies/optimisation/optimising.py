@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,10 +18,8 @@ from coaxshell.studies.optimisation.search import Candidate, Crew, EnoughError, 
 from coaxshell.studies.optimisation.targets import Targets, targets_of
 from coaxshell.studies.optimisation.variables import Space, VariableLike, space_of
 from coaxshell.studies.resolution import Resolution
-from coaxshell.studies.store import Store
+from coaxshell.studies.running import How, Report
 from coaxshell.studies.uncertainty.distributions import Uncertain, uncertain_of
-
-Report = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
@@ -138,12 +136,11 @@ def optimise(
     InputError
         Anything wrong with the study, before its first run.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement)
-    resolution.check()
+    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
     chance = (uncertain, samples)
     search_by = (method, evaluations, population, start, seed)
     problem = problem_of(system, variables, objectives, constraints, resolution, chance, search_by, confirm)
-    return optimise_problem(problem, executor=executor, workers=workers, journal=journal, resume=resume, progress=progress)
+    return optimise_problem(problem, How(executor, workers, journal, resume, progress))
 
 
 def problem_of(
@@ -180,30 +177,20 @@ def problem_of(
     return Problem(space, targets, resolution, properties, chosen(method, setting), setting, evaluations, finer(resolution, confirm))
 
 
-def optimise_problem(
-    problem: Problem,
-    *,
-    executor: Executor | None = None,
-    workers: int | None = None,
-    journal: str | Path | None = None,
-    resume: bool = False,
-    progress: Report | None = None,
-) -> Optimum:
-    """Search the best of a problem whose parts have been checked; see :func:`optimise`."""
-    store = None
-    if journal is not None:
-        try:
-            store = Store(Path(journal), problem.parts(), problem.targets.metrics, resume=resume)
-        except InputError as error:
-            raise InputError(error.where.replace("store", "journal"), error.problem, error.remedy) from None
-    report = progress or (lambda fraction, stage: None)
+def optimise_problem(problem: Problem, how: How) -> Optimum:
+    """Search the best of a problem whose parts have been checked, its journal the store of *how*; see :func:`optimise`."""
+    try:
+        journal = how.opened(problem.parts(), problem.targets.metrics)
+    except InputError as error:
+        raise InputError(error.where.replace("store", "journal"), error.problem, error.remedy) from None
+    report = how.progress or (lambda fraction, stage: None)
     samples = problem.uncertain.scenarios
-    with Crew(executor, workers) as crew:
+    with Crew(how.executor, how.workers) as crew:
 
         def told(candidates: list[Candidate]) -> None:
             report(len(candidates) / problem.evaluations, f"optimising: {best_so_far(problem.targets, candidates)}")
 
-        evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, crew, problem.evaluations, store, told)
+        evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, crew, problem.evaluations, journal, told)
         baseline, complete = evaluations.baseline(), True
         confirmations: tuple[Confirmation, ...] = ()
         try:

@@ -13,14 +13,13 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from coaxshell.errors import InputError, PhysicsWarning
+from coaxshell.errors import PhysicsWarning
 from coaxshell.model.system import System
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.labelled import CASE, failures_text, labelled
 from coaxshell.studies.metrics import Metrics, metrics_of
 from coaxshell.studies.resolution import Resolution
-from coaxshell.studies.running import run_cases
-from coaxshell.studies.store import Store
+from coaxshell.studies.running import How, run_study
 from coaxshell.studies.uncertainty.indices import indices_with_intervals
 from coaxshell.studies.uncertainty.plan import Plan, plan_of
 from coaxshell.studies.uncertainty.statistics import STATISTICS, statistics_with_intervals
@@ -88,10 +87,9 @@ def sensitivity(
     InputError
         Anything wrong with the study, before its first run; see :func:`coaxshell.studies.uncertainty.plan.plan_of`.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement)
-    resolution.check()
+    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
     plan = plan_of(system, over, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=True, where="over")
-    return uncertainty_of(plan, executor=executor, workers=workers, store=store, resume=resume, progress=progress)
+    return uncertainty_of(plan, How(executor, workers, store, resume, progress))
 
 
 def robustness(
@@ -140,27 +138,14 @@ def robustness(
     InputError
         Anything wrong with the study, before its first run.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement)
-    resolution.check()
+    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
     plan = plan_of(system, uncertain, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=False)
-    return uncertainty_of(plan, executor=executor, workers=workers, store=store, resume=resume, progress=progress)
+    return uncertainty_of(plan, How(executor, workers, store, resume, progress))
 
 
-def uncertainty_of(
-    plan: Plan,
-    *,
-    executor: Executor | None = None,
-    workers: int | None = None,
-    store: str | Path | None = None,
-    resume: bool = False,
-    progress: Callable[[float, str], None] | None = None,
-) -> xr.Dataset:
+def uncertainty_of(plan: Plan, how: How) -> xr.Dataset:
     """Return the dataset of a study whose parts have been checked; see :func:`sensitivity` and :func:`robustness`."""
-    refused = [item for item in plan.systems if isinstance(item, InputError)]
-    if len(refused) == len(plan.systems):
-        raise InputError(refused[0].where, f"no run is possible: {refused[0].problem}", refused[0].remedy)
-    kept = Store(Path(store), plan.parts, plan.metrics, resume=resume) if store is not None else None
-    outcomes = run_cases(plan.systems, plan.metrics, plan.resolution, executor=executor, workers=workers, store=kept, progress=progress)
+    outcomes = run_study(plan.systems, plan.metrics, plan.resolution, how, plan.parts)
     message = failures_text(outcomes)
     if message:
         wanted = "indices and statistics" if plan.indices else "statistics"
