@@ -110,7 +110,7 @@ def test_rows_follow_the_shells_from_the_inside():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["hybrid", "--compare", "bear"], ["'bear'", "bare, absorbers"]),
+        (["hybrid", "--compare", "bear"], ["--compare: there is no preset 'bear'", "bare, absorbers"]),
         (["hybrid", "--compare", "missing.toml"], ["missing.toml", "cannot be read"]),
         (["bear", "--compare", "bare"], ["'bear'"]),
         (["hybrid", "--compare"], ["--compare"]),

@@ -10,9 +10,11 @@ import warnings
 from pathlib import Path
 
 import pytest
+import typer
 
 import coaxshell
 from coaxshell.cli import main
+from coaxshell.cli.app import app
 from coaxshell.cli.progress import progress
 
 COMMANDS = (
@@ -35,6 +37,13 @@ def test_every_command_has_help(run, command):
     outcome = run(command, "--help")
     assert outcome.code == 0
     assert "Usage: coaxshell " + command in outcome.out
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_help_has_what_a_terminal_takes_for_markup(command):
+    known = typer.main.get_command(app).commands[command]
+    for text in (known.help, *(getattr(parameter, "help", None) or "" for parameter in known.params)):
+        assert "[" not in text
 
 
 def test_version(run):
@@ -107,7 +116,7 @@ def test_bar_on_a_terminal(capsys, monkeypatch):
 def test_module_and_exit_code():
     done = subprocess.run([sys.executable, "-m", "coaxshell", "run", "bear"], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("error: scenario: there is no preset 'bear'")
+    assert done.stderr.startswith("error: SCENARIO: there is no preset 'bear'")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")

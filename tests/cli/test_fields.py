@@ -64,7 +64,7 @@ def test_film_as_mp4(run, saved):
 
 def test_film_without_the_extra_is_refused_at_once(refused, saved, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
-    assert "pip install 'coaxshell[video]', or name a .webp file" in refused("animate", "bare")
+    assert 'install it: pip install "coaxshell[video]", or name a .webp file' in refused("animate", "bare")
 
 
 @pytest.mark.parametrize("kind", ["csv", "mat"])

@@ -32,7 +32,7 @@ def test_figure_computes_what_it_needs(run, small):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["99"], ["'99'", "available: 2, 3"]),
+        (["99"], ["'99'", "allowed: 2, 3"]),
         (["3", "--from", "missing.nc"], ["missing.nc", "exist"]),
         (["3", "--from", "x.nc", "--preset", "bare"], ["--from", "--preset"]),
         (["3", "--from", "x.nc", "--set", "a=1"], ["--from", "--set"]),

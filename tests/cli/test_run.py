@@ -62,7 +62,7 @@ def test_modes_auto(run):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["bear"], ["scenario", "'bear'", "bare, absorbers"]),
+        (["bear"], ["SCENARIO: there is no preset 'bear'; did you mean 'bare'?", "bare, absorbers", "or a .toml file"]),
         (["missing.toml"], ["missing.toml", "cannot be read"]),
         (["done.nc"], ["'done.nc'", "saved run", "coaxshell info"]),
         (["bare", "--set", "source.peak_presure=1e4"], ["source.peak_presure", "peak_pressure"]),

@@ -62,7 +62,7 @@ def test_another_codes_histories(run):
         (("--against", "none.csv"), "--case: is missing"),
         (("--case", "bare"), "--case: is for --against or --template"),
         (("--against", "none.csv", "--case", "bare"), "none.csv: cannot be read"),
-        (("--against", "none.csv", "--case", "nowhere"), "there is no preset 'nowhere'"),
+        (("--against", "none.csv", "--case", "nowhere"), "--case: there is no preset 'nowhere'"),
         (("--against", "none.csv", "--case", "bare", "--modes", "auto"), "--modes: 'auto' is not allowed"),
         (("--against", "none.csv", "--case", "bare", "--tolerance", "x"), "--tolerance: 'x' is not a number"),
         (("--template", "mine.txt", "--case", "bare"), "--template: 'mine.txt' has no known ending"),

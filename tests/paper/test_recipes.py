@@ -24,7 +24,7 @@ def test_every_figure_of_results_is_there_with_its_caption():
     for recipe in FIGURES.values():
         assert recipe.caption.endswith(".")
         assert set(recipe.presets) <= set(cx.presets.names())
-    with pytest.raises(InputError, match="available: 2, 3"):
+    with pytest.raises(InputError, match="allowed: 2, 3"):
         figure_recipe("15")
 
 

@@ -111,5 +111,5 @@ def test_refuses_other_endings_and_places(figure, tmp_path):
 
 def test_recipes():
     assert figure_recipe("3") is FIGURES["3"]
-    with pytest.raises(InputError, match="there is no figure '99'; available: 2, 3"):
+    with pytest.raises(InputError, match="there is no figure '99'; allowed: 2, 3"):
         figure_recipe("99")

@@ -125,7 +125,7 @@ def test_without_the_extra_the_remedy_is_told_before_any_work(waves, tmp_path, m
         return genuine(name, *arguments, **keywords)
 
     monkeypatch.setattr(builtins, "__import__", missing)
-    with pytest.raises(InputError, match=r"imageio-ffmpeg; pip install 'coaxshell\[video\]', or name a \.webp file"):
+    with pytest.raises(InputError, match=r'imageio-ffmpeg; install it: pip install "coaxshell\[video\]", or name a \.webp file'):
         save_film(waves, path=tmp_path / "film.mp4", view=VIEW)
     assert waves.asked == []
     assert save_film(waves, path=tmp_path / "film.webp", frames=2, view=VIEW).exists()

@@ -95,6 +95,9 @@ def test_an_unresolved_step_is_told_with_both_numbers_and_the_remedy() -> None:
     assert float(step) * float(frequency) == pytest.approx(0.5, rel=0.05)
     cured = cx.simulate(stiff, **settings, refinement=int(factor) + 1)
     assert not [text for text in cured.warnings if text.startswith("absorbers: ")]
+    (twice,) = [text for text in cx.simulate(stiff, **settings, refinement=2).warnings if text.startswith("absorbers: ")]
+    assert float(re.search(pattern, twice)[3]) == pytest.approx(2 * float(step), rel=0.1)  # beside the refinement of 2
+    assert int(re.search(pattern, twice)[4]) == pytest.approx(int(factor), abs=2)
 
 
 def test_a_resolved_step_is_not_warned_about() -> None:

@@ -178,6 +178,13 @@ BAD = {
     "unknown scale": ('scale = "log"', 'scale = "square"', 'must be "linear" or "log"'),
     "unknown metric": ("inner.peak_stress", "inner.peak_strain", "is not a known metric"),
     "no objective": ('["inner.peak_stress"]', "[]", "objectives: there are none"),
+    "objective without a metric": ('["inner.peak_stress"]', "[{ maximise = true }]", "objectives[0].metric: is missing"),
+    "maximise in words": (
+        '["inner.peak_stress"]',
+        '[{ metric = "inner.mass", maximise = "no" }]',
+        "objectives[0].maximise: 'no' is not allowed",
+    ),
+    "objective twice": ('["inner.peak_stress"]', '["inner.mass", "inner.mass"]', "objectives: 'inner.mass' is given twice"),
     "constraint without a limit": ("absorbers.mass <= 200 kg/m", "absorbers.mass", 'write "METRIC <= LIMIT"'),
     "constraint of an unknown metric": ("absorbers.mass <= 200", "absorbers.weight <= 200", "constraints[0]"),
     "constraint in a wrong unit": ("200 kg/m", "200 kPa", "is not a mass per metre"),

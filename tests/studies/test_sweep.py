@@ -91,7 +91,7 @@ def test_processes_give_the_same_bits_and_netcdf_keeps_them(hybrid, quick, tmp_p
         ({"absorbers.mass": 5}, {}, "5 is not a list"),
         ({"absorbers.count": [1.5]}, {}, "is not a count"),
         ({"absorbers.mass": [1, 2], "absorbers.count": [3]}, {"points": "zip"}, "lists differ in length"),
-        ({"absorbers.mass": [1]}, {"points": "gird"}, "points: 'gird' is not known; did you mean 'grid'"),
+        ({"absorbers.mass": [1]}, {"points": "gird"}, "points: 'gird' is unknown; did you mean 'grid'"),
         ({"absorbers.mass": (1, 2)}, {"points": "sobol"}, "samples: None is not allowed"),
         ({"absorbers.mass": [1, 2, 3]}, {"points": "sobol", "samples": 4}, "are not two ends"),
         ({"absorbers.mass": [1]}, {"metrics": ["inner.peak"]}, r"metrics\[0\]: 'inner.peak' is not a known metric"),

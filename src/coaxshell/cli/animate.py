@@ -26,7 +26,7 @@ def animate(
     fps: Annotated[float, typer.Option("--fps", help="Frames per second.")] = 25.0,
     size: Annotated[int, typer.Option("--size", help="Side of a panel in pixels.")] = 450,
     until: Annotated[
-        str | None, typer.Option("--until", metavar="TRANSITS", help="Last instant. [default: the end of the shortest run]")
+        str | None, typer.Option("--until", metavar="TRANSITS", help="Last instant.", show_default="the end of the shortest run")
     ] = None,
     width: field_options.WidthOption = "6",
     units: field_options.UnitsOption = "auto",

@@ -23,9 +23,17 @@ def is_saved(source: str) -> bool:
 
 
 def answers(
-    context: typer.Context, sources: Sequence[str], changes: Sequence[str] | None, request: Request, *, quiet: bool
+    context: typer.Context,
+    sources: Sequence[str],
+    changes: Sequence[str] | None,
+    request: Request,
+    *,
+    quiet: bool,
+    options: tuple[str, str] = ("SOURCE", "--compare"),
 ) -> list[Response]:
     """Return the response of each source: a saved run (.nc), a preset or a scenario (.toml).
+
+    *options* are the arguments that name the first and the second source.
 
     Raises
     ------
@@ -45,7 +53,7 @@ def answers(
             from coaxshell.cli.scenario import load_system
 
             load = load_reference if number else load_system
-            found.append(request.solve(load(source, changes or ()), quiet=quiet))
+            found.append(request.solve(load(source, changes or (), options[number > 0]), quiet=quiet))
     return found
 
 

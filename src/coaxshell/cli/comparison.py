@@ -21,7 +21,7 @@ _FITTINGS = ("absorbers", "control")
 _NONE = "-"
 
 
-def load_reference(scenario: str, changes: Sequence[str] = ()) -> System:
+def load_reference(scenario: str, changes: Sequence[str] = (), where: str = "--compare") -> System:
     """Return the system to compare with. Changes to absorbers and control are for a system that has them; all others for both.
 
     Raises
@@ -29,9 +29,9 @@ def load_reference(scenario: str, changes: Sequence[str] = ()) -> System:
     InputError
         No such preset or file, something wrong in the file, or a change that is not allowed.
     """
-    plain = load_system(scenario)
+    plain = load_system(scenario, where=where)
     missing = [name for name, there in zip(_FITTINGS, (plain.absorbers != (), plain.control is not None), strict=True) if not there]
-    return load_system(scenario, [change for change in changes if _root(change) not in missing])
+    return load_system(scenario, [change for change in changes if _root(change) not in missing], where)
 
 
 def _root(change: str) -> str:

@@ -24,11 +24,11 @@ def export(
     source: field_options.SourceArgument,
     to: Annotated[str, typer.Option("--to", metavar="KIND", help="paraview (a folder), csv or mat (a file).")],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Folder or file. [default: after SOURCE, in this folder]")
+        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Folder or file.", show_default="after SOURCE, in this folder")
     ] = None,
     times: Annotated[
         str | None,
-        typer.Option("--times", metavar="T,T,...", help="ParaView: instants in transits, as in 0:5:0.05. [default: 101, evenly]"),
+        typer.Option("--times", metavar="T,T,...", help="ParaView: instants in transits, as in 0:5:0.05.", show_default="101, evenly"),
     ] = None,
     width: field_options.WidthOption = "6",
     points: Annotated[int, typer.Option("--points", help="ParaView: points along a side of the square.")] = 301,

@@ -21,10 +21,11 @@ UnitsOption = Annotated[
     str, typer.Option("--units", metavar="UNIT", help="Of the pressure: auto, Pa, kPa, MPa, or relative for p/(rho c^2).")
 ]
 PressureLimitOption = Annotated[
-    str | None, typer.Option("--pressure-limit", metavar="PA", help="End of the pressure's colour scale in Pa. [default: from the fields]")
+    str | None,
+    typer.Option("--pressure-limit", metavar="PA", help="End of the pressure's colour scale in Pa.", show_default="from the fields"),
 ]
 StressLimitOption = Annotated[
-    str | None, typer.Option("--stress-limit", metavar="PA", help="End of the stress's colour scale in Pa. [default: from the fields]")
+    str | None, typer.Option("--stress-limit", metavar="PA", help="End of the stress's colour scale in Pa.", show_default="from the fields")
 ]
 
 

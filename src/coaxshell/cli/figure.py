@@ -34,7 +34,7 @@ def figure(
         typer.Option("--preset", metavar="NAME", help="Preset or .toml file to compute instead of the paper's. Twice for a comparison."),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg. [default: figure-NUMBER.png]")
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="figure-NUMBER.png")
     ] = None,
     changes: options.SetOption = None,
     *,
@@ -61,7 +61,7 @@ def figure(
     if isinstance(recipe, StudyRecipe):
         tell_warnings(_draw_study(recipe, sources, changes, request, target, quiet=quiet))
     else:
-        responses = answers(context, sources, changes, request, quiet=quiet)
+        responses = answers(context, sources, changes, request, quiet=quiet, options=("--preset", "--preset"))
         with progress(quiet) as report:
             drawn = recipe.draw(responses, report)
         save_figure(drawn, target)
@@ -77,7 +77,7 @@ def _draw_study(
     from coaxshell.paper import Resolution, Runs
     from coaxshell.plotting import save_figure
 
-    systems = [load_system(name, changes or ()) for name in sources]
+    systems = [load_system(name, changes or (), "--preset") for name in sources]
     with named_as_options(), progress(quiet) as report:
         drawn = recipe.draw(systems, Runs(Resolution(**request.settings())), report)
     save_figure(drawn.figure, target)

@@ -21,7 +21,11 @@ def optimise(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", metavar="DIR", help="Folder for best.toml, optimum.json, history.csv. [default: STUDY.optimum in this folder]"
+            "--output",
+            "-o",
+            metavar="DIR",
+            help="Folder for best.toml, optimum.json, history.csv.",
+            show_default="STUDY.optimum in this folder",
         ),
     ] = None,
     figure: Annotated[
@@ -31,7 +35,10 @@ def optimise(
     journal: Annotated[
         Path | None,
         typer.Option(
-            "--journal", metavar="DIR", help="Keep every evaluation here. [default: STUDY.journal in this folder, removed when all is done]"
+            "--journal",
+            metavar="DIR",
+            help="Keep every evaluation here.",
+            show_default="STUDY.journal in this folder, removed when all is done",
         ),
     ] = None,
     resume: options.ResumeOption = False,

@@ -30,12 +30,12 @@ DaskOption = Annotated[
     typer.Option("--dask", metavar="ADDRESS", help="Work on the Dask cluster whose scheduler is here, as in tcp://10.0.0.1:8786."),
 ]
 DatasetOption = Annotated[
-    Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF. [default: STUDY.nc in this folder]")
+    Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF.", show_default="STUDY.nc in this folder")
 ]
 StoreOption = Annotated[
     Path | None,
     typer.Option(
-        "--store", metavar="DIR", help="Keep every finished case here. [default: STUDY.store in this folder, removed when all is done]"
+        "--store", metavar="DIR", help="Keep every finished case here.", show_default="STUDY.store in this folder, removed when all is done"
     ),
 ]
 ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with what has been kept.")]

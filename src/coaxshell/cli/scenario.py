@@ -13,23 +13,34 @@ if TYPE_CHECKING:
     from coaxshell.model import System
 
 
-def load_system(scenario: str, changes: Sequence[str] = ()) -> System:
-    """Return the system of a preset or a TOML file, with ``path=value`` changes applied.
+def load_system(scenario: str, changes: Sequence[str] = (), where: str = "SCENARIO") -> System:
+    """Return the system of a preset or a TOML file, with ``path=value`` changes applied; *where* is the argument that names it.
 
     Raises
     ------
     InputError
         No such preset or file, something wrong in the file, or a change that is not allowed.
     """
-    from coaxshell.model import System, presets
+    from coaxshell.model import presets
+    from coaxshell.model.naming import suggestion
 
     wanted = overrides(changes)
     if scenario in presets.names():
         system = presets.load(scenario)
     elif Path(scenario).suffix.lower() == ".toml":
-        system = System.from_toml(scenario)
+        system = _of_file(scenario, where)
     elif Path(scenario).suffix.lower() == ".nc":
-        raise InputError("scenario", f"{scenario!r} is a saved run, solved already", "give a .toml file or a preset; see coaxshell info")
+        raise InputError(where, f"{scenario!r} is a saved run, solved already", "give a .toml file or a preset; see coaxshell info")
     else:
-        raise InputError("scenario", f"there is no preset {scenario!r}", f"give a .toml file or one of: {', '.join(presets.names())}")
+        raise InputError(where, f"there is no preset {scenario!r}", f"{suggestion(scenario, presets.names())}, or a .toml file")
     return system.with_overrides(wanted) if wanted else system
+
+
+def _of_file(path: str, where: str) -> System:
+    """Return the system of a TOML file; an error in it names the option too, since another file may have been given beside it."""
+    from coaxshell.model import System
+
+    try:
+        return System.from_toml(path)
+    except InputError as error:
+        raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if where.startswith("-") else error from None

@@ -23,7 +23,7 @@ def snapshots(
     compare: field_options.CompareOption = None,
     times: Annotated[
         str | None,
-        typer.Option("--times", metavar="T,T,...", help="Instants in transits, as in 0.2,1.2,3.6 or 0:5:0.5. [default: the paper's]"),
+        typer.Option("--times", metavar="T,T,...", help="Instants in transits, as in 0.2,1.2,3.6 or 0:5:0.5.", show_default="the paper's"),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.")] = Path("snapshots.png"),
     columns: Annotated[int, typer.Option("--columns", help="Instants in a row, 1 to 20.")] = 4,

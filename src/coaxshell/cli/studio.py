@@ -18,11 +18,11 @@ def studio(
 ) -> None:
     """Design by hand in the browser, on this machine.
 
-    Ctrl-C ends it. Needs the extra coaxshell[studio].
+    Ctrl-C ends it. Needs the extra 'studio'.
     """
     missing = [name for name in ("starlette", "uvicorn", "plotly") if find_spec(name) is None]
     if missing:
-        raise InputError("studio", f"needs {', '.join(missing)}", "pip install 'coaxshell[studio]'")
+        raise InputError("studio", f"needs {', '.join(missing)}", 'install what is missing: pip install "coaxshell[studio]"')
     from coaxshell.studio.server import serve
 
     def ready(address: str) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coaxshell.cli.progress import progress
-from coaxshell.cli.values import whole
+from coaxshell.cli.values import named_as_options, whole
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -29,5 +29,9 @@ def study_options(store: Path, resume: bool, workers: str | None, dask: str | No
     number = None if workers is None else whole("--workers", workers)
     if number is not None and dask is not None:
         raise InputError("--workers", "has no effect with --dask, whose cluster has its own", "give one or the other")
-    with dask_executor(dask) if dask is not None else nullcontext() as executor, progress(quiet, left=True) as report:
-        yield How(executor, number, store, resume, report)
+    with ExitStack() as stack:
+        executor = None
+        if dask is not None:
+            with named_as_options(address="dask", dask="dask"):
+                executor = stack.enter_context(dask_executor(dask))
+        yield How(executor, number, store, resume, stack.enter_context(progress(quiet, left=True)))

@@ -89,7 +89,7 @@ def _against(path: Path, case: str, output: Path, limit: float | None, resolutio
     from coaxshell.cli.scenario import load_system
     from coaxshell.verification.against import against
 
-    system = load_system(case)
+    system = load_system(case, where="--case")
     with values.named_as_options(), progress(quiet) as report:
         found = against(path, system, time_step=resolution[0], modes=resolution[1], tolerance=limit, progress=report)
     _tell(found, output)
@@ -100,7 +100,7 @@ def _template(case: str, path: Path, modes: int) -> None:
     from coaxshell.cli.scenario import load_system
     from coaxshell.verification.against import template
 
-    system = load_system(case)
+    system = load_system(case, where="--case")
     writable(path, "--template", (".csv",))
     template(system, path, modes=modes)
     typer.echo(f"wrote {path}")

@@ -176,4 +176,4 @@ def figure_recipe(number: str) -> FigureRecipe | StudyRecipe:
     try:
         return FIGURES[number]
     except KeyError:
-        raise InputError("figure", f"there is no figure {number!r}", f"available: {', '.join(FIGURES)}") from None
+        raise InputError("figure", f"there is no figure {number!r}", f"allowed: {', '.join(FIGURES)}") from None

@@ -118,7 +118,7 @@ def _ffmpeg() -> str:
         import imageio_ffmpeg
     except ImportError:
         raise InputError(
-            "output", "an .mp4 needs the package imageio-ffmpeg", "pip install 'coaxshell[video]', or name a .webp file"
+            "output", "an .mp4 needs the package imageio-ffmpeg", 'install it: pip install "coaxshell[video]", or name a .webp file'
         ) from None
     try:
         return str(imageio_ffmpeg.get_ffmpeg_exe())

@@ -70,7 +70,9 @@ def plot_sensitivity(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -
     """
     _known(dataset, metric)
     if "first_order" not in dataset or bool(dataset["first_order"].sel(metric=metric).isnull().any()):
-        raise InputError("metric", f"{metric!r} has no indices", "it does not vary, runs have failed, or none were asked for")
+        raise InputError(
+            "metric", f"{metric!r} has no indices", "give one that varies, of a study with indices none of whose runs has failed"
+        )
     if ax is None:
         with style():
             ax = new_figure(0.72 * PAGE_WIDTH, 1.2 + 0.3 * dataset.sizes["field"]).subplots()
@@ -101,7 +103,9 @@ def plot_distribution(dataset: xr.Dataset, metric: str, ax: Axes | None = None) 
     _known(dataset, metric)
     values = dataset[f"runs.{metric}"].to_numpy()[: _sample(dataset)]
     if not np.isfinite(values).all():
-        raise InputError("metric", f"{metric!r} has no distribution", "runs have failed: see the variable failure")
+        raise InputError(
+            "metric", f"{metric!r} has no distribution, since runs have failed", "see the variable failure for why, and resume the study"
+        )
     if ax is None:
         with style():
             ax = new_figure(0.62 * PAGE_WIDTH, 2.6).subplots()

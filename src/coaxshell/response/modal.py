@@ -35,7 +35,7 @@ def elastic_section(problem: Problem, shell: int) -> Section:
     """Return the section of a shell; InputError if it is rigid and has none."""
     section = problem.shells[shell].section
     if section is None:
-        raise InputError(f"shells[{shell}]", "a rigid shell has no stress and no voltage", "choose another shell")
+        raise InputError(f"shells[{shell}]", "a rigid shell has no stress and no voltage", "choose an elastic one")
     return section
 
 

@@ -56,8 +56,8 @@ def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
     return warnings
 
 
-def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSpectra) -> list[str]:
-    """Return the warning about absorbers that vibrate faster than the step resolves.
+def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSpectra, refinement: int) -> list[str]:
+    """Return the warning about absorbers that vibrate faster than the step, time_step/*refinement*, resolves.
 
     The fastest motions are those of a shell's own points (their mobility over one step is the kernel's weight at lag 0, about
     dt/2 over the local mass) and of the absorber's mass on the tangent stiffness reached, k_l + 3 k_nl max D^2.
@@ -76,10 +76,10 @@ def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSp
     fastest = float(np.sqrt(tangent * (local + inertia)).max())
     if fastest * step <= RESOLVED_ANGLE:
         return []
-    factor = int(np.ceil(fastest * step / RESOLVED_ANGLE))
+    factor = refinement * int(np.ceil(fastest * step / RESOLVED_ANGLE))
     return [
         f"absorbers: the stiffest vibrates at {fastest:.3g} per transit on the shell's own mass, {fastest * step:.2g} radians a step, "
-        f"more than {RESOLVED_ANGLE:g}; use time_step = {RESOLVED_ANGLE / fastest:.2g} or refinement = {factor}"
+        f"more than {RESOLVED_ANGLE:g}; use time_step = {refinement * RESOLVED_ANGLE / fastest:.2g} or refinement = {factor}"
     ]
 
 

@@ -226,12 +226,13 @@ class _March:
         try:
             return self.newton.solve(known)
         except ConvergenceError:
+            failed = f"their forces did not converge in {MAX_ITERATIONS} iterations"
+            if self.links.lent.any():  # no step helps: the tangent is singular wherever both springs pass through rest
+                remedy = "give them a linear stiffness, however small, such as 1 kN/m^2, or a mass"
+                raise InputError("absorbers", f"without mass, cubic springs alone leave them loose at rest, and {failed}", remedy) from None
             step = 2.0 * self.links.half_step
-            raise InputError(
-                "time_step",
-                f"{step:g} is too coarse for the absorbers: their forces did not converge in {MAX_ITERATIONS} iterations",
-                f"use time_step = {step / 4:g} or refinement = 4",
-            ) from None
+            remedy = "use a quarter of time_step, or four times the refinement"
+            raise InputError("time_step", f"steps of {step:g} are too coarse for the absorbers: {failed}", remedy) from None
 
 
 @dataclass(frozen=True)

@@ -155,7 +155,7 @@ class Prepared:
             linked = solve_linked(structure, links, progress, saturate=saturate)
             normal, tangential = linked.normal, linked.tangential
             stopwatch.lap("absorbers and saturation")
-            warnings += checks.absorbers(structure, links, linked)
+            warnings += checks.absorbers(structure, links, linked, self.settings.refinement)
         else:
             normal, tangential = structure.linear.normal, structure.linear.tangential
             stopwatch.lap("modal system at all Laplace nodes")

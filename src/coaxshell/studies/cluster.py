@@ -28,7 +28,9 @@ def dask_executor(address: str, timeout: float = 10.0) -> Iterator[Executor]:
     try:
         client: Any = Client(address, timeout=timeout, set_as_default=False)  # type: ignore[no-untyped-call]
     except (OSError, ValueError, TypeError) as error:
-        raise InputError("dask", f"no scheduler answers at {address!r} ({error})", "give its address, as in tcp://10.0.0.1:8786") from None
+        raise InputError(
+            "address", f"no scheduler answers at {address!r} ({error})", "give its address, as in tcp://10.0.0.1:8786"
+        ) from None
     try:
         # What a worker was about when it died is done again elsewhere; three deaths under one task are not chance.
         yield client.get_executor(retries=0)

@@ -73,7 +73,7 @@ def design_of(system: System, over: Mapping[str, Any], points: str = "grid", sam
         Nothing to vary, an unknown path, an empty range, a value of the wrong unit, lists of unequal lengths, too many cases.
     """
     if points not in POINTS:
-        raise InputError("points", f"{points!r} is not known", suggestion(str(points), POINTS))
+        raise InputError("points", f"{points!r} is unknown", suggestion(str(points), POINTS))
     if not isinstance(over, Mapping) or not over:
         raise InputError("over", "nothing to vary", 'name at least one path and its values, as in {"absorbers.count": range(51)}')
     fields = tuple(_field(system, path) for path in over)

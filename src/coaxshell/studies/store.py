@@ -96,16 +96,16 @@ class Store:
             temporary.unlink(missing_ok=True)
 
     def _same(self, found: dict[str, Any] | None, ours: dict[str, Any]) -> None:
-        name = str(self.folder)
+        name, another = str(self.folder), "give another folder, or remove this one"
         if found is None or "study" not in found:
-            raise InputError("store", f"{name!r} has a damaged {MANIFEST}", "give another folder")
+            raise InputError("store", f"{name!r} has a damaged {MANIFEST}", another)
         if found.get("format") != FORMAT_VERSION or found.get("numerics") != ours["numerics"]:
             theirs = found.get("numerics", "another version")
-            raise InputError("store", f"{name!r} was made by coaxshell {theirs}; this is {ours['numerics']}", "give another folder")
+            raise InputError("store", f"{name!r} was made by coaxshell {theirs}; this is {ours['numerics']}", another)
         theirs, mine = found["study"], ours["study"]
         differ = [key for key in {**theirs, **mine} if theirs.get(key) != mine.get(key)]
         if differ:
-            raise InputError("store", f"{name!r} holds another study: its {' and '.join(differ)} differ", "give another folder")
+            raise InputError("store", f"{name!r} holds another study: its {' and '.join(differ)} differ", another)
 
     def key(self, system: System, resolution: Resolution) -> str:
         """Return the name of a case."""

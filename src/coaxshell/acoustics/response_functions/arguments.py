@@ -28,8 +28,10 @@ def checked_times(times: npt.ArrayLike) -> FloatArray:
         given = np.array(times, dtype=np.float64, ndmin=1)
     except (TypeError, ValueError):
         raise InputError("times", f"{times!r} is not a list of numbers", "give finite numbers") from None
-    if given.ndim != 1 or not np.all(np.isfinite(given)):
-        raise InputError("times", "is not a list of finite numbers", "give a scalar or one-dimensional array of finite numbers")
+    if given.ndim != 1:
+        raise InputError("times", f"an array of shape {given.shape} is not allowed", "give one number or a list of them")
+    if not np.all(np.isfinite(given)):
+        raise InputError("times", f"{given[~np.isfinite(given)][0]} is not finite", "give finite numbers")
     return given
 
 

@@ -59,9 +59,8 @@ def march_directly(
         if progress is not None and (n + 1) % _REPORT_EVERY == 0:
             progress((n + 1) / grid.time.size, "time steps")
         if not np.abs(acceleration).max() < limit:
-            raise InputError(
-                "time_step", f"{grid.time_step:g} is unstable: the motion grows without bound from t = {grid.time[n]:.3g}", "halve it"
-            )
+            grows = f"{grid.time_step:g} is unstable: the motion grows without bound from t = {grid.time[n]:.3g}"
+            raise InputError("time_step", grows, f'use {grid.time_step / 2:g} or engine = "spectral"')
     return result
 
 

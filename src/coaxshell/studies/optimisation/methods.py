@@ -55,7 +55,7 @@ class Setting(NamedTuple):
 def chosen(method: str, setting: Setting) -> str:
     """Return the method that "auto" stands for; InputError if the one asked for is unknown or does not fit the objectives."""
     if method not in METHODS:
-        raise InputError("method", f"{method!r} is not known", f"allowed: {', '.join(METHODS)}")
+        raise InputError("method", f"{method!r} is unknown", f"allowed: {', '.join(METHODS)}")
     if method == "auto":
         return "nsga2" if setting.objectives > 1 else "cma-es" if len(setting.levels) > 1 else "differential-evolution"
     if method != "nsga2" and setting.objectives > 1:

@@ -154,8 +154,9 @@ def targets_of(objectives: Any, constraints: Any, system: System, folder: str | 
     goals = tuple(_goal(item, f"objectives[{k}]", system, folder) for k, item in enumerate(asked))
     limits = tuple(_limit(item, f"constraints[{k}]", system, folder) for k, item in enumerate(_listed(constraints, "constraints")))
     names = [goal.target.name for goal in goals]
-    if len(set(names)) < len(names):
-        raise InputError("objectives", "one is given twice", "give each once")
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError("objectives", f"{twice!r} is given twice", "give each once")
     every = dict.fromkeys([goal.target.metric for goal in goals] + [limit.target.metric for limit in limits])
     return Targets(goals, limits, tuple(every))
 
@@ -175,7 +176,11 @@ def _goal(item: Any, where: str, system: System, folder: str | None) -> Goal:
         unknown = sorted(set(item) - {"metric", "maximise"})
         if unknown:
             raise InputError(f"{where}.{unknown[0]}", "is not an entry of an objective", "allowed: metric, maximise")
-        item = Objective(item["metric"], bool(item.get("maximise", False)))
+        if "metric" not in item:
+            raise InputError(f"{where}.metric", "is missing", "name one, such as inner.peak_stress")
+        if not isinstance(item.get("maximise", False), bool):
+            raise InputError(f"{where}.maximise", f"{shown(item['maximise'])} is not allowed", "must be true or false")
+        item = Objective(item["metric"], item.get("maximise", False))
     if isinstance(item, Objective):
         return Goal(_target(item.metric, where, system, folder), item.maximise)
     return Goal(_target(item, where, system, folder))
