@@ -25,6 +25,10 @@ class InputError(ValueError):
         text = f"{where}: {problem}" if where else problem
         super().__init__(" ".join((text + (f"; {remedy}" if remedy else "")).split()))
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str]]:
+        """Travel between processes whole; an exception would by default be made again from its text alone."""
+        return type(self), (self.where, self.problem, self.remedy)
+
 
 class PhysicsWarning(UserWarning):
     """A run that is well formed but outside the range in which its answer can be trusted; carries both numbers and the remedy."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coaxshell.errors import InputError
 from coaxshell.paper import Resolution
 from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
@@ -118,6 +119,28 @@ def test_runs_are_solved_once_and_read_back_alike(tmp_path):
                 np.testing.assert_array_equal(kept.histories[key], values)
     Runs(replace(SMALL, modes=8), solver=solver, store=Store(tmp_path))(preset("bare"))
     assert len(solved) == 5
+
+
+def test_runs_on_several_processes_are_those_in_turn(monkeypatch):
+    from coaxshell.paper import cases, known_runs
+
+    monkeypatch.setattr(known_runs, "FEWEST", 4)
+    systems, told = cases.count(preset("bare"), (0, 1, 2, 3, 5)), []
+    shared = dict(Runs(SMALL, workers=2).each(systems, lambda fraction, stage: told.append(fraction), peaks_only=True))
+    assert list(shared) == list(systems)
+    assert told[-1] == 1.0
+    for name, run in Runs(SMALL).each(systems, peaks_only=True):
+        assert (shared[name].shells, shared[name].warnings) == (run.shells, run.warnings)
+
+
+def test_a_run_that_fails_in_another_process_says_what_is_wrong(monkeypatch):
+    from coaxshell.paper import known_runs
+
+    monkeypatch.setattr(known_runs, "FEWEST", 2)
+    systems = {str(n): preset("absorbers").with_overrides({"absorbers.count": n}) for n in (3, 4)}
+    with pytest.raises(InputError, match=r"^time_step: ") as caught:
+        list(Runs(replace(SMALL, time_step=-1.0), workers=2).each(systems))
+    assert caught.value.remedy
 
 
 def test_a_broken_piece_counts_as_absent(tmp_path):

@@ -6,6 +6,7 @@ import itertools
 import time
 
 from coaxshell.model import presets
+from coaxshell.studio import worker
 from coaxshell.studio.arrays import decoded
 
 SMALL = {"duration": 2.0, "time_step": 0.02, "modes": 12}
@@ -45,3 +46,11 @@ def ended(client, job, seconds=60):
             return job
         time.sleep(0.02)
     raise AssertionError(f"still {job['state']} after {seconds} s")
+
+
+def reporting(seconds):
+    """Report progress ever so often, in a worker."""
+    for number in range(10):
+        time.sleep(seconds / 10)
+        worker.report(number / 10, "at it")
+    return "done"

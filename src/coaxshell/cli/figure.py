@@ -76,9 +76,10 @@ def _draw_study(
     from coaxshell.cli.scenario import load_system
     from coaxshell.paper import Resolution, Runs
     from coaxshell.plotting import save_figure
+    from coaxshell.studies.executors import worker_count
 
     systems = [load_system(name, changes or (), "--preset") for name in sources]
     with named_as_options(), progress(quiet) as report:
-        drawn = recipe.draw(systems, Runs(Resolution(**request.settings())), report)
+        drawn = recipe.draw(systems, Runs(Resolution(**request.settings()), workers=worker_count(None)), report)
     save_figure(drawn.figure, target)
     return drawn.warnings

@@ -51,7 +51,7 @@ def reproduce(
     prepare(output)
     suffix = (".mp4" if find_spec("imageio_ffmpeg") else ".webp") if film else None
     try:
-        with values.named_as_options(), progress(quiet) as report:
+        with values.named_as_options(), progress(quiet, left=True) as report:
             found = compute(output, resolution, only=wanted, film_suffix=suffix, workers=count, progress=report)
     except KeyboardInterrupt:
         raise Interrupted(f"interrupted; finished parts are kept in {str(output)!r}: the same command goes on") from None

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coaxshell.paper.fields import Fields, fields_of
-from coaxshell.paper.observed import Observed, observe
-from coaxshell.paper.runs import Report, Resolution, solve_each
+from coaxshell.paper.observed import Observed
+from coaxshell.paper.runs import Report, Resolution, Solver, solve_each
+from coaxshell.paper.shared_runs import FEWEST, Share, in_turn, shared_out
 from coaxshell.paper.store import Store, key_of
 
 if TYPE_CHECKING:
     from coaxshell.model import System
-    from coaxshell.response import Response
-
-Solver = Callable[["Mapping[str, System]", Resolution, "Report | None"], "Iterator[tuple[str, Response]]"]
-"""Solves systems in turn; :func:`coaxshell.paper.runs.solve_each` or one with slips turned on."""
-
 
 CORRECTED = "corrected"
 
@@ -43,6 +39,8 @@ class Runs:
         Where finished runs are kept.
     has_fields : bool
         Whether the pressure fields of its responses obey the model that was solved.
+    workers : int
+        Processes for many runs at once; of more than one the solver must be importable.
     """
 
     def __init__(
@@ -53,12 +51,14 @@ class Runs:
         variant: str = CORRECTED,
         store: Store | None = None,
         has_fields: bool = True,
+        workers: int = 1,
     ) -> None:
         self.resolution = resolution or Resolution()
         self.variant = variant
         self._solver = solver
         self._has_fields = has_fields
         self._store = store
+        self._workers = workers
         self._known: dict[str, Observed] = {}
         self._fields: dict[str, Fields] = {}
 
@@ -88,13 +88,13 @@ class Runs:
         settings = resolution or self.resolution
         keys = {name: self._key(system, settings) for name, system in systems.items()}
         missing = {name: systems[name] for name, key in keys.items() if self._find(key, peaks_only) is None}
-        solved = self._solver(missing, settings, progress) if missing else iter(())
+        share = Share(self._solver, missing, settings, peaks_only)
+        several = self._workers > 1 and len(missing) >= FEWEST
+        solved = shared_out(share, self._workers, progress) if several else in_turn(share, progress) if missing else iter(())
         for name, key in keys.items():
-            if name in missing:
-                named, response = next(solved)
-                if named != name:
-                    raise AssertionError(f"the solver gave {named!r} where {name!r} was due")
-                self._keep(key, observe(response, peaks_only=peaks_only))
+            while self._find(key, peaks_only) is None:
+                found, observed = next(solved)
+                self._keep(keys[found], observed)
             yield name, self._known[key]
         for _ in solved:  # lets the solver report that it is through
             pass

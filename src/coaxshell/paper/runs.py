@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.structures import Report, solve_each
 
-__all__ = ["Report", "Resolution", "solve_each"]
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import Response
+
+Solver = Callable[["Mapping[str, System]", Resolution, "Report | None"], "Iterator[tuple[str, Response]]"]
+"""Solves systems in turn; :func:`solve_each` or one with slips turned on."""
+
+__all__ = ["Report", "Resolution", "Solver", "solve_each"]

@@ -25,6 +25,8 @@ FIELD_VALUES, FRAME_VALUES, FIELD_BYTES = 30_000_000, 8_000_000, 500_000_000
 LIVE_WAITING, JOBS_WAITING, JOBS_OF_CLIENT, JOBS_KEPT, STREAMS = 120, 24, 6, 64, 200
 SWEPT, CASES = 4, 400
 RUNS, SLOTS = 4_000, 4_000
+SILENT_SECONDS, DROPPED_SECONDS = 180.0, 15.0
+"""How long a task may go without reporting progress, and how long it may go on once nobody wants it."""
 
 
 def table() -> dict[str, int]:

@@ -72,7 +72,7 @@ def ready() -> int:
 
 
 def perform(number: int, task: Callable[..., Any], arguments: tuple[Any, ...]) -> Outcome:
-    """Carry out one task; what is wrong with its input comes back as a value, since InputError cannot travel."""
+    """Carry out one task; what is wrong with its input comes back as a value."""
     _Here.number, _Here.part = number, None
     _Here.board[FRACTION] = 0.0
     _Here.stage.value = b""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
+import time
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import ProcessPoolExecutor
@@ -21,6 +22,8 @@ from coaxshell.studio.refusals import RefusedError
 
 REMEMBERED = 4
 """Structures that a worker is taken to have at hand."""
+WATCHED_EVERY = 1.0
+"""Seconds between two looks at a task that runs."""
 
 
 @dataclass(eq=False)
@@ -47,6 +50,7 @@ class Work:
     future: asyncio.Future[Any]
     process: _Process | None = None
     started: Callable[[], None] | None = None
+    dropped: bool = False
 
 
 @dataclass(eq=False)
@@ -56,6 +60,16 @@ class _Process:
     executor: ProcessPoolExecutor
     work: Work | None = None
     recent: OrderedDict[Hashable, None] = field(default_factory=OrderedDict)
+
+    @property
+    def told(self) -> tuple[float, bytes]:
+        """What the task last reported."""
+        return float(self.board[worker.FRACTION]), bytes(self.stage.value)
+
+    def kill(self) -> None:
+        """End it at once, whatever it is at."""
+        for child in list((self.executor._processes or {}).values()):
+            child.kill()
 
 
 class Workers:
@@ -107,6 +121,7 @@ class Workers:
 
     def drop(self, work: Work) -> None:
         """Take a task out of its queue, or stop it at its next report."""
+        work.dropped = True
         if work.process is not None:
             work.process.board[worker.STOP] = work.number
         elif work in self._queues[work.live]:
@@ -117,7 +132,8 @@ class Workers:
         """Return fraction and stage of a task."""
         if work.process is None:
             return 0.0, "waiting"
-        return float(work.process.board[worker.FRACTION]), work.process.stage.value.decode(errors="replace")
+        fraction, stage = work.process.told
+        return fraction, stage.decode(errors="replace")
 
     def _feed(self) -> None:
         if self._closed:
@@ -148,14 +164,18 @@ class Workers:
         process.recent.move_to_end(work.place)
         if len(process.recent) > REMEMBERED:
             process.recent.popitem(last=False)
+        silent = False
         try:
-            future = process.executor.submit(worker.perform, work.number, work.task, work.arguments)
-            outcome: worker.Outcome = await asyncio.wrap_future(future)
+            future = asyncio.wrap_future(process.executor.submit(worker.perform, work.number, work.task, work.arguments))
+            silent = await _watched(process, work, future)
+            outcome: worker.Outcome = await future
         except BrokenProcessPool:
             process.executor.shutdown(wait=False)
             if not self._closed and process in self._processes:
                 self._processes[self._processes.index(process)] = self._started()
-            _settle(work, InputError("system", "the worker that solved it has died", "most likely for want of memory: ask for less"))
+            if work.dropped:
+                work.future.cancel()
+            _settle(work, _lost(silent))
         except BaseException as error:
             if work.future.done():
                 raise
@@ -190,6 +210,28 @@ class Workers:
                 child.terminate()
             for child in running:
                 child.join(2)
+
+
+async def _watched(process: _Process, work: Work, future: asyncio.Future[Any]) -> bool:
+    """Wait for a task; end its process, and return True, when it reports nothing for too long, or goes on long after it was dropped."""
+    told, since, most = process.told, time.monotonic(), limits.SILENT_SECONDS
+    while not future.done():
+        await asyncio.wait([future], timeout=WATCHED_EVERY)
+        if process.told != told:
+            told, since = process.told, time.monotonic()
+        if work.dropped and most > limits.DROPPED_SECONDS:
+            since, most = time.monotonic(), limits.DROPPED_SECONDS
+        if not future.done() and time.monotonic() - since > most:
+            process.kill()
+            await asyncio.wait([future])
+            return True
+    return False
+
+
+def _lost(silent: bool) -> InputError:
+    if silent:
+        return InputError("system", f"its solution made no progress for {limits.SILENT_SECONDS:g} s and was ended", "ask for less")
+    return InputError("system", "the worker that solved it has died", "most likely for want of memory: ask for less")
 
 
 def _settle(work: Work, error: Exception) -> None:

@@ -20,10 +20,16 @@ MARKS = {"holds": "good", "holds in part": "part", "does not hold": "bad", "not 
 _STYLE = """
 :root { --part: #8a5a00; } @media (prefers-color-scheme: dark) { :root { --part: #e5b567; } }
 .part { color: var(--part); } code { font-size: .86em; background: var(--wash); padding: .1em .35em; border-radius: .25em; }
-table.claims td { min-width: 5.5rem; } table.claims td:nth-child(1) { min-width: 0; } table.claims td:nth-child(2) { min-width: 7rem; }
-table.claims td:nth-child(3), table.claims td:last-child { min-width: 17rem; } td:nth-child(7) { white-space: normal; }
+td:nth-child(7) { white-space: normal; } td .dim { font-size: .95em; }
+.claims th, .slips th { white-space: normal; vertical-align: bottom; }
+@media (min-width: 60.01rem) { .claims td:nth-child(n + 4):nth-child(-n + 7) { width: 5.2rem; } .claims td:nth-child(3) { width: 31%; } }
 video { width: 100%; max-width: 66rem; border: 1px solid var(--line); border-radius: .4rem; }
 details { margin-top: .3rem; } summary { cursor: pointer; color: var(--dim); } h2 { scroll-margin-top: 1rem; }
+@media (max-width: 60rem) { /* one statement or slip below the other, each cell with the heading of its column */
+  .claims thead, .slips thead { display: none; }
+  .claims tr, .slips tr { display: block; padding: .7rem 0; border-bottom: 1px solid var(--line); }
+  .claims td, .slips td { display: block; border: 0; padding: .12rem 0; }
+  .claims td::before, .slips td::before { content: attr(data-heading) ": "; color: var(--dim); } }
 """
 
 
@@ -54,7 +60,10 @@ def html(results: Results) -> str:
 def _table(headings: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> str:
     """Return a table of cells that are HTML already."""
     head = "".join(f'<th scope="col">{escape(name)}</th>' for name in headings)
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    names = [escape(name) for name in headings]
+    body = "".join(
+        "<tr>" + "".join(f'<td data-heading="{name}">{cell}</td>' for name, cell in zip(names, row, strict=True)) + "</tr>" for row in rows
+    )
     return f'<div class="wide"><table class="{kind}"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
@@ -106,7 +115,7 @@ def _film(results: Results) -> str:
 
 def _slips(results: Results) -> str:
     return (
-        _table(texts.SLIP_HEADINGS, _escaped(texts.slip_rows()))
+        _table(texts.SLIP_HEADINGS, _escaped(texts.slip_rows()), "slips")
         + "<p>What they do to the stress, each turned on alone or together in the ordinary solver:</p>"
         + _table(texts.EFFECT_HEADINGS, _escaped(texts.effect_rows(results)))
     )

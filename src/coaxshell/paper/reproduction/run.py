@@ -62,7 +62,7 @@ def reproduce(
             raise outcome
         done += 1
         if progress:
-            progress(0.95 * done / len(jobs), job.part.title)
+            progress(0.95 * done / len(jobs), f"reproducing: {job.part.title}")
     pieces = {job.part: _piece(store, job) for job in jobs}
 
     def wanted(topic: str) -> bool:
@@ -73,7 +73,7 @@ def reproduce(
     figures = drawn_figures(resolution, store, pieces) if wanted("figures") else ()
     judged = judged_claims(resolution, store) if wanted("claims") else ()
     if progress:
-        progress(1.0, "figures and claims")
+        progress(1.0, "reproducing: figures and claims")
     return Results(
         resolution,
         figures,

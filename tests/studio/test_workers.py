@@ -1,0 +1,68 @@
+"""Worker processes that get stuck: ended, their person told, and replaced."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import time
+
+import pytest
+from asking import reporting
+
+from coaxshell.errors import InputError
+from coaxshell.studio import limits, worker, workers
+
+
+@pytest.fixture(autouse=True)
+def attentive(monkeypatch):
+    monkeypatch.setattr(workers, "WATCHED_EVERY", 0.05)
+
+
+def carried_out(story, **seconds):
+    """Return what a coroutine function finds with one worker that has started, under other limits than usual."""
+
+    async def told():
+        crew = workers.Workers(1)
+        try:
+            await crew.submit(worker.ready).future  # takes seconds, and reports nothing
+            with pytest.MonkeyPatch.context() as patch:
+                for name, value in seconds.items():
+                    patch.setattr(limits, name, value)
+                return await story(crew)
+        finally:
+            crew.close()
+
+    return asyncio.run(told())
+
+
+def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs():
+    async def story(crew):
+        first = await crew.submit(os.getpid).future
+        with pytest.raises(InputError, match=r"made no progress for 0\.5 s"):
+            await crew.submit(time.sleep, 600).future
+        limits.SILENT_SECONDS = 60.0  # the new process has to start
+        return first, await crew.submit(os.getpid).future
+
+    first, second = carried_out(story, SILENT_SECONDS=0.5)
+    assert first != second
+
+
+def test_a_task_that_reports_may_take_its_time():
+    async def story(crew):
+        await crew.submit(reporting, 0.0).future  # has this file read there
+        limits.SILENT_SECONDS = 2.0
+        return await crew.submit(reporting, 4.0).future
+
+    assert carried_out(story, SILENT_SECONDS=60.0) == "done"
+
+
+def test_a_dropped_task_that_does_not_look_up_is_ended_soon():
+    async def story(crew):
+        stuck = crew.submit(time.sleep, 600, live=False)
+        await asyncio.sleep(0.1)
+        crew.drop(stuck)
+        with pytest.raises(asyncio.CancelledError):
+            await stuck.future
+        return await crew.submit(os.getpid).future
+
+    assert carried_out(story, DROPPED_SECONDS=0.2) > 0
