@@ -98,6 +98,18 @@ RAW = [
     b'{"system": {}, "system": {}}',
 ]
 
+STUDY = {
+    "over": {"absorbers.mass": {"from": 1, "to": 2, "count": 2}},
+    "metrics": ["inner.peak_stress"],
+    "variables": {"absorbers.mass": {"from": 1, "to": "20 kg", "scale": "log"}, "control.derivative": [-10, 0]},
+    "objectives": [{"metric": "inner.peak_stress", "maximise": False}, "absorbers.mass"],
+    "constraints": ["absorbers.mass <= 400 kg/m"],
+    "evaluations": 3,
+    "population": 4,
+    "seed": 1,
+}
+"""A sweep and an optimisation, to be spoilt."""
+
 
 def places(value, path=()):
     """Yield the paths of all entries."""
@@ -173,9 +185,17 @@ def requests(seed=1, count=1100):
         elif number % 3 == 1:
             yield "POST", "/api/validate", encoded(mutated(random_, {"system": base}, random_.randrange(1, 5)))
         else:
-            kind = random_.choice(["solve", "field", "film", "sweep"])
-            path = random_.choice(["/api/solve", "/api/jobs", "/api/link", "/api/link/open"])
-            body = {"client": "tab", "slot": "fuzz", "revision": number, "system": base, "resolution": {**SMALL, "modes": 4}, "kind": kind}
+            kind = random_.choice(["solve", "field", "film", "sweep", "optimise", "optimise"])
+            path = random_.choice(["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/link", "/api/link/open"])
+            body = {
+                "client": "tab",
+                "slot": "fuzz",
+                "revision": number,
+                "system": base,
+                "resolution": {**SMALL, "modes": 4},
+                "kind": kind,
+                **STUDY,
+            }
             yield (
                 "POST",
                 path,

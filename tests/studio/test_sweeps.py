@@ -50,6 +50,9 @@ def test_cases_that_fail_are_told_and_the_others_go_on(client):
         ({"over": {"absorbers.mass": {"from": 1, "to": 2, "step": 1e-9}}}, "over.absorbers.mass.step"),
         ({"over": {"absorbers.count": list(range(25)), "absorbers.mass": list(range(1, 21))}}, "over"),
         ({"over": {"absorbers.colour": [1]}}, "over.absorbers.colour"),
+        ({"over": {"absorbers.count": [10**9]}}, "over.absorbers.count"),
+        ({"over": {"source.pulse": [{"type": "sampled", "file": "/etc/passwd"}]}}, "over.source.pulse[0]"),
+        ({"over": {"x" * 300: [1]}}, "over"),
         ({"over": None}, "over"),
     ],
 )

@@ -36,6 +36,11 @@ def loads(text: str, folder: Path | None = None, name: str = "TOML") -> dict[str
         raise InputError(name, str(error), "the text must be valid TOML") from None
     except (ValueError, RecursionError) as error:  # a number of thousands of digits, thousands of brackets
         raise InputError(name, f"cannot be read ({str(error)[:60]})", "the text must be valid TOML of moderate depth") from None
+    return resolved(data, folder)
+
+
+def resolved(data: dict[str, Any], folder: Path | None = None) -> dict[str, Any]:
+    """Turn the tables of a TOML text into the fields of a system, in place: names of materials and files as in :func:`loads`."""
     known = _materials(data.pop("materials", {}))
     shells = data.get("shells")
     for i, shell in enumerate(shells if isinstance(shells, list) else []):
@@ -56,6 +61,11 @@ def dumps(system: System) -> str:
     """Return TOML text from which an equal system can be read; numbers are plain SI, floats exact."""
     import tomli_w
 
+    return tomli_w.dumps(tables(system))
+
+
+def tables(system: System) -> dict[str, Any]:
+    """Return what :func:`dumps` writes, as nested tables."""
     data = _plain(system)
     keys: dict[str, Material] = {}
     for shell, written in zip(system.shells, data["shells"], strict=True):
@@ -64,7 +74,7 @@ def dumps(system: System) -> str:
     ordered: dict[str, Any] = {"name": data.pop("name", ""), "fluids": data.pop("fluids")}
     if keys:
         ordered["materials"] = {key: _plain(material) for key, material in keys.items()}
-    return tomli_w.dumps({**ordered, **data})
+    return {**ordered, **data}
 
 
 def canonical(system: System) -> dict[str, Any]:

@@ -6,11 +6,12 @@ import math
 import threading
 import time
 import traceback
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.response import Response
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.reading import Reading
 from coaxshell.studies.resolution import Resolution
@@ -86,7 +87,7 @@ def evaluate(batch: Batch) -> list[Outcome]:
     if structures is None or structures.resolution != batch.resolution:
         structures = _kept.structures = Structures(batch.resolution)
     with one_blas_thread():
-        return [_evaluated(case.system, batch.metrics, structures) for case in batch.cases]
+        return [evaluated(case.system, batch.metrics, structures.response) for case in batch.cases]
 
 
 def forget() -> None:
@@ -94,10 +95,11 @@ def forget() -> None:
     _kept.structures = None
 
 
-def _evaluated(system: System, metrics: tuple[Metric, ...], structures: Structures) -> Outcome:
+def evaluated(system: System, metrics: tuple[Metric, ...], solved: Callable[[System], Response]) -> Outcome:
+    """Return what became of one system: its metrics, or why it has none; *solved* gives its response."""
     start = time.perf_counter()
     try:
-        response = structures.response(system)
+        response = solved(system)
         reading = Reading(response)
         values = tuple(metric(reading) for metric in metrics)
     except InputError as error:

@@ -26,23 +26,28 @@ class Structures:
     Parameters
     ----------
     resolution : Resolution
+    prepared : PreparedSystem, optional
+        A structure that is at hand already, at this resolution.
+    progress : callable, optional
+        Called with the fraction of each run done and the name of its stage.
     """
 
-    def __init__(self, resolution: Resolution) -> None:
+    def __init__(self, resolution: Resolution, prepared: PreparedSystem | None = None, progress: Report | None = None) -> None:
         self.resolution = resolution
-        self._structure: System | None = None
-        self._prepared: PreparedSystem | None = None
+        self._prepared = prepared
+        self._structure = None if prepared is None else structure_of(prepared.system)
+        self._progress = progress
 
     def response(self, system: System) -> Response:
         """Return the response of a system; InputError as :func:`coaxshell.response.simulate`."""
         settings = self.resolution.arguments()
         saturates = system.control is not None and system.control.saturation
         if self.resolution.engine != "spectral" or not (system.absorber_list or saturates):
-            return simulate(system, **settings)
+            return simulate(system, progress=self._progress, **settings)
         structure = structure_of(system)
         if self._prepared is None or self._structure != structure:
             self._prepared, self._structure = self._made(structure, settings), structure
-        return self._prepared.simulate(system.absorbers)
+        return self._prepared.simulate(system.absorbers, progress=self._progress)
 
     def _made(self, structure: System, settings: dict[str, Any]) -> PreparedSystem:
         """Return a prepared structure: the last one retuned, which shares what the two have in common and gives the same numbers."""
@@ -50,7 +55,7 @@ class Structures:
             return self._prepared.retuned(structure)
         del settings["engine"]
         self._prepared = None  # let go of the old kernels before new ones are made
-        return prepare(structure, **settings)
+        return prepare(structure, progress=self._progress, **settings)
 
 
 def solve_each(systems: Mapping[str, System], resolution: Resolution, progress: Report | None = None) -> Iterator[tuple[str, Response]]:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from copy import deepcopy
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from coaxshell.errors import InputError
 from coaxshell.model import presets, toml
-from coaxshell.model.base import Described, within
+from coaxshell.model.base import Described, shown, within
 from coaxshell.model.naming import suggestion
 from coaxshell.model.system import System
 from coaxshell.studies.design import Design, design_of
@@ -46,11 +47,17 @@ class ResolutionEntry(Described):
             raise within("resolution", error) from None
 
 
+def _scenario(given: Any) -> Any:
+    if not isinstance(given, str | dict):
+        raise InputError("", f"{shown(given)} is not a scenario", "give a preset, a .toml file, or the description as a table")
+    return given
+
+
 class Study(Described):
     """Describe what every study has: a base system and a resolution. Kinds of studies are subclasses."""
 
-    scenario: str
-    """A preset, or a .toml file beside the study."""
+    scenario: Annotated[str | dict[str, Any], BeforeValidator(_scenario)]
+    """A preset, a .toml file beside the study, or the description itself as a table."""
     changes: dict[str, Any] = Field(default_factory=dict, alias="set")
     """Changes of the scenario by dotted path."""
     resolution: ResolutionEntry = ResolutionEntry()
@@ -58,7 +65,12 @@ class Study(Described):
 
     def system(self, folder: Path) -> System:
         """Return the base system; InputError if there is none, or a change is not allowed. Files are relative to *folder*."""
-        if self.scenario in presets.names():
+        if isinstance(self.scenario, dict):
+            try:
+                base = System.model_validate(toml.resolved(deepcopy(self.scenario), folder))
+            except InputError as error:
+                raise within("scenario", error) from None
+        elif self.scenario in presets.names():
             base = presets.load(self.scenario)
         elif Path(self.scenario).suffix.lower() == ".toml":
             try:

@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from coaxshell.studio import job_routes, refusals, routes, statics
+from coaxshell.studio import job_routes, refusals, routes, statics, study_routes
 from coaxshell.studio.guard import Guard
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.state import Studio
@@ -20,7 +20,7 @@ from coaxshell.studio.state import Studio
 def create_app(port: int) -> Guard:
     """Return the ASGI application of a server that listens on a port of 127.0.0.1."""
     application = Starlette(
-        routes=[*statics.routes(), *routes.routes(), *job_routes.routes()],
+        routes=[*statics.routes(), *routes.routes(), *job_routes.routes(), *study_routes.routes()],
         lifespan=_alive,
         exception_handlers={RefusedError: _refused, HTTPException: _plain},
     )

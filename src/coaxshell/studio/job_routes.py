@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
@@ -15,14 +15,16 @@ from starlette.routing import BaseRoute, Route
 
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
-from coaxshell.studies.design import POINTS
-from coaxshell.studio import arrays, bodies, downloads, limits, refusals, worker
+from coaxshell.studio import arrays, bodies, downloads, limits, refusals, study_routes, worker
 from coaxshell.studio.jobs import Job
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.routes import MOST_REVISION, studio_of, wanted
 from coaxshell.studio.state import Run, Studio
 
-KINDS = ("solve", "field", "film", "sweep")
+if TYPE_CHECKING:
+    from coaxshell.studies.optimisation.optimum import Optimum
+
+KINDS = ("solve", "field", "film", "sweep", "optimise")
 HEARTBEAT, THROTTLE = 15.0, 0.1
 
 
@@ -31,7 +33,7 @@ async def start(request: Request) -> Response:
     studio, data = studio_of(request), await bodies.read_table(request)
     job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", KINDS))
     try:
-        await {"solve": _solve, "field": _field, "film": _film, "sweep": _sweep}[job.kind](studio, job, data)
+        await {"solve": _solve, "field": _field, "film": _film, "sweep": _sweep, "optimise": _optimise}[job.kind](studio, job, data)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({"job": job.told()}, 202)
@@ -87,17 +89,16 @@ async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
 async def _sweep(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.studio import sweeps
 
-    points = bodies.one_of(data, "points", POINTS, "grid")
-    samples = None if data.get("samples") is None else bodies.whole_of(data, "samples", 1, 2**31)
-    seed = bodies.whole_of(data, "seed", 0, 2**31, 0)
-
-    def prepared() -> tuple[Any, ...]:
-        system, settings = wanted(data, live=False)
-        return system, settings, *sweeps.planned(system, data.get("over"), data.get("metrics", sweeps.METRICS), points, samples, seed)
-
-    arguments = await run_in_threadpool(prepared)
+    study = await run_in_threadpool(study_routes.asked, "sweep", data)
     job.file = studio.file("nc")
-    studio.jobs.start(job, sweeps.sweep, *arguments, job.file, place=worker.structure_key(*arguments[:2]))
+    studio.jobs.start(job, sweeps.sweep, *study.arguments, job.file, place=worker.structure_key(study.system, study.settings))
+
+
+async def _optimise(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.studio import optimisations
+
+    study = await run_in_threadpool(study_routes.asked, "optimise", data)
+    studio.jobs.start(job, optimisations.optimise, *study.arguments, place=worker.structure_key(study.system, study.settings))
 
 
 def _runs(studio: Studio, names: Any) -> list[Run]:
@@ -127,9 +128,27 @@ async def result(request: Request) -> Response:
     found = studio_of(request).jobs.finished(request.path_params["job"])
     if found.kind == "sweep":
         return JSONResponse({"kind": "sweep", **found.result})
+    if found.kind == "optimise":
+        from coaxshell.studio import optimisations
+
+        return JSONResponse({"kind": "optimise", **await run_in_threadpool(optimisations.told, found.result)})
     if found.kind != "field":
         raise RefusedError(404, "not-found", "result", f"a {found.kind} has none", "see /api/runs/{run} or /api/jobs/{id}/file")
     return JSONResponse({"run": found.run, **found.result[0], "most_values": limits.FRAME_VALUES})
+
+
+async def design(request: Request) -> Response:
+    """Answer with a design of an optimisation, as with a valid description."""
+    from coaxshell.studio import optimisations
+
+    found = studio_of(request).jobs.finished(request.path_params["job"])
+    if found.kind != "optimise":
+        raise RefusedError(404, "not-found", "design", f"a {found.kind} has none", "start a job of the kind optimise")
+    number = bodies.whole_of(request.path_params, "number", 0, len(found.result.optimum.history) - 1)
+    try:
+        return JSONResponse(await run_in_threadpool(optimisations.design, found.result, number))
+    except InputError as error:
+        return JSONResponse(refusals.told(error))
 
 
 async def frames(request: Request) -> Response:
@@ -149,12 +168,24 @@ async def frames(request: Request) -> Response:
 
 
 async def job_file(request: Request) -> Response:
-    """Answer with the film or the dataset of a job."""
+    """Answer with the film or the dataset of a job, or with the best system or the history of an optimisation."""
     found = studio_of(request).jobs.finished(request.path_params["job"])
+    if found.kind == "optimise":
+        kind = bodies.one_of(dict(request.query_params), "what", ("toml", "csv"), "toml")
+        return await _written(found.result.optimum, kind)
     if found.kind not in ("film", "sweep") or found.file is None:
         raise RefusedError(404, "not-found", "file", f"a {found.kind} has none", "start a job of the kind film")
     suffix = found.file.suffix[1:]
     return FileResponse(found.file, media_type=downloads.TYPES[suffix], filename=f"coaxshell.{suffix}")
+
+
+async def _written(optimum: Optimum, kind: str) -> Response:
+    try:
+        text = await run_in_threadpool(optimum.to_csv if kind == "csv" else lambda: optimum.system.to_toml_string())
+    except InputError as error:
+        raise RefusedError.of(error) from None
+    name = "history.csv" if kind == "csv" else "best.toml"
+    return Response(text, media_type=downloads.TYPES[kind], headers={"Content-Disposition": f'attachment; filename="{name}"'})
 
 
 async def download(request: Request) -> Response:
@@ -225,6 +256,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/jobs", jobs),
         Route("/api/jobs/{job}", job, methods=["GET", "DELETE"]),
         Route("/api/jobs/{job}/result", result),
+        Route("/api/jobs/{job}/designs/{number}", design),
         Route("/api/jobs/{job}/frames", frames),
         Route("/api/jobs/{job}/file", job_file),
         Route("/api/runs/{run}/{what:str}.{suffix:str}", download),

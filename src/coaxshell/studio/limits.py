@@ -7,6 +7,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.model import Sampled, Shell, System
+from coaxshell.model.base import shown
 from coaxshell.solver.settings import Settings
 
 BODY_BYTES = 1_000_000
@@ -24,6 +25,11 @@ MODE_STEPS = 3_000_000
 FIELD_VALUES, FRAME_VALUES, FIELD_BYTES = 30_000_000, 8_000_000, 500_000_000
 LIVE_WAITING, JOBS_WAITING, JOBS_OF_CLIENT, JOBS_KEPT, STREAMS = 120, 24, 6, 64, 200
 SWEPT, CASES = 4, 400
+VARIED, COORDINATES, CONSTRAINTS = 8, 64, 12
+"""Variables of an optimisation as written, and one by one when each absorber has its own; limits on metrics."""
+EVALUATIONS, POPULATION = 2_000, 400
+TEXT = 200
+"""Letters of a value or a constraint."""
 RUNS, SLOTS = 4_000, 4_000
 SILENT_SECONDS, DROPPED_SECONDS = 180.0, 15.0
 """How long a task may go without reporting progress, and how long it may go on once nobody wants it."""
@@ -43,6 +49,11 @@ def table() -> dict[str, int]:
         "mode_steps": MODE_STEPS,
         "swept": SWEPT,
         "cases": CASES,
+        "varied": VARIED,
+        "coordinates": COORDINATES,
+        "constraints": CONSTRAINTS,
+        "evaluations": EVALUATIONS,
+        "population": POPULATION,
         "preview_modes": PREVIEW_MODES,
         "preview_steps": PREVIEW_STEPS,
         "body_bytes": BODY_BYTES,
@@ -85,6 +96,25 @@ def check_system(system: System) -> None:
         if isinstance(source.pulse, Sampled) and len(source.pulse.time) > SAMPLES:
             path = f"source[{index}]" if isinstance(system.source, tuple) else "source"
             raise _above(f"{path}.pulse.time", len(source.pulse.time), SAMPLES, "samples")
+
+
+def check_values(where: str, values: object) -> None:
+    """Raise InputError for values of a study that are neither numbers nor short texts: a table could name a file of this machine."""
+    for number, value in enumerate(values if isinstance(values, list) else ()):
+        if not isinstance(value, int | float | str) or (isinstance(value, str) and (len(value) > TEXT or not value.isprintable())):
+            raise InputError(f"{where}[{number}]", f"{shown(value)} is not taken here", "give numbers, or texts such as '6 mm'")
+
+
+def check_path(where: str, path: str) -> None:
+    """Raise InputError for the path of a field that nobody would type."""
+    if len(path) > TEXT or not path.isprintable():
+        raise InputError(where, f"{shown(path)} is not a path", "write it as source.peak_pressure or shells[0].radius")
+
+
+def check_counts(where: str, largest: float) -> None:
+    """Raise InputError for a study that goes to larger counts than the studio solves."""
+    if largest > ABSORBERS:
+        raise InputError(where, f"{largest:,} is too many here", f"at most {ABSORBERS}")
 
 
 def settings_of(given: object, *, live: bool) -> Settings:

@@ -12,14 +12,13 @@ from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
+from coaxshell.response import Response
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, design_of
-from coaxshell.studies.evaluation import Outcome
+from coaxshell.studies.evaluation import Outcome, evaluated, failure
 from coaxshell.studies.labelled import FAILURE, WARNINGS, labelled
 from coaxshell.studies.metrics import Metric, metric_names, metrics_of
 from coaxshell.studies.paths import varied
-from coaxshell.studies.reading import Reading
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studio import limits, worker
 
 METRICS = ["inner.peak_stress", "outer.peak_stress"]
@@ -38,6 +37,8 @@ def planned(system: System, over: Any, metrics: Any, points: str, samples: int |
     for path, given in over.items():
         if isinstance(given, dict) and "step" in given:  # its count is known only once all its values are there
             raise InputError(f"over.{path}.step", "is not taken here", "give from, to and count")
+        limits.check_path("over", path)
+        limits.check_values(f"over.{path}", given)
         count = len(given) if isinstance(given, list) else given.get("count", 2) if isinstance(given, dict) else 1
         if not isinstance(count, int) or count > limits.CASES:
             raise InputError(f"over.{path}", f"{shown(count)} values are too many here", f"at most {limits.CASES}")
@@ -50,6 +51,9 @@ def planned(system: System, over: Any, metrics: Any, points: str, samples: int |
         if name not in known:
             raise InputError(f"metrics[{number}]", f"{shown(name)} is not a metric of this system", suggestion(str(name), known))
     design = design_of(system, over, points, samples, seed)
+    for field, values in zip(design.fields, design.values, strict=True):
+        if field.integer:
+            limits.check_counts(f"over.{field.path}", max(values))
     cases = int(np.prod(design.shape))
     if cases > limits.CASES:
         raise InputError("over", f"{cases} cases are too many here", f"at most {limits.CASES}; coaxshell sweep takes more")
@@ -62,21 +66,21 @@ def sweep(system: System, settings: Settings, design: Design, metrics: tuple[Met
     for number, changes in enumerate(cases):
         with worker.part(number, len(cases), f"case {number + 1} of {len(cases)}"):
             outcomes.append(_case(system, settings, changes, metrics))
-    resolution = Resolution(settings.duration, settings.time_step, settings.modes, refinement=settings.refinement)
+    resolution = worker.resolution_of(settings)
     dataset = labelled(system, design, metrics, resolution, outcomes)
     dataset.to_netcdf(path, engine="h5netcdf")
     return told(dataset, metrics)
 
 
 def _case(system: System, settings: Settings, changes: dict[str, Any], metrics: tuple[Metric, ...]) -> Outcome:
-    try:
-        case = varied(system, changes)
+    def solved(case: System) -> Response:
         limits.check_system(case)
-        response = worker.answer(case, settings)
-        reading = Reading(response)
-        return Outcome(tuple(float(metric(reading)) for metric in metrics), warnings=tuple(response.warnings))
-    except (InputError, ArithmeticError, ValueError) as error:
-        return Outcome((float("nan"),) * len(metrics), reason=str(error))
+        return worker.answer(case, settings)
+
+    try:
+        return evaluated(varied(system, changes), metrics, solved)
+    except InputError as error:
+        return failure(metrics, str(error))
 
 
 def told(dataset: xr.Dataset, metrics: tuple[Metric, ...]) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.resolution import Resolution
 from coaxshell.studio import limits
 from coaxshell.studio.cache import Cache, held_bytes
 
@@ -116,18 +117,30 @@ def structure_key(system: System, settings: Settings) -> tuple[str, Settings]:
     return system.replace(absorbers=()).model_dump_json(), settings
 
 
+def resolution_of(settings: Settings) -> Resolution:
+    """Return the settings as the resolution of a study."""
+    return Resolution(settings.duration, settings.time_step, settings.modes, refinement=settings.refinement)
+
+
 def answer(system: System, settings: Settings) -> Response:
     """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``."""
     key = (system.model_dump_json(), settings)
     found = _Here.answers.get(key)
     if found is not None:
         return found
-    place = structure_key(system, settings)
-    prepared = _Here.structures.get(place) or _structure(system.replace(absorbers=()), settings)
+    prepared = structure(system, settings)
     response = prepared.simulate(system.absorbers, progress=report)
-    _Here.structures.put(place, prepared)
+    _Here.structures.put(structure_key(system, settings), prepared)  # weighed again: it has grown with the run
     _Here.answers.put(key, response)
     return response
+
+
+def structure(system: System, settings: Settings) -> PreparedSystem:
+    """Return all of a system but its absorbers, prepared: kept, or made and kept."""
+    place = structure_key(system, settings)
+    prepared = _Here.structures.get(place) or _structure(system.replace(absorbers=()), settings)
+    _Here.structures.put(place, prepared)
+    return prepared
 
 
 def _structure(system: System, settings: Settings) -> PreparedSystem:

@@ -11,7 +11,7 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.model.base import within
 from coaxshell.model.system import System
-from coaxshell.studies.optimisation.search import Crew
+from coaxshell.studies.optimisation.search import Runner
 from coaxshell.studies.optimisation.targets import Targets
 from coaxshell.studies.resolution import Resolution
 
@@ -53,7 +53,7 @@ def finer(resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Re
 
 
 def confirmed(
-    baseline: System, best: System, resolutions: tuple[Resolution, ...], targets: Targets, scenarios: Scenarios, crew: Crew
+    baseline: System, best: System, resolutions: tuple[Resolution, ...], targets: Targets, scenarios: Scenarios, crew: Runner
 ) -> tuple[Confirmation, ...]:
     """Return both systems' targets at each resolution."""
     found = []

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,11 +54,13 @@ class Setting(NamedTuple):
 
 
 def chosen(method: str, setting: Setting) -> str:
-    """Return the method that "auto" stands for; InputError if the one asked for is unknown or does not fit the objectives."""
+    """Return the method that "auto" stands for; InputError if the one asked for is unknown, not installed, or does not fit."""
     if method not in METHODS:
         raise InputError("method", f"{method!r} is unknown", f"allowed: {', '.join(METHODS)}")
     if method == "auto":
-        return "nsga2" if setting.objectives > 1 else "cma-es" if len(setting.levels) > 1 else "differential-evolution"
+        method = "nsga2" if setting.objectives > 1 else "cma-es" if len(setting.levels) > 1 else "differential-evolution"
+    if method == "nsga2" and find_spec("pymoo") is None:
+        raise InputError("method", '"nsga2" needs the package pymoo', 'install it: pip install "coaxshell[optimise]"')
     if method != "nsga2" and setting.objectives > 1:
         raise InputError("method", f"{method!r} takes one objective, and {setting.objectives} are given", 'use method="nsga2"')
     return method
@@ -148,12 +151,10 @@ def _differential_evolution(evaluate: Evaluate, setting: Setting) -> None:
 
 def _nsga2(evaluate: Evaluate, setting: Setting) -> None:
     """Search a front by NSGA-II (K. Deb et al., IEEE Trans. Evol. Comput. 6 (2002) 182-197), constraints by constrained domination."""
-    try:
-        from pymoo.algorithms.moo.nsga2 import NSGA2
-        from pymoo.core.problem import Problem
-        from pymoo.core.termination import NoTermination
-    except ImportError:
-        raise InputError("method", '"nsga2" needs the package pymoo', 'install it: pip install "coaxshell[optimise]"') from None
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.core.problem import Problem
+    from pymoo.core.termination import NoTermination
+
     n, size = len(setting.levels), generation_size("nsga2", setting)
     algorithm = NSGA2(pop_size=size, sampling=_first(setting, size))
     problem = Problem(n_var=n, n_obj=setting.objectives, n_ieq_constr=1, xl=np.zeros(n), xu=np.ones(n))

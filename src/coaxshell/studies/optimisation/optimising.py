@@ -10,15 +10,17 @@ from typing import Any, Literal
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.response.summary_text import engineering
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
 from coaxshell.studies.optimisation.methods import Setting, chosen, search
 from coaxshell.studies.optimisation.optimum import Optimum
-from coaxshell.studies.optimisation.search import Candidate, Crew, EnoughError, Evaluations, non_dominated
+from coaxshell.studies.optimisation.search import Candidate, Crew, EnoughError, Evaluations, Runner, non_dominated
 from coaxshell.studies.optimisation.targets import Targets, targets_of
 from coaxshell.studies.optimisation.variables import Space, VariableLike, space_of
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import How, Report
+from coaxshell.studies.store import Store
 from coaxshell.studies.uncertainty.distributions import Uncertain, uncertain_of
 
 
@@ -183,29 +185,34 @@ def optimise_problem(problem: Problem, how: How) -> Optimum:
         journal = how.opened(problem.parts(), problem.targets.metrics)
     except InputError as error:
         raise InputError(error.where.replace("store", "journal"), error.problem, error.remedy) from None
-    report = how.progress or (lambda fraction, stage: None)
-    samples = problem.uncertain.scenarios
     with Crew(how.executor, how.workers) as crew:
+        return searched(problem, crew, journal, how.progress)
 
-        def told(candidates: list[Candidate]) -> None:
-            report(len(candidates) / problem.evaluations, f"optimising: {best_so_far(problem.targets, candidates)}")
 
-        evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, crew, problem.evaluations, journal, told)
-        baseline, complete = evaluations.baseline(), True
-        confirmations: tuple[Confirmation, ...] = ()
-        try:
-            search(problem.method, evaluations, problem.setting)
-        except EnoughError:
-            pass
-        except KeyboardInterrupt:
-            complete = False
-        if not evaluations.candidates:
-            raise KeyboardInterrupt
-        answer = (problem.space, problem.targets, problem.resolution, problem.method, problem.setting.seed, tuple(evaluations.candidates))
-        optimum = Optimum(*answer, baseline, (), complete)
-        if complete and problem.finer and optimum.feasible:
-            report(1.0, "confirming")
-            confirmations = confirmed(problem.space.base, optimum.system, problem.finer, problem.targets, samples, crew)
+def searched(problem: Problem, crew: Runner, journal: Store | None = None, progress: Report | None = None) -> Optimum:
+    """Search the best of a problem with whoever runs its systems; *progress* is told after every generation."""
+    report = progress or (lambda fraction, stage: None)
+    samples = problem.uncertain.scenarios
+
+    def told(candidates: list[Candidate]) -> None:
+        report(len(candidates) / problem.evaluations, f"optimising: {best_so_far(problem.targets, candidates)}")
+
+    evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, crew, problem.evaluations, journal, told)
+    baseline, complete = evaluations.baseline(), True
+    confirmations: tuple[Confirmation, ...] = ()
+    try:
+        search(problem.method, evaluations, problem.setting)
+    except EnoughError:
+        pass
+    except KeyboardInterrupt:
+        complete = False
+    if not evaluations.candidates:
+        raise KeyboardInterrupt
+    answer = (problem.space, problem.targets, problem.resolution, problem.method, problem.setting.seed, tuple(evaluations.candidates))
+    optimum = Optimum(*answer, baseline, (), complete)
+    if complete and problem.finer and optimum.feasible:
+        report(1.0, "confirming")
+        confirmations = confirmed(problem.space.base, optimum.system, problem.finer, problem.targets, samples, crew)
     return Optimum(*answer, baseline, confirmations, complete)
 
 
@@ -217,4 +224,6 @@ def best_so_far(targets: Targets, candidates: Sequence[Candidate]) -> str:
     if not best.feasible:
         return "no design keeps the limits yet"
     goal = targets.goals[0].target
-    return f"best {goal.name} {best.targets[goal.name]:.5g} {goal.metric.units}"
+    value, unit = best.targets[goal.name], goal.metric.units
+    plain = unit == "1" or unit.startswith("kg")  # nobody reads of millikilograms
+    return f"best {goal.name} {f'{value:.4g} {unit}'.removesuffix(' 1') if plain else engineering(value, unit)}"

@@ -108,6 +108,10 @@ class Optimum:
         )
         return xr.Dataset(data, coordinates, self._attributes())
 
+    def to_csv(self) -> str:
+        """Return the history as a table with commas, one design a line."""
+        return str(self.to_dataset().to_dataframe().reset_index().to_csv(index=False))
+
     def _attributes(self) -> dict[str, Any]:
         return {
             "title": f"optimisation of {self.space.base.name or 'a system'}",
@@ -179,8 +183,7 @@ class Optimum:
     def _write(self, folder: Path) -> None:
         self.system.to_toml(folder / "best.toml")
         (folder / "optimum.json").write_text(json.dumps(self.to_dict(), indent=1), encoding="utf-8")
-        frame = self.to_dataset().to_dataframe().reset_index()
-        frame.to_csv(folder / "history.csv", index=False)
+        (folder / "history.csv").write_text(self.to_csv(), encoding="utf-8")
         if len(self.targets.goals) > 1:
             (folder / "front").mkdir()
             for number, one in enumerate(self.front):

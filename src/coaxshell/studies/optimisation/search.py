@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -71,6 +71,14 @@ class Candidate:
         return self.violation, self.objectives[0] if self.feasible else 0.0
 
 
+class Runner(Protocol):
+    """Whoever runs the systems of a generation: a :class:`Crew`, or a program with workers of its own."""
+
+    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Resolution, store: Store | None) -> list[Outcome]:
+        """Return the outcome of each system, in order."""
+        ...
+
+
 class Crew:
     """Workers that stay from generation to generation; a pool that breaks is replaced.
 
@@ -116,7 +124,7 @@ class Evaluations:
     ----------
     space, targets, scenarios, resolution
         The problem.
-    crew : Crew
+    crew : Runner
     budget : int
     store : Store, optional
     told : callable
@@ -129,7 +137,7 @@ class Evaluations:
         targets: Targets,
         scenarios: Scenarios,
         resolution: Resolution,
-        crew: Crew,
+        crew: Runner,
         budget: int,
         store: Store | None,
         told: Callable[[list[Candidate]], None],

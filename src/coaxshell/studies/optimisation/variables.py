@@ -16,6 +16,7 @@ from coaxshell.model.system import System
 from coaxshell.studies.paths import Field, field_of, varied
 
 EVERY = "absorbers[*]."
+MOST_LEVELS = 1_000_000
 _SAME = 1e-6  # degrees
 
 
@@ -236,6 +237,8 @@ def _of_field(variable: Variable, field: Field, wanted: Range | Integer | Choice
     if not low < high:
         raise InputError(where, f"the range from {low!r} to {high!r} is empty", "the first must be less than the second")
     if field.integer or isinstance(wanted, Integer):
+        if high - low > MOST_LEVELS:
+            raise InputError(where, f"the range from {low!r} to {high!r} has too many whole numbers", f"at most {MOST_LEVELS:,}")
         return replace(variable, low=low, high=high, levels=tuple(range(math.ceil(low), math.floor(high) + 1)))
     if wanted.scale not in ("linear", "log"):
         raise InputError(f"{where}.scale", f"{wanted.scale!r} is not allowed", 'must be "linear" or "log"')

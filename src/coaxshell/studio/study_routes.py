@@ -1,0 +1,92 @@
+"""Sweeps and optimisations as a page asks for them: checked before they start, and as study files for the command line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from coaxshell.errors import InputError
+from coaxshell.studies.design import POINTS
+from coaxshell.studio import bodies, refusals
+from coaxshell.studio.routes import studio_of, wanted
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.solver.settings import Settings
+
+KINDS = ("sweep", "optimise")
+
+
+class Asked(NamedTuple):
+    """A study that may start: its system and settings, what its task takes, and what a file of it has."""
+
+    system: System
+    settings: Settings
+    arguments: tuple[Any, ...]
+    entries: dict[str, Any]
+    table: tuple[str, dict[str, Any]]
+
+    @property
+    def text(self) -> str:
+        """Its study file."""
+        from coaxshell.studies.study_text import study_text
+
+        name, varied = self.table
+        command = "sweep" if name == "over" else "optimise"
+        resolution = {key: getattr(self.settings, key) for key in ("duration", "time_step", "modes", "refinement")}
+        return study_text(command, self.system, self.entries, {name: varied, "resolution": resolution})
+
+
+def asked(kind: str, data: dict[str, Any]) -> Asked:
+    """Return the study that a request asks for; InputError or RefusedError when it cannot start."""
+    return {"sweep": _sweep, "optimise": _optimisation}[kind](data)
+
+
+def _sweep(data: dict[str, Any]) -> Asked:
+    from coaxshell.studio import sweeps
+
+    points = bodies.one_of(data, "points", POINTS, "grid")
+    samples = None if data.get("samples") is None else bodies.whole_of(data, "samples", 1, 2**31)
+    seed = bodies.whole_of(data, "seed", 0, 2**31, 0)
+    system, settings = wanted(data, live=False)
+    over, metrics = data.get("over"), data.get("metrics", sweeps.METRICS)
+    plan = sweeps.planned(system, over, metrics, points, samples, seed)
+    entries = {"metrics": metrics, "points": points, "samples": samples, "seed": None if samples is None else seed}
+    return Asked(system, settings, (system, settings, *plan), entries, ("over", over or {}))
+
+
+def _optimisation(data: dict[str, Any]) -> Asked:
+    from coaxshell.studio import optimisations
+
+    system, settings = wanted(data, live=False)
+    problem = optimisations.planned(system, settings, data)
+    entries = {
+        "objectives": data["objectives"],
+        "constraints": data.get("constraints") or None,
+        "method": problem.method,
+        "evaluations": problem.evaluations,
+        "population": problem.setting.population,
+        "seed": problem.setting.seed,
+    }
+    return Asked(system, settings, (problem, settings), entries, ("variables", data["variables"]))
+
+
+async def study(request: Request) -> Response:
+    """Answer with the study file of what would be started."""
+    studio_of(request)
+    data = await bodies.read_table(request)
+    kind = bodies.one_of(data, "kind", KINDS)
+    try:
+        text = await run_in_threadpool(lambda: asked(kind, data).text)
+    except InputError as error:
+        return JSONResponse(refusals.told(error))
+    return JSONResponse({"ok": True, "toml": text})
+
+
+def routes() -> list[BaseRoute]:
+    """Return these routes."""
+    return [Route("/api/study", study, methods=["POST"])]
