@@ -21,7 +21,7 @@ def power_error(steps: int, power: int) -> float:
     return float(abs(found - exact)[late].max() / exact.max())
 
 
-@pytest.mark.parametrize(("power", "tolerance"), [(2, 1e-6), (3, 1e-8), (4, 1e-9)])
+@pytest.mark.parametrize(("power", "tolerance"), [(2, 1e-7), (3, 1e-8), (4, 1e-9)])
 def test_known_transforms(power: int, tolerance: float) -> None:
     assert power_error(2000, power) < tolerance
 
@@ -42,7 +42,7 @@ def test_the_roll_off_keeps_the_band_limit_at_the_front() -> None:
     smooth = abs(grid.invert(spectrum) - exact)[late].max()
     sharp = abs(grid.invert(spectrum, np.ones(grid.nodes.size)) - exact)[late].max()
     assert smooth < 5e-4
-    assert sharp > 1000 * smooth
+    assert sharp > 1e4 * smooth
 
 
 def test_lanczos_is_smooth_at_a_jump() -> None:
@@ -66,7 +66,7 @@ def test_what_comes_after_the_period_is_damped() -> None:
     late = np.exp(-grid.nodes * (grid.period + 1.0)) / (grid.nodes + DECAY) ** 3  # starts after one period
     response = abs(grid.invert(late)).max()
     within = abs(grid.invert(1.0 / (grid.nodes + DECAY) ** 3)).max()
-    np.testing.assert_allclose(response / within, grid.wrap_around, rtol=1e-6)
+    np.testing.assert_allclose(response / within, grid.wrap_around, rtol=1e-12)
     np.testing.assert_allclose(math.exp(-grid.shift * grid.period), grid.wrap_around, rtol=1e-12)
     assert grid.period >= 2 * grid.time[-1]
 
@@ -75,7 +75,7 @@ def test_forward_and_inverse_are_partners() -> None:
     grid = LaplaceGrid(1e-2, 300)
     history = np.random.default_rng(5).normal(size=(3, 301))
     found = grid.invert(grid.transform(history), np.ones(grid.nodes.size))
-    np.testing.assert_allclose(found, history, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(found, history, rtol=0, atol=1e-10)
 
 
 def test_forward_of_a_known_history() -> None:

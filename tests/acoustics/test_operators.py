@@ -51,7 +51,7 @@ def test_annulus_around_nothing_is_the_disc() -> None:
     disc = radial(RB, s).disc
     errors = [abs(annulus(radial(ra, s), radial(RB, s)).bb / disc - 1).max() for ra in (1e-2, 1e-3, 1e-4)]
     assert errors[-1] < 1e-7
-    np.testing.assert_allclose(np.log10(np.divide(errors[:-1], errors[1:])), 2.0, rtol=0.05)
+    np.testing.assert_allclose(np.log10(np.divide(errors[:-1], errors[1:])), 2.0, rtol=2e-3)
 
 
 def test_a_gap_far_thinner_than_a_wave_is_a_spring_and_a_mass() -> None:
@@ -67,22 +67,22 @@ def test_low_frequency_is_incompressible_flow() -> None:
     # Harmonic functions r^m and r^-m; the disc's m = 0 is the spring 2/(s^2 r) of a compressible core.
     s = np.array([1e-4 + 0.0j])
     m = ORDERS[1:]
-    np.testing.assert_allclose(radial(RB, s).disc[1:, 0], RB / m, rtol=1e-7)
-    np.testing.assert_allclose(radial(RB, s).exterior[2:, 0], -RB / m[1:], rtol=1e-6)
-    np.testing.assert_allclose(radial(RB, s).disc[0, 0], 2 / (s[0] ** 2 * RB), rtol=1e-7)
+    np.testing.assert_allclose(radial(RB, s).disc[1:, 0], RB / m, rtol=2e-8)
+    np.testing.assert_allclose(radial(RB, s).exterior[2:, 0], -RB / m[1:], rtol=2e-8)
+    np.testing.assert_allclose(radial(RB, s).disc[0, 0], 2 / (s[0] ** 2 * RB), rtol=1e-8)
     q = (RA / RB) ** (2 * m)
     op = annulus(radial(RA, s), radial(RB, s))
-    np.testing.assert_allclose(op.bb[1:, 0], RB / m * (1 + q) / (1 - q), rtol=1e-6)
-    np.testing.assert_allclose(op.aa[1:, 0], -RA / m * (1 + q) / (1 - q), rtol=1e-6)
-    np.testing.assert_allclose(op.ab[1:, 0], 2 * RB / m * (RA / RB) ** m / (1 - q), rtol=1e-6)
+    np.testing.assert_allclose(op.bb[1:, 0], RB / m * (1 + q) / (1 - q), rtol=3e-8)
+    np.testing.assert_allclose(op.aa[1:, 0], -RA / m * (1 + q) / (1 - q), rtol=3e-8)
+    np.testing.assert_allclose(op.ab[1:, 0], 2 * RB / m * (RA / RB) ** m / (1 - q), rtol=3e-8)
 
 
 def test_high_frequency_is_a_plane_wave() -> None:
     # p = -+ rho c v on the exterior and interior wall, with the first curvature correction 1/(2z).
     s = np.array([4000.0 + 2000.0j])
     orders = all_orders(1)
-    np.testing.assert_allclose(s * radial(1.0, s, orders).exterior, -1 + 1 / (2 * s) * np.ones((2, 1)), rtol=1e-6)
-    np.testing.assert_allclose(s * radial(1.0, s, orders).disc, 1 + 1 / (2 * s) * np.ones((2, 1)), rtol=1e-6)
+    np.testing.assert_allclose(s * radial(1.0, s, orders).exterior, -1 + 1 / (2 * s) * np.ones((2, 1)), rtol=1e-7)
+    np.testing.assert_allclose(s * radial(1.0, s, orders).disc, 1 + 1 / (2 * s) * np.ones((2, 1)), rtol=1e-7)
 
 
 def test_a_sample_of_orders_equals_all_of_them() -> None:

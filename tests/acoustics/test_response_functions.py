@@ -67,7 +67,7 @@ def test_sums_of_exponentials_and_contour_agree_at_the_wall():
     # Two evaluations that share nothing: poles fitted on the imaginary axis, and quadrature along a turned contour.
     times = np.concatenate([[0.0, 1e-5, 1e-3], np.linspace(0.02, 20.0, 200)])
     orders = np.array([0, 1, 2, 7, 30, 120, 300])
-    np.testing.assert_allclose(exterior_wall(300, times)[orders], exterior_field(orders, times, 1.0), atol=3e-12)
+    np.testing.assert_allclose(exterior_wall(300, times)[orders], exterior_field(orders, times, 1.0), rtol=0, atol=3e-12)
 
 
 def test_exterior_poles_are_stable_few_and_reproducible():
@@ -84,13 +84,13 @@ def test_exterior_poles_are_stable_few_and_reproducible():
             - each.weights.imag @ np.exp(np.outer(each.poles, times)).imag
             for each in (old, new)
         )
-        np.testing.assert_allclose(old_values, new_values, atol=1e-11)
+        np.testing.assert_allclose(old_values, new_values, rtol=0, atol=1e-11)
 
 
 def test_orders_beyond_the_table():
     times = np.array([0.0, 1e-3, 0.02, 0.5])
     mixed = exterior([301, 4, 300], times)
-    np.testing.assert_allclose(mixed, -exterior_field(np.array([301, 4, 300]), times, 1.0), atol=1e-11)
+    np.testing.assert_allclose(mixed, -exterior_field(np.array([301, 4, 300]), times, 1.0), rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize("radius", [1.0, 1.3, 4.0])
@@ -99,7 +99,7 @@ def test_exterior_front(radius):
     values = exterior([0, 3, 50, 300], [front - 1e-9, front, front + 1e-10], radius=radius)
     np.testing.assert_array_equal(values[:, 0], 0.0)
     np.testing.assert_allclose(values[:, 1], radius**-0.5, rtol=1e-10)
-    np.testing.assert_allclose(values[:, 2], radius**-0.5, rtol=1e-4)
+    np.testing.assert_allclose(values[:, 2], radius**-0.5, rtol=2e-5)
 
 
 def test_gap_fronts_have_the_heights_of_ray_theory():
@@ -109,10 +109,10 @@ def test_gap_fronts_have_the_heights_of_ray_theory():
         values = gap(orders, [-1.0, 0.0, period - 1e-11, period], inner=inner, outer=outer, driven=driven, slowness=alpha)
         np.testing.assert_array_equal(values[:, 0], 0.0)
         np.testing.assert_allclose(values[:, 1], sign / alpha, rtol=1e-10)
-        np.testing.assert_allclose(values[:, 3] - values[:, 2], 2 * sign / alpha, atol=3e-6)
+        np.testing.assert_allclose(values[:, 3] - values[:, 2], 2 * sign / alpha, rtol=0, atol=1e-8)
     across = gap(orders, [0.5 * period - 1e-11, 0.5 * period], inner=inner, outer=outer, radius=inner, driven="outer", slowness=alpha)
     np.testing.assert_allclose(across[:, 0], 0.0, atol=1e-10)
-    np.testing.assert_allclose(across[:, 1], 2 * (outer / inner) ** 0.5 / alpha, rtol=1e-9)
+    np.testing.assert_allclose(across[:, 1], 2 * (outer / inner) ** 0.5 / alpha, rtol=1e-12)
 
 
 def test_interior_fronts_turn_by_a_quarter_at_each_passage():
@@ -121,7 +121,7 @@ def test_interior_fronts_turn_by_a_quarter_at_each_passage():
     focus = interior(orders, 1.0 + near, disc_radius=radius)
     np.testing.assert_allclose(focus[:, 0] - focus[:, 1], (-1.0) ** orders * 2 / np.pi * np.log(10), atol=1e-4)
     jump = interior(orders, [2.0 - 1e-10, 2.0], disc_radius=radius)
-    np.testing.assert_allclose(jump[:, 1] - jump[:, 0], -2.0, atol=1e-4)
+    np.testing.assert_allclose(jump[:, 1] - jump[:, 0], -2.0, rtol=0, atol=1e-6)
     infinite = interior(orders, [1.0, 3.0], disc_radius=radius)
     np.testing.assert_array_equal(infinite, np.array([[1, -1], [-1, 1], [1, -1], [-1, 1]]) * np.inf)
 
@@ -133,7 +133,7 @@ def test_centre_of_the_disc():
     assert centre[0, 0] == 0.0
     np.testing.assert_array_equal(centre[1:], 0.0)
     np.testing.assert_allclose(near[0], centre[0], rtol=3e-3)
-    assert abs(near[2]).max() < 1e-6
+    assert abs(near[2]).max() < 1e-7
 
 
 def test_results_do_not_depend_on_where_the_contour_is_turned(monkeypatch):
@@ -148,7 +148,7 @@ def test_results_do_not_depend_on_where_the_contour_is_turned(monkeypatch):
     first = [call() for call in calls]
     monkeypatch.setattr(levels, "_GROWTH", 5.0)
     for call, values in zip(calls, first, strict=True):
-        np.testing.assert_allclose(call(), values, atol=2e-9)
+        np.testing.assert_allclose(call(), values, rtol=0, atol=2e-9)
 
 
 def test_wall_functions_are_the_public_ones_at_the_walls():
@@ -162,7 +162,7 @@ def test_wall_functions_are_the_public_ones_at_the_walls():
     np.testing.assert_allclose(walls.interior[finite], public[finite], atol=1e-10)
     for values, at, driven in zip(walls.gap, (inner, inner, 1.0, 1.0), ("inner", "outer") * 2, strict=True):
         public = gap(30, times, inner=inner, outer=1.0, radius=at, driven=driven, slowness=gap_slowness)
-        np.testing.assert_allclose(values, public, atol=1e-9)
+        np.testing.assert_allclose(values, public, rtol=0, atol=1e-11)
     vacuum = wall_functions(2, times, inner_radius=inner, gap_slowness=None, interior_slowness=None)
     assert vacuum.gap is None
     assert vacuum.interior is None
@@ -183,7 +183,7 @@ def test_a_gap_around_nothing_is_the_disc():
     times = np.linspace(0.05, 0.9, 18)
     thin = annulus_wall(6, times, 0.01, 0.5, 1.0).bb
     disc = disc_wall(6, times, 0.5, 1.0)
-    np.testing.assert_allclose(thin[3:], disc[3:], atol=1e-6)
+    np.testing.assert_allclose(thin[3:], disc[3:], rtol=0, atol=1e-12)
 
 
 def test_arrivals():

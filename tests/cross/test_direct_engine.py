@@ -65,8 +65,8 @@ def test_absorber_histories_agree() -> None:
     system = CASES["unequal absorbers off axis"]
     direct = cx.simulate(system, duration=DURATION, time_step=1e-3, modes=MODES, engine="direct")
     spectral = cx.simulate(system, duration=DURATION, time_step=1e-3, modes=MODES)
-    assert relative(direct.absorber_force().values, spectral.absorber_force().values) < 2e-2
-    assert relative(direct.absorber_displacement().values, spectral.absorber_displacement().values) < 2e-3
+    assert relative(direct.absorber_force().values, spectral.absorber_force().values) < 4e-3
+    assert relative(direct.absorber_displacement().values, spectral.absorber_displacement().values) < 1.5e-3
 
 
 @pytest.mark.parametrize(

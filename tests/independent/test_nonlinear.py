@@ -103,4 +103,4 @@ class TestOrder:
         errors = [distances(system, step, 2e-3, duration=1.2) for step in self.steps]
         for key in errors[0]:
             rates = np.log2([a[key] / b[key] for a, b in pairwise(errors)])
-            assert rates == pytest.approx(self.rate, abs=0.15), key
+            assert rates == pytest.approx(self.rate, abs=0.04), key

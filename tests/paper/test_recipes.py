@@ -50,8 +50,8 @@ def test_figure_2(drawn, direct, line):
         (axes[3], "20 mm", thick, "outer", 180, 0.02),
         (axes[4], "inner tail", double, "inner", 180, 0.01),
     ):
-        np.testing.assert_allclose(line(ax, name), 1e-6 * direct(system, shell, angle, "displacement") / thickness, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(line(axes[5], "outer head"), direct(double, "outer", 0), rtol=0, atol=1e-8)
+        np.testing.assert_allclose(line(ax, name), 1e-6 * direct(system, shell, angle, "displacement") / thickness, rtol=0, atol=1e-16)
+    np.testing.assert_allclose(line(axes[5], "outer head"), direct(double, "outer", 0), rtol=1e-12)
 
 
 def test_the_pressure_on_a_rigid_surface_starts_doubled_and_follows_the_library_afterwards(tiny):

@@ -42,7 +42,7 @@ CASES = {
 
 
 def close(found, expected):
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("number", CASES)
@@ -94,7 +94,7 @@ def test_number_of_absorbers(tiny):
             "RMS over surface and time (right scale)": lambda s: s.stress_rms,
         }.items():
             np.testing.assert_array_equal(curves[label].get_xdata(), chosen)
-            np.testing.assert_allclose(curves[label].get_ydata(), [1e-6 * value(s) for s in summaries], rtol=1e-8)
+            np.testing.assert_allclose(curves[label].get_ydata(), [1e-6 * value(s) for s in summaries], rtol=1e-12)
         for axis in (ax, right):
             low, high = axis.get_ylim()
             values = np.concatenate([curve.get_ydata() for curve in axis.lines])

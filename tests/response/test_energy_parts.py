@@ -51,8 +51,8 @@ def test_a_disc_squeezed_slowly_is_a_spring(moved) -> None:
     # Area change 2 w/r1 everywhere: E = (1/2)(rho/alpha^2)(2 w/r1)^2 pi r1^2, up to inertia of order (transit/SLOW)^2.
     found = fluid_energy(moved({(0, 0, 0): 1e-3}), 0)
     w = 1e-3 * slow_history()[0]
-    np.testing.assert_allclose(found.compression, 2 * np.pi * 0.7 / 1.3**2 * w**2, rtol=0, atol=2e-3 * found.compression.max())
-    assert found.kinetic.max() < 1e-3 * found.compression.max()
+    np.testing.assert_allclose(found.compression, 2 * np.pi * 0.7 / 1.3**2 * w**2, rtol=0, atol=1e-5 * found.compression.max())
+    assert found.kinetic.max() < 1e-4 * found.compression.max()
 
 
 def test_a_gap_squeezed_slowly_is_a_spring(moved) -> None:
@@ -60,7 +60,7 @@ def test_a_gap_squeezed_slowly_is_a_spring(moved) -> None:
     ra, area = 0.5, np.pi * (1 - 0.5**2)
     strain = 2 * np.pi * (2e-3 * 1.0 + 1e-3 * ra) * slow_history()[0] / area
     expected = 0.5 * 1.9 / 0.8**2 * strain**2 * area
-    np.testing.assert_allclose(found.compression, expected, rtol=0, atol=3e-3 * expected.max())
+    np.testing.assert_allclose(found.compression, expected, rtol=0, atol=1e-5 * expected.max())
 
 
 @pytest.mark.parametrize("half", [0, 1])
@@ -75,7 +75,7 @@ def test_a_gap_shaken_slowly_has_the_added_mass_of_potential_flow(moved) -> None
     found = fluid_energy(moved({(1, 0, 2): 1e-3}), 1)
     q = 0.5**4
     expected = 0.5 * 1.9 * np.pi * (1e-3 * slow_history()[1]) ** 2 * (1 + q) / (2 * (1 - q))
-    np.testing.assert_allclose(found.kinetic, expected, rtol=0, atol=3e-3 * expected.max())
+    np.testing.assert_allclose(found.kinetic, expected, rtol=0, atol=1e-3 * expected.max())
 
 
 def test_a_vacuum_holds_nothing(double: cx.System) -> None:
@@ -132,7 +132,7 @@ def test_the_incident_part_of_a_plane_wave(double: cx.System) -> None:
     s = COARSE.nodes[:60]
     scale = dimensionless(double).scales.pressure
     exact = np.where(ORDERS == 0, 1, 2)[:, None] * np.exp(-s) * iv(ORDERS[:, None], s) / s / scale
-    np.testing.assert_allclose(incident[0, :, :60], exact, rtol=1e-8, atol=1e-12 * abs(exact).max())
+    np.testing.assert_allclose(incident[0, :, :60], exact, rtol=1e-12, atol=1e-14 * abs(exact).max())
     np.testing.assert_allclose(incident + scattered, total, rtol=1e-12, atol=1e-18)
 
 
@@ -142,7 +142,7 @@ def test_a_distant_spherical_source_is_a_plane_wave(double: cx.System) -> None:
     far = parts(double.replace(source=cx.SphericalShock(distance=1e4, **shock)))
     for one, other in zip(plane, far, strict=True):
         # Fronts differ by at most r^2/(2 R0); compare where that is far less than a wave.
-        np.testing.assert_allclose(one[..., :60], other[..., :60], rtol=0, atol=3e-3 * abs(one).max())
+        np.testing.assert_allclose(one[..., :60], other[..., :60], rtol=0, atol=3e-4 * abs(one).max())
 
 
 def test_parts_of_sources_of_all_kinds_add_up(double: cx.System) -> None:

@@ -68,7 +68,7 @@ def test_the_fluid_moves_with_the_shell_on_both_faces(answer, shell):
     wanted = -motion(answer, shell, 1, TIME)
     for face in (0, 1):
         found = velocity.sel(component="radius").values[:, face]
-        np.testing.assert_allclose(found, wanted, atol=1e-6 * abs(wanted).max())
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=3e-7 * abs(wanted).max())
 
 
 @pytest.mark.parametrize("shell", [0, 1])
@@ -82,7 +82,7 @@ def test_the_normal_acceleration_is_that_of_the_shell_on_both_faces(answer, shel
         radii[radii == radius] = radius if side > 0 else inside(radius)
         p = answer.pressure(radius=radii, angle=ANGLES, time=TIME, **FINE).values
         slope = side * np.tensordot(weights if side > 0 else weights[::-1], p, (0, 1)) / h / A
-        np.testing.assert_allclose(slope / density, wanted, atol=2e-5 * abs(wanted).max())
+        np.testing.assert_allclose(slope / density, wanted, rtol=0, atol=2e-6 * abs(wanted).max())
 
 
 @pytest.mark.parametrize("shell", [0, 1])
@@ -96,7 +96,7 @@ def test_the_pressure_jump_is_the_shells_load(answer, shell):
     theta = np.radians(ANGLES)[:, None] * m.T
     wanted = (np.cos(theta) @ history[0] + np.sin(theta) @ history[1]).T
     p = answer.pressure(radius=[inside(radius), radius], angle=ANGLES, time=TIME, **FINE).values
-    np.testing.assert_allclose(p[:, 1] - p[:, 0], wanted, atol=1e-6 * abs(p).max())
+    np.testing.assert_allclose(p[:, 1] - p[:, 0], wanted, rtol=0, atol=2e-7 * abs(p).max())
 
 
 def test_order_by_order_walls_and_loads_agree_in_the_laplace_domain(shells, water, sea):
@@ -117,18 +117,18 @@ def test_order_by_order_walls_and_loads_agree_in_the_laplace_domain(shells, wate
                     pressures[region.index, shell, quantity] = np.stack(rows)
                 wanted = region.fluid.density * grid.nodes**2 * spectra.normal[shell, 0]
                 found = pressures[region.index, shell, "slope"]
-                np.testing.assert_allclose(found, wanted, atol=1e-9 * abs(wanted).max())
+                np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12 * abs(wanted).max())
     for shell, outside in ((0, 0.0), (1, incident_and_diffracted)):
         jump = pressures[shell + 1, shell, "pressure"] + outside - pressures[shell, shell, "pressure"]
         wanted = modal.shells[shell].impedance * spectra.normal[shell, 0]
-        np.testing.assert_allclose(jump, wanted, atol=1e-9 * abs(wanted).max())
+        np.testing.assert_allclose(jump, wanted, rtol=0, atol=1e-12 * abs(wanted).max())
 
 
 def test_the_diffracted_wave_cancels_the_incident_velocity_at_a_rigid_wall(answer):
     parts = {"time": TIME, "angle": ANGLES, "radius": 1.0, **FINE}
     velocity = sum(answer.velocity(part=part, **parts).sel(component="radius").values for part in ("incident", "diffracted"))
     scale = abs(answer.velocity(part="incident", **parts).values).max()
-    np.testing.assert_allclose(velocity, 0.0, atol=2e-6 * scale)
+    np.testing.assert_allclose(velocity, 0.0, atol=2e-7 * scale)
 
 
 @pytest.mark.parametrize(("radius", "speed"), [(0.2, 1400.0), (0.7, 1100.0), (1.6, 1400.0)])
@@ -144,7 +144,7 @@ def test_the_wave_equation_holds_in_every_fluid(answer, radius, speed):
         radial = (p[1, 2, 1] - 2 * middle + p[1, 0, 1]) / h**2 + (p[1, 2, 1] - p[1, 0, 1]) / (2 * h * radius)
         around = (p[1, 1, 2] - 2 * middle + p[1, 1, 0]) / (h * radius) ** 2
         residuals.append(abs(radial + around - slowness * in_time) / (abs(radial) + abs(around) + abs(in_time)))
-    assert residuals[1] < 5e-3
+    assert residuals[1] < 5e-4
     assert residuals[0] / residuals[1] > 3.0
 
 
@@ -155,7 +155,7 @@ def test_velocity_obeys_eulers_equation(answer):
         p = [answer.pressure(x=x + np.array([-h, 0, h]), y=y + np.array([-h, 0, h]), time=t, **FINE).values]
         gradient = np.stack([p[0][:, 1, 2] - p[0][:, 1, 0], p[0][:, 2, 1] - p[0][:, 0, 1]], axis=1) / (2 * h * A)
         rate = (v[1] - v[0]) / (2 * h * A / C)
-        np.testing.assert_allclose(density * rate, -gradient, atol=1e-3 * abs(gradient).max())
+        np.testing.assert_allclose(density * rate, -gradient, rtol=0, atol=3e-4 * abs(gradient).max())
 
 
 @pytest.mark.parametrize("source", ["plane", "line"])
@@ -177,16 +177,16 @@ def test_shells_without_mass_or_stiffness_are_not_there(ring, water, source):
         tiny = cx.System(shells=[ring(1.0, 1e-2)], fluids=["vacuum", water], source=shock)
         free = cx.simulate(tiny, duration=3.0, time_step=5e-3, modes=2).pressure(part="incident", **grid).values
         far &= r >= 1.0
-    assert abs(found.values - free)[far].max() < 1e-3
+    assert abs(found.values - free)[far].max() < 1e-5
     outside = np.broadcast_to(r >= 1.0, far.shape)
-    assert abs(found.values - free)[outside & far].max() < 1e-8
+    assert abs(found.values - free)[outside & far].max() < 1e-10
 
 
 def test_nothing_outruns_the_fastest_wave(answer):
     # Ahead of the incident front outside, and inside before anything can have crossed the shells' circumference.
     early = answer.pressure(radius=[1.5, 2.5], angle=[25.0, 205.0], time=0.2, part="scattered", **FINE).values
-    assert abs(early).max() < 1e-3
-    assert abs(answer.pressure(x=0.0, y=0.0, time=0.1, **FINE).values).max() < 1e-3
+    assert abs(early).max() < 1e-6
+    assert abs(answer.pressure(x=0.0, y=0.0, time=0.1, **FINE).values).max() < 1e-6
 
 
 def test_fast_transfer_equals_the_slow_one(answer):
@@ -207,4 +207,4 @@ def test_fast_transfer_equals_the_slow_one(answer):
         for quantity in ("pressure", "slope"):
             found = np.stack([x[:, 0] for _, x in field.spectra(np.array([radius]), quantity, ones)], axis=1)
             wanted = sum(getattr(f, quantity) * g for f, g in zip(fields, slopes, strict=True))
-            np.testing.assert_allclose(found, wanted, rtol=1e-8, atol=1e-11 * abs(wanted).max())
+            np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-11 * abs(wanted).max())

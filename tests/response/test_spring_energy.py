@@ -20,6 +20,6 @@ def test_springs_by_hand_and_in_the_balance() -> None:
     linear, cubic = LINEAR * stretch**2 / 2, CUBIC * stretch**4 / 4
     expected = (linear + cubic).sum(axis=(0, 1))[::every]
     found = balance["absorber_spring"].values
-    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * expected.max())
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12 * expected.max())
     assert cubic.sum() > linear.sum()
     assert found.max() > 20.0 * np.abs(balance["closure_residual"]).max()

@@ -97,7 +97,7 @@ def test_resultants_do_the_work_of_the_modal_stiffness(lopsided_section: Section
             work[i, j] = force * strain + moment * curvature
     scale = abs(np.array([stiffness.vv, stiffness.vw, stiffness.ww])).max()
     for found, expected in ((work[0, 0], stiffness.vv), (work[0, 1], stiffness.vw), (work[1, 0], stiffness.vw), (work[1, 1], stiffness.ww)):
-        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-13 * scale)
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13 * scale)
 
 
 def test_by_hand_in_every_layer(make: Callable[..., ModalSolution]) -> None:
@@ -155,7 +155,7 @@ def test_control_adds_its_field_to_the_actuator_only(make: Callable[..., ModalSo
     z = 4e-3
     added = response.stress(0, 10, depth=z) - free.stress(0, 10, depth=z)
     expected = -materials.PZT4.e32 / 4e-3 * response.actuator_voltage(0, 10)
-    np.testing.assert_allclose(added, expected, rtol=0, atol=1e-9 * float(abs(expected).max()))
+    np.testing.assert_allclose(added, expected, rtol=0, atol=1e-12 * float(abs(expected).max()))
     np.testing.assert_array_equal(response.stress(0, 10, depth=-6e-3), free.stress(0, 10, depth=-6e-3))
 
 

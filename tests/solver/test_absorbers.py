@@ -153,8 +153,8 @@ def test_without_mass_two_springs_in_series(law: dict[str, float]) -> None:
         light = run(cx.absorber_ring(5, **{**law, "mass": mass}))
         errors.append(float(abs(light.displacement("inner", ANGLES) - massless.displacement("inner", ANGLES)).max()))
     scale = float(abs(massless.displacement("inner", ANGLES)).max())
-    assert errors[0] < 1e-2 * scale
-    assert errors[2] < 1e-4 * scale
+    assert errors[0] < 1e-3 * scale
+    assert errors[2] < 1e-5 * scale
 
 
 @pytest.mark.parametrize("law", [LINEAR, CUBIC], ids=["linear", "cubic"])
@@ -194,7 +194,7 @@ def test_absorbers_link_any_two_neighbours_of_three_shells() -> None:
     # A rigid link between the middle and the outer shell makes them move alike there, and leaves the inner one alone.
     rigid = run([cx.Absorber(angle=0, inner_shell=1, mass=0, linear_stiffness=1e13)], system)
     gap = np.asarray(rigid.displacement(2, [0.0]) - rigid.displacement(1, [0.0]))
-    assert abs(gap).max() < 1e-2 * float(abs(rigid.displacement(2, [0.0])).max())
+    assert abs(gap).max() < 2e-3 * float(abs(rigid.displacement(2, [0.0])).max())
 
 
 def test_the_two_shells_are_not_confused() -> None:

@@ -58,4 +58,4 @@ def test_time_window_estimate_bounds_the_error_of_the_step() -> None:
     head = np.asarray(fine.displacement("outer", [0]))[::10, 0]
     error = abs(np.asarray(coarse.displacement("outer", [0]))[:, 0] - head).max() / abs(head).max()
     assert error < 3 * coarse.estimates.time_window
-    assert coarse.estimates.time_window < 100 * error
+    assert coarse.estimates.time_window < 3 * error

@@ -54,9 +54,9 @@ def test_admittance_meets_the_equations_of_motion(structure: PreparedStructure) 
     q = mass * (inner + outer)
     z = links.damping * s[:, None] + links.linear
     forces = z * (q - inner), z * (q - outer)
-    np.testing.assert_allclose(forces[0], -(own * inner + other * outer), rtol=1e-9)
-    np.testing.assert_allclose(forces[1], -(other * inner + own * outer), rtol=1e-9)
-    np.testing.assert_allclose(links.mass * s[:, None] ** 2 * q, -sum(forces), rtol=0, atol=1e-9 * abs(forces[0]).max())
+    np.testing.assert_allclose(forces[0], -(own * inner + other * outer), rtol=1e-12)
+    np.testing.assert_allclose(forces[1], -(other * inner + own * outer), rtol=1e-12)
+    np.testing.assert_allclose(links.mass * s[:, None] ** 2 * q, -sum(forces), rtol=0, atol=1e-12 * abs(forces[0]).max())
 
 
 def test_no_absorber_is_bare() -> None:

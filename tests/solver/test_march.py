@@ -129,8 +129,8 @@ def test_momentum_balance_at_every_step(unequal: tuple[cx.Absorber, ...]) -> Non
     inertia = mass * (q[:, 2:] - 2 * q[:, 1:-1] + q[:, :-2]) / step**2
     mean = 0.25 * (total[:, 2:] + 2 * total[:, 1:-1] + total[:, :-2])
     scale = float(abs(response.absorber_force()).max())
-    np.testing.assert_allclose(inertia, -mean, rtol=0, atol=1e-7 * scale)  # second differences lose digits
-    np.testing.assert_allclose(total[3], 0.0, rtol=0, atol=1e-9 * scale)  # without a mass the two sides balance at every instant
+    np.testing.assert_allclose(inertia, -mean, rtol=0, atol=1e-10 * scale)  # second differences lose digits
+    np.testing.assert_allclose(total[3], 0.0, rtol=0, atol=1e-13 * scale)  # without a mass the two sides balance at every instant
 
 
 class TestForceLaw:
@@ -155,7 +155,7 @@ class TestForceLaw:
     def test_rate(self, unequal: tuple[cx.Absorber, ...]) -> None:
         errors = [self.error(unequal, step) for step in (4e-3, 2e-3, 1e-3)]
         np.testing.assert_allclose([np.log2(a / b) for a, b in pairwise(errors)], self.rate, rtol=0, atol=0.3)
-        assert errors[-1] < 2e-3
+        assert errors[-1] < 6e-4
 
 
 class TestDiscreteLaws:

@@ -61,4 +61,4 @@ def test_a_delay_shifts(run) -> None:
     now = np.asarray(run(PLANE).displacement("inner", ANGLES))
     found = np.asarray(late.displacement("inner", ANGLES))
     close(found[steps:], now[: len(now) - steps], 1e-7)
-    assert abs(found[:steps]).max() < 1e-7 * abs(now).max()
+    assert abs(found[:steps]).max() < 1e-9 * abs(now).max()

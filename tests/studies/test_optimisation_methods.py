@@ -36,10 +36,10 @@ def bowl(system):
 def test_the_smallest_value_is_found(analytic, method, seed):
     analytic(inner=bowl)
     found = cx.optimise(ring(), variables=THREE, objectives="inner.peak_stress", method=method, evaluations=700, seed=seed)
-    assert_allclose(found.best.objectives[0], 3.0, rtol=1e-4)
-    assert_allclose(found.system.absorbers.mass, 7.0, rtol=2e-2)
-    assert_allclose(found.system.absorbers.damping, 3e5, rtol=5e-2)
-    assert_allclose(found.system.absorbers.linear_stiffness, 2e8, rtol=1e-1)
+    assert_allclose(found.best.objectives[0], 3.0, rtol=1e-5)
+    assert_allclose(found.system.absorbers.mass, 7.0, rtol=5e-3)
+    assert_allclose(found.system.absorbers.damping, 3e5, rtol=1e-2)
+    assert_allclose(found.system.absorbers.linear_stiffness, 2e8, rtol=2e-2)
     assert len(found.history) == 700
 
 
@@ -48,7 +48,7 @@ def test_a_maximum_is_found(analytic, method):
     goal = cx.Objective("inner.peak_stress", maximise=True)
     analytic(inner=lambda system: 10.0 - bowl(system))
     found = cx.optimise(ring(), variables=THREE, objectives=goal, method=method, evaluations=700)
-    assert_allclose(found.best.targets["inner.peak_stress"], 7.0, rtol=1e-4)
+    assert_allclose(found.best.targets["inner.peak_stress"], 7.0, rtol=2e-6)
 
 
 @pytest.mark.parametrize("method", SINGLE)
@@ -62,7 +62,7 @@ def test_an_active_limit_of_a_run_is_met_from_inside(analytic, method):
     )
     assert found.best.feasible
     assert found.best.targets["outer.peak_stress"] >= 1.0
-    assert_allclose(found.best.objectives[0], 0.5, rtol=1e-3)
+    assert_allclose(found.best.objectives[0], 0.5, rtol=5e-5)
 
 
 @pytest.mark.parametrize("method", SINGLE)
@@ -73,7 +73,7 @@ def test_an_active_limit_of_the_design_is_met_without_runs_beyond_it(analytic, m
     found = cx.optimise(
         ring(), variables=variables, objectives="inner.peak_stress", constraints="absorbers.mass <= 125 kg", method=method, evaluations=600
     )
-    assert_allclose(found.system.absorbers.mass, 5.0, rtol=2e-3)
+    assert_allclose(found.system.absorbers.mass, 5.0, rtol=5e-5)
     assert all(system.absorbers.mass <= 5.0 for system in crew.systems[1:])  # the first one is the baseline
     assert max(one.values[0] for one in found.history) > 5.0
 
@@ -92,7 +92,7 @@ def test_whole_numbers_and_choices(analytic, method):
     found = cx.optimise(ring(), variables=variables, objectives="inner.peak_stress", method=method, evaluations=700, seed=2)
     assert found.system.absorbers.count == 17
     assert found.system.source.decay_time == 2e-4
-    assert_allclose(found.system.absorbers.mass, 4.0, rtol=2e-2)
+    assert_allclose(found.system.absorbers.mass, 4.0, rtol=1e-5)
 
 
 def test_one_variable(analytic):
@@ -105,7 +105,7 @@ def test_one_variable(analytic):
         found = cx.optimise(
             ring(), variables={"absorbers.mass": cx.Range(1, 20)}, objectives="inner.peak_stress", evaluations=300, method=method
         )
-        assert_allclose(found.system.absorbers.mass, 6.0, rtol=1e-3)
+        assert_allclose(found.system.absorbers.mass, 6.0, rtol=5e-5)
 
 
 @pytest.mark.parametrize(("constraints", "low"), [((), 0.0), (("interior.rms_pressure >= 0.5 Pa",), 0.5)])
@@ -132,7 +132,7 @@ def test_a_known_front(analytic, constraints, low):
     assert beyond.max() < 0.1
     assert np.median(beyond) < 5e-3
     assert places.min() >= low
-    assert_allclose([places.min(), places.max()], [low, 2.0], atol=0.06)
+    assert_allclose([places.min(), places.max()], [low, 2.0], atol=0.02)
     assert np.diff(places).max() < 0.2
     assert all(one.feasible for one in found.front)
 

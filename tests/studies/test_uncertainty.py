@@ -61,12 +61,12 @@ def test_the_ishigami_function(bare, stand_in):
     total = first + np.array([crossed, 0.0, crossed])
     for name, exact in (("first_order", first), ("total_order", total)):
         value, low, high = found[name].sel(metric=STRESS[0]).to_numpy().T
-        assert_allclose(value, exact, rtol=0, atol=0.01)
+        assert_allclose(value, exact, rtol=0, atol=3e-3)
         assert (low <= exact + 1e-3).all()
         assert (high >= exact - 1e-3).all()
     statistics = found[STRESS[0]].sel(estimate="value")
-    assert_allclose(float(statistics.sel(statistic="mean")), a / 2, rtol=2e-3)
-    assert_allclose(float(statistics.sel(statistic="deviation")), math.sqrt(variance), rtol=5e-3)
+    assert_allclose(float(statistics.sel(statistic="mean")), a / 2, rtol=5e-5)
+    assert_allclose(float(statistics.sel(statistic="deviation")), math.sqrt(variance), rtol=2e-4)
 
 
 EXACT = np.array([1.0, 0.1, 1 + 0.1 * ndtri(0.05), 1.0, 1 + 0.1 * ndtri(0.95)])
@@ -103,7 +103,7 @@ def test_indices_of_a_linear_system_through_real_runs(quick):
     first, total = (found[name].sel(metric=STRESS[0], estimate="value").to_numpy() for name in ("first_order", "total_order"))
     assert_allclose(first, [1.0, 0.0], rtol=0, atol=0.05)
     assert_allclose(total, [1.0, 0.0], rtol=0, atol=0.05)
-    assert abs(total[1]) < 1e-6
+    assert abs(total[1]) < 1e-10
     assert found["first_order"].sel(metric="absorbers.mass").isnull().all()  # it does not vary
 
 
@@ -147,7 +147,7 @@ def test_no_impossible_value_is_drawn(bare):
     low = coordinate.limits(5.0)[0]
     shares = np.array([0.0, 1e-6, 0.3, 0.5, 0.99, 1.0])
     found = [coordinate.quantile(share, 5.0) for share in shares]
-    assert_allclose(found[1:5], truncnorm.ppf(shares[1:5], (low - 5) / 1.6, np.inf, 5, 1.6), rtol=1e-6)
+    assert_allclose(found[1:5], truncnorm.ppf(shares[1:5], (low - 5) / 1.6, np.inf, 5, 1.6), rtol=1e-10)
     assert np.isfinite(found).all()
     assert min(found) > low
 
