@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
 import pytest
 import xarray as xr
 
 import coaxshell as cx
-from coaxshell.studies import SensitivityStudy, read_study
 
 STUDY = """
 scenario = "bare"
@@ -51,15 +47,6 @@ def test_statistics_alone_and_failures(run, study):
     assert "cases failed" in outcome.err
     assert "g.svg" not in outcome.files
     assert any("study.store" in name for name in outcome.files)  # kept for --resume
-
-
-def test_the_study_file_of_the_documentation(tmp_path):
-    text = Path(__file__).parents[2].joinpath("docs", "sensitivity.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
-    (tmp_path / "study.toml").write_text(block)
-    plan = read_study(tmp_path / "study.toml", SensitivityStudy).plan(tmp_path)
-    assert len(plan.systems) == 256 * 7
-    assert all(isinstance(system, cx.System) for system in plan.systems)
 
 
 @pytest.mark.parametrize(
