@@ -16,9 +16,8 @@ from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.sampling import Sampler
-from coaxshell.response.energy.surface import source_pressures
 from coaxshell.response.energy.work import SurfaceWork
-from coaxshell.solver.excitation import SurfaceLoads
+from coaxshell.solver.excitation import SurfaceLoads, incident_on_surface
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.scaling import FluidRegion, dimensionless
 
@@ -123,7 +122,8 @@ COARSE = LaplaceGrid(0.02, 200)
 def parts(system: cx.System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     problem, surface = dimensionless(system), RadialFunctions(COARSE.nodes, 1.0, ORDERS)
     total = np.stack(SurfaceLoads(problem, COARSE, ORDERS)(surface, slice(None)))
-    return (*source_pressures(problem, COARSE, surface), total)
+    incident, slope = incident_on_surface(problem, COARSE, surface)
+    return incident, -surface.exterior * slope, total
 
 
 def test_the_incident_part_of_a_plane_wave(double: cx.System) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.incident import IncidentWave, SurfaceLoad
+from coaxshell.acoustics.incident_parts import incident_parts
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions
 from coaxshell.acoustics.pulse_transforms import pulse_transform
@@ -74,22 +75,47 @@ class SurfaceLoads:
 
     def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> None:
         self.halves = 2 if needs_sine_half(problem.system.sources) else 1
-        groups: dict[IncidentWave, list[Source]] = {}
-        for source in problem.system.sources:
-            groups.setdefault(incident_wave(problem, source), []).append(source)
         self._problem, self._orders = problem, orders
-        self._groups = [(UnitLoad(wave, grid, orders, workshop), sources) for wave, sources in groups.items()]
+        self._groups = [(UnitLoad(wave, grid, orders, workshop), sources) for wave, sources in _geometries(problem).items()]
 
     def __call__(self, surface: RadialFunctions, nodes: slice) -> list[ComplexArray]:
         """Return the load of the cosine half, and of the sine half if any source needs it, at a slice of the grid's nodes."""
-        totals: list[ComplexArray | float] = [0.0] * self.halves
-        for wave_load, sources in self._groups:
-            load = wave_load(surface, nodes)
-            spectra = [source_spectrum(self._problem, source, surface.kappa) for source in sources]
-            for half in range(self.halves):
-                weights = sum(projection(self._orders, source.angle, half) * x for source, x in zip(sources, spectra, strict=True))
-                totals[half] = totals[half] + load * weights
-        return [np.asarray(total, dtype=np.complex128) for total in totals]
+        units = ((unit(surface, nodes), sources) for unit, sources in self._groups)
+        return _superposed(self._problem, self._orders, surface.kappa, units)
+
+
+def incident_on_surface(problem: Problem, grid: LaplaceGrid, surface: RadialFunctions) -> tuple[ComplexArray, ComplexArray]:
+    """Return the modal pressure and slope dp/dr at r = 1 of all incident waves, each (1 or 2, M + 1, nodes).
+
+    *surface* holds the exterior fluid's functions there, at all orders and the nodes of the grid.
+    """
+    orders = surface.orders
+    groups = [(incident_parts(wave, grid, orders, surface), sources) for wave, sources in _geometries(problem).items()]
+    pressure, slope = (
+        np.stack(_superposed(problem, orders, surface.kappa, ((parts[which], sources) for parts, sources in groups))) for which in (0, 1)
+    )
+    return pressure, slope
+
+
+def _geometries(problem: Problem) -> dict[IncidentWave, list[Source]]:
+    """Return the sources of each geometry."""
+    groups: dict[IncidentWave, list[Source]] = {}
+    for source in problem.system.sources:
+        groups.setdefault(incident_wave(problem, source), []).append(source)
+    return groups
+
+
+def _superposed(
+    problem: Problem, orders: FloatArray, s: ComplexArray, units: Iterable[tuple[ComplexArray, list[Source]]]
+) -> list[ComplexArray]:
+    """Return the cosine half, and the sine half if any source needs it, of what all make, from what a unit pulse of each geometry makes."""
+    totals: list[ComplexArray | float] = [0.0] * (2 if needs_sine_half(problem.system.sources) else 1)
+    for unit, sources in units:
+        spectra = [source_spectrum(problem, source, s) for source in sources]
+        for half, total in enumerate(totals):
+            weights = sum(projection(orders, source.angle, half) * x for source, x in zip(sources, spectra, strict=True))
+            totals[half] = total + unit * weights
+    return [np.asarray(total, dtype=np.complex128) for total in totals]
 
 
 def projection(orders: FloatArray, angle: float, half: int) -> FloatArray:

@@ -11,13 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.incident import IncidentWave
-from coaxshell.acoustics.incident_slope import incident_slope
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
-from coaxshell.model.sources import Source
 from coaxshell.response.fields.regions import Region
-from coaxshell.solver.excitation import incident_wave, needs_sine_half, projection, source_spectrum
+from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.recompute import SolvedSpectra
 
 SCATTERED = {"radiated": ("radiated",), "diffracted": ("diffracted",), "scattered": ("radiated", "diffracted")}
@@ -56,27 +53,9 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
         if not region.exterior:
             outer = radiated(region.index)
     if "diffracted" in parts and region.exterior:
-        rigid = -incident_slopes(spectra, grid)
+        rigid = -incident_on_surface(problem, grid, radial(1.0, 1.0))[1]
         inner = rigid if inner is None else _sum_of_halves(inner, rigid)
     return WallSlopes(inner, outer)
-
-
-def incident_slopes(spectra: SolvedSpectra, grid: LaplaceGrid) -> ComplexArray:
-    """Return the modal slope of all incident waves at r = 1, shape (halves, M + 1, nodes)."""
-    problem, orders = spectra.problem, all_orders(spectra.max_order)
-    surface = RadialFunctions(grid.nodes, 1.0, orders)
-    groups: dict[IncidentWave, list[Source]] = {}
-    for source in problem.system.sources:
-        groups.setdefault(incident_wave(problem, source), []).append(source)
-    halves = 2 if needs_sine_half(problem.system.sources) else 1
-    total = np.zeros((halves, orders.size, grid.nodes.size), np.complex128)
-    for wave, sources in groups.items():
-        unit = incident_slope(wave, grid, orders, surface)
-        for source in sources:
-            history = source_spectrum(problem, source, grid.nodes)
-            for half in range(halves):
-                total[half] += unit * (projection(orders, source.angle, half) * history)
-    return total
 
 
 def _sum_of_halves(one: ComplexArray, other: ComplexArray) -> ComplexArray:
