@@ -143,7 +143,9 @@ def test_outside_the_sum_of_one_absorber_is_inside():
 def test_neighbours_share_a_structure_and_agree_with_single_runs():
     slips = frozenset({"radius-factor", "missing-projection"})
     systems = {str(n): BARE.replace(absorbers=cx.absorber_ring(n, **CUBIC) if n else ()) for n in (0, 3)}
-    for name, response in solve_each(systems, TINY, slips):
+    found = dict(solve_each(systems, TINY, slips))
+    assert list(found) == list(systems)
+    for name, response in found.items():
         np.testing.assert_array_equal(stress(response, "inner"), stress(simulate(systems[name], TINY, slips), "inner"))
 
 

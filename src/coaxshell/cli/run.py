@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.files import drawable, writable
 from coaxshell.cli.solving import Request, with_resolution
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
 
 
 @with_resolution
@@ -56,6 +60,18 @@ def run(
     named = dict(zip(names, responses, strict=True))
     if output is not None:
         responses[0].save(output)
+    _draw(named, figure, energy, quiet=quiet)
+    if compare is not None:
+        print_comparison(named)
+    else:
+        print_summary(responses[0])
+    for word, path in (("saved", output), ("wrote", figure), ("wrote", energy)):
+        if path is not None:
+            typer.echo(f"{word} {path}")
+
+
+def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:
+    """Draw the runs, and where the energy of the first goes."""
     if figure is not None:
         from coaxshell.plotting import figure_comparison, save_figure
 
@@ -65,15 +81,5 @@ def run(
         from coaxshell.plotting import figure_energy, save_figure
 
         with progress(quiet) as report:
-            balance = responses[0].energy(progress=report)
+            balance = next(iter(named.values())).energy(progress=report)
         save_figure(figure_energy(balance), energy)
-    if compare is not None:
-        print_comparison(named)
-    else:
-        print_summary(responses[0])
-    if output is not None:
-        typer.echo(f"saved {output}")
-    if figure is not None:
-        typer.echo(f"wrote {figure}")
-    if energy is not None:
-        typer.echo(f"wrote {energy}")

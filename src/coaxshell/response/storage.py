@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import os
 import uuid
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,18 @@ def _opened(path: str | Path) -> xr.Dataset:
     return dataset
 
 
+@contextmanager
+def _reading(path: str | Path) -> Iterator[xr.Dataset]:
+    """Yield one of our files, opened; InputError if that is not possible, or if it turns out to be damaged."""
+    with _opened(path) as dataset:
+        try:
+            yield dataset
+        except InputError:
+            raise
+        except UNREADABLE as error:
+            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
+
+
 def load_solution(path: str | Path) -> ModalSolution:
     """Return the solution of a file written by :func:`save`.
 
@@ -93,13 +106,11 @@ def load_solution(path: str | Path) -> ModalSolution:
     InputError
         If there is no such file, or it is not ours, cut short, damaged, or of a newer format.
     """
-    with _opened(path) as dataset:
+    with _reading(path) as dataset:
         try:
             return from_dataset(dataset.load())
         except InputError as error:
             raise InputError(str(path), f"holds a scenario that this version does not accept: {error}") from error
-        except UNREADABLE as error:
-            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
 
 
 def scenario(path: str | Path) -> tuple[str, dict[str, Any]]:
@@ -110,17 +121,14 @@ def scenario(path: str | Path) -> tuple[str, dict[str, Any]]:
     InputError
         As :func:`load_solution`.
     """
-    with _opened(path) as dataset:
-        try:
-            text = dataset["scenario"]
-            if text.size != 1 or text.nbytes > _LONGEST_SCENARIO:
-                raise ValueError(f"a scenario of {text.nbytes} bytes")
-            settings = json.loads(dataset.attrs["settings"])
-            if not isinstance(settings, dict):
-                raise TypeError("settings that are not a table")
-            return str(text.item()), settings
-        except UNREADABLE as error:
-            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
+    with _reading(path) as dataset:
+        text = dataset["scenario"]
+        if text.size != 1 or text.nbytes > _LONGEST_SCENARIO:
+            raise ValueError(f"a scenario of {text.nbytes} bytes")
+        settings = json.loads(dataset.attrs["settings"])
+        if not isinstance(settings, dict):
+            raise TypeError("settings that are not a table")
+        return str(text.item()), settings
 
 
 def info(path: str | Path) -> str:
@@ -131,11 +139,8 @@ def info(path: str | Path) -> str:
     InputError
         As :func:`load_solution`.
     """
-    with _opened(path) as dataset:
-        try:
-            return _described(dataset)
-        except UNREADABLE as error:
-            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
+    with _reading(path) as dataset:
+        return _described(dataset)
 
 
 def _described(dataset: xr.Dataset) -> str:

@@ -104,16 +104,9 @@ def run_cases(
     workers_at_once = capacity(executor, workers)
     if executor is not None or workers_at_once > 1:
         _sendable(metrics)
-    outcomes: dict[int, Outcome] = {}
-    keys: dict[int, str] = {}
-    for number, system in enumerate(systems):
-        if isinstance(system, InputError):
-            outcomes[number] = failure(metrics, str(system))
-        elif store is not None:
-            keys[number] = store.key(system, resolution)
-            found = store.load(keys[number])
-            if found is not None:
-                outcomes[number] = found
+    keys = {n: store.key(one, resolution) for n, one in enumerate(systems) if store is not None and isinstance(one, System)}
+    outcomes = {n: failure(metrics, str(one)) for n, one in enumerate(systems) if isinstance(one, InputError)}
+    _look_up(keys, store, outcomes)
     report = progress or (lambda fraction, stage: None)
     report(len(outcomes) / len(systems), "cases")
     waiting = [Case(i, system) for i, system in enumerate(systems) if i not in outcomes and isinstance(system, System)]
@@ -132,14 +125,18 @@ def run_cases(
     return [outcomes[number] for number in range(len(systems))]
 
 
+def _look_up(keys: Mapping[int, str], store: Store | None, outcomes: dict[int, Outcome]) -> None:
+    """Add what the store holds of some cases to the outcomes."""
+    for number, key in keys.items():
+        found = None if store is None else store.load(key)
+        if found is not None:
+            outcomes[number] = found
+
+
 def _still_needed(planned: Sequence[Batch], store: Store | None, keys: dict[int, str], outcomes: dict[int, Outcome]) -> Iterator[Batch]:
     """Yield batches without the cases that another writer has finished in the meantime."""
     for batch in planned:
-        if store is not None:
-            for case in batch.cases:
-                found = store.load(keys[case.number])
-                if found is not None:
-                    outcomes[case.number] = found
+        _look_up({case.number: keys[case.number] for case in batch.cases if case.number in keys}, store, outcomes)
         left = tuple(case for case in batch.cases if case.number not in outcomes)
         if left:
             yield Batch(left, batch.metrics, batch.resolution)
