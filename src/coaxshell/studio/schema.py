@@ -8,6 +8,7 @@ from typing import Any
 
 from coaxshell._version import __version__
 from coaxshell.model import EXPLOSIVES, Elastic, System, fluids, materials, presets
+from coaxshell.studies.metrics import ABSORBER_QUANTITIES, FLUID_QUANTITIES, SHELL_QUANTITIES, SYSTEM_QUANTITIES, WITHOUT_SHELL
 from coaxshell.studio import limits
 from coaxshell.studio.curves import QUANTITIES
 from coaxshell.studio.descriptions import normalised
@@ -32,10 +33,19 @@ def schema() -> dict[str, Any]:
             for name in fluids.names()
         ],
         "explosives": list(EXPLOSIVES),
+        "metric_units": _metric_units(),
         "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in QUANTITIES.items()],
         "resolutions": {"preview": limits.PREVIEW, "full": limits.FULL},
         "limits": limits.table(),
     }
+
+
+def _metric_units() -> dict[str, str]:
+    """Return the unit of each metric by its name, or by its quantity where the place does not matter."""
+    units = {name: entry.units for name, entry in {**SHELL_QUANTITIES, **FLUID_QUANTITIES}.items()}
+    for place, names in WITHOUT_SHELL.items():
+        units |= {f"{place}.{name}": {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}[key].units for name, key in names.items()}
+    return units
 
 
 def _material(name: str) -> dict[str, Any]:

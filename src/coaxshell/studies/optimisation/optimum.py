@@ -79,7 +79,7 @@ class Optimum:
         system = self.space.system(candidate.values)
         if isinstance(system, InputError):
             raise system
-        name = self.space.base.name
+        name = self.space.base.name.removesuffix("optimised").removesuffix(", ")
         return system.replace(name=f"{name}, optimised" if name else "optimised")
 
     def to_dataset(self) -> xr.Dataset:

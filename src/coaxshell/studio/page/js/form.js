@@ -3,7 +3,7 @@ import { el, by } from "./dom.js";
 import { join, read } from "./paths.js";
 import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
 import { fresh, kinds, kindTitle, limits, matches, resolve, title, use } from "./schema.js";
-import { editable, plain, pretty, show } from "./units.js";
+import { editable, numeral, pretty, show } from "./units.js";
 
 const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
@@ -252,11 +252,6 @@ function place(slider, value, unit) {
   const range = rangeOf(slider.dataset.path);
   if (slider !== document.activeElement) slider.value = handleAt(range, value);
   slider.setAttribute("aria-valuetext", show(value, unit));
-}
-
-function numeral(text) {
-  const clean = plain(text);
-  return clean !== "" && Number.isFinite(Number(clean)) ? Number(clean) : clean;
 }
 
 // The library's own words beside the field they are about, or beside the nearest part around it.

@@ -276,7 +276,7 @@ function wire() {
   tabs.onTab((name) => { drawTab(name); if (page.system) keepLink(); });
   addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "/api/link/open"));
   files.setUp({ runs: () => page.runs, opened, described: content });
-  studies.setUp(() => page);
+  studies.setUp(() => page, { preview, opened });
   wave.setUp(curves.cursor);
   curves.onTime((time) => { wave.pause(); wave.seek(time); });
   events.onRestart(() => { wave.forget(); energy.forget(); again(); });

@@ -14,6 +14,12 @@ export function plain(text) {
   return text.trim().replace(/−/g, "-").replace(/([²³⁴])/g, (s) => "^" + Object.keys(SUPERSCRIPTS).find((n) => SUPERSCRIPTS[n] === s)).replace(/·/g, "*").replace(/\s*°$/, " deg").replace(/\s+/g, " ");
 }
 
+// A number where the text is one, else the text as the server reads it.
+export function numeral(text) {
+  const clean = plain(text);
+  return clean !== "" && Number.isFinite(Number(clean)) ? Number(clean) : clean;
+}
+
 // The factor and symbol that bring a value near 1 to 1000.
 export function prefixed(unit, value) {
   const size = Math.abs(value);

@@ -1,0 +1,166 @@
+"""An optimisation from the page: the library's numbers, its best adopted, a front chosen from, cancelled, bad input beside its field."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pytest
+from asking import SMALL
+from axe_playwright_python.sync_playwright import Axe
+from numpy.testing import assert_allclose
+from page_reading import rest, run_of, solved, system_of, until
+
+import coaxshell as cx
+from coaxshell.studio.links import fragment
+
+RANGES = {"absorbers.mass": cx.Range(1, 10), "absorbers.damping": cx.Range(1e4, 1e8, "log")}
+
+
+@pytest.fixture
+def studies(open_page, server):
+    """Give what opens the page at a small resolution with the optimisation's form."""
+
+    def start(**options):
+        held = {"v": 1, "system": cx.presets.load("absorbers").model_dump(mode="json"), "resolution": SMALL}
+        page = open_page(f"{server.address}#{fragment(held)}", **options)
+        rest(page)
+        page.locator("#tab-studies").click()
+        page.get_by_role("radio", name="Optimise").check(force=True)
+        return page
+
+    return start
+
+
+def fill(page, **entries):
+    """Fill the form in as a person does: by the labels' own inputs, in order."""
+    for name, value in entries.items():
+        field = page.locator(f'#optimise [name="{name.replace("__", ".")}"]')
+        if field.evaluate("one => one.tagName") == "SELECT":
+            field.select_option(value)
+        else:
+            field.fill(value)
+
+
+def describe(page, evaluations="12"):
+    fill(page, variables__0__path="absorbers.mass", variables__0__from="1 kg/m", variables__0__to="10", variables__0__scale="linear")
+    page.get_by_role("button", name="Add a variable").click()
+    fill(page, variables__1__path="absorbers.damping", variables__1__from="1e4", variables__1__to="1e8", variables__1__scale="log")
+    fill(page, evaluations=evaluations, seed="3")
+
+
+def start(page):
+    page.get_by_role("button", name="Start optimisation").click()
+
+
+def violations(page):
+    found = Axe().run(page).response["violations"]
+    return [f"{one['id']}: {one['help']} ({', '.join(node['html'][:120] for node in one['nodes'][:3])})" for one in found]
+
+
+def number(text):
+    """Return the value of a cell such as 105.8 kPa, without its prefix."""
+    return float(text.replace("\u2212", "-").replace("\u202f", " ").split()[0])
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(studies, theme):
+    page = studies(theme=theme)
+    describe(page)
+    page.get_by_role("button", name="Add a limit").click()
+    fill(page, constraints__0__metric="absorbers.mass", constraints__0__value="200")
+    start(page)
+    page.locator("#study-use").wait_for()
+    ours = cx.optimise(
+        cx.presets.load("absorbers"),
+        variables=RANGES,
+        objectives="inner.peak_stress",
+        constraints="absorbers.mass <= 200 kg/m",
+        evaluations=12,
+        seed=3,
+        workers=1,
+        **SMALL,
+    )
+    cells = page.locator(".optimum tbody").first.locator("tr").nth(1).locator("td").all_inner_texts()
+    assert_allclose([number(text) for text in cells[:2]], [ours.baseline.objectives[0] / 1e3, ours.best.objectives[0] / 1e3], rtol=2e-3)
+    curves = page.evaluate("document.getElementById('study-plot').data.map(({name, y}) => [name, Array.from(y)])")
+    assert [name for name, _ in curves] == ["designs", "baseline", "best so far"], "what breaks the limit on the mass is not run"
+    values = [one.objectives[0] if one.feasible else None for one in ours.history]
+    shown = dict(curves)["designs"]
+    assert [value is None for value in shown] == [value is None for value in values]
+    assert_allclose([1e3 * value for value in shown if value is not None], [value for value in values if value is not None], rtol=1e-12)
+    assert violations(page) == []
+    before = system_of(page)
+    page.locator("#study-use").click()
+    until(page, "window.coaxshell.state.system.name.endsWith('optimised')")
+    rest(page)
+    assert system_of(page) == ours.system
+    run = run_of(page)
+    stress = np.asarray(solved(ours.system, run["resolution"]).stress("inner", angle=[0, 180])).T
+    assert_allclose(run["arrays"]["stress/0"], stress, rtol=0, atol=2e-6 * np.abs(stress).max())
+    page.locator("#undo").click()
+    until(page, "!window.coaxshell.state.system.name.endsWith('optimised')")
+    assert system_of(page) == before
+    for name, ending in (("TOML", "best.toml"), ("CSV", "history.csv")):
+        with page.expect_download() as saved:
+            page.locator("#study-jobs").get_by_role("link", name=name).click()
+        assert saved.value.suggested_filename == ending
+        assert saved.value.failure() is None
+
+
+def test_a_design_of_the_front_is_adopted_by_the_keyboard_on_a_phone(studies):
+    page = studies(width=390, height=844)
+    describe(page)
+    fill(page, objectives__1__metric="absorbers.mass")
+    fill(page, evaluations="40")
+    start(page)
+    design = page.locator("#study-design")
+    design.wait_for()
+    assert design.locator("option").count() > 1
+    design.focus()
+    page.keyboard.press("End")
+    until(page, "window.coaxshell.state.system.name.endsWith('optimised')")
+    rest(page)
+    mass = sum(absorber.mass for absorber in system_of(page).absorber_list)
+    shown = page.locator(".optimum tbody").first.locator("tr").nth(2).locator("td").nth(1).inner_text()
+    assert_allclose(number(shown), mass, rtol=1e-3)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert violations(page) == []
+
+
+def test_a_running_one_tells_its_best_and_can_be_cancelled(studies):
+    page = studies()
+    describe(page, "2000")
+    start(page)
+    until(page, "/designs, best inner.peak_stress [\\d.]+ \\w*Pa/.test(document.querySelector('#study-jobs .job .note')?.textContent)")
+    page.locator("#study-jobs").get_by_role("button", name="Cancel").click()
+    page.locator('#study-jobs [data-state="cancelled"]').wait_for()
+
+
+def test_what_is_wrong_is_told_beside_its_field(studies):
+    page = studies()
+    describe(page)
+    fill(page, variables__1__to="heavy")
+    start(page)
+    page.locator("#optimise-problem").wait_for()
+    field = page.locator('[name="variables.1.to"]')
+    assert field.get_attribute("aria-invalid") == "true"
+    assert page.evaluate("document.activeElement.name") == "variables.1.to"
+    assert violations(page) == []
+    fill(page, variables__1__to="1e8", evaluations="none")
+    start(page)
+    until(page, "document.activeElement.name === 'evaluations'")
+    assert field.get_attribute("aria-invalid") is None
+
+
+@pytest.mark.parametrize("kind", ["Optimise", "Sweep"])
+def test_the_study_file_is_shown(studies, kind):
+    page = studies()
+    page.get_by_role("radio", name=kind).check(force=True)
+    page.locator("#study-file summary").click()
+    until(page, "document.getElementById('study-text').value.includes('scenario')")
+    told = tomllib.loads(page.locator("#study-text").input_value())
+    assert told["scenario"] == "absorbers"
+    assert told["resolution"]["modes"] == SMALL["modes"]
+    assert ("objectives" if kind == "Optimise" else "over") in told
+    assert violations(page) == []
