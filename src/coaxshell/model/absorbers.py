@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Annotated, Any, Self
 
 from pydantic import model_validator
@@ -56,7 +57,7 @@ class AbsorberRing(_Link):
     offset: Angle = 0.0
     """Angle of the first one (degrees)."""
 
-    @property
+    @cached_property
     def absorbers(self) -> tuple[Absorber, ...]:
         """The single absorbers of the ring."""
         shared = {name: getattr(self, name) for name in _Link.model_fields}

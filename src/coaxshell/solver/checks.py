@@ -117,8 +117,12 @@ def peak_voltage(solution: ModalSolution, index: int) -> float:
     v = gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index]
     volts = sensor_v * v + sensor_w * w
     points = max(8 * orders.size, 720)
+    if volts.shape[0] == 1:  # even: the cosine transform does half the work
+        cosines = np.zeros((points // 2 + 1, volts.shape[-1]))
+        cosines[0], cosines[1 : orders.size] = volts[0, 0], 0.5 * volts[0, 1:]
+        return float(np.abs(fft.dct(cosines, type=1, axis=0, overwrite_x=True, workers=WORKERS)).max())
     spectrum = np.zeros((points // 2 + 1, volts.shape[-1]), np.complex128)
-    spectrum[: orders.size] = volts[0] if volts.shape[0] == 1 else volts[0] - 1j * volts[1]
+    spectrum[: orders.size] = volts[0] - 1j * volts[1]
     spectrum[1:] *= 0.5
     return float(np.abs(fft.irfft(spectrum, points, axis=0, workers=WORKERS)).max() * points)
 

@@ -26,6 +26,7 @@ from coaxshell.solver.history import HistorySum
 from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
 from coaxshell.solver.newton import MAX_ITERATIONS, ConvergenceError, ImplicitStep
 from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.relaxation import Relaxation
 from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
 from coaxshell.solver.spectral import Progress
 
@@ -120,6 +121,8 @@ class _March:
             else SpringsAndActuators(springs, 2 * self.count, LimitedVoltages(len(self.controlled), self.halves, self.modes))
         )
         self.law, self.newton = law, ImplicitStep(unknowns[0], law)
+        self.relaxation = Relaxation(self.rows, size, springs)
+        self.relaxing = self.relaxation.steps > 1 and not self.controlled
         half, length = self.links.half_step, kernels.shape[-1]
         self.integral = half * (2.0 * np.tri(length, k=-1) + np.eye(length))
 
@@ -174,7 +177,7 @@ class _March:
             if progress is not None:
                 progress(block.stop / steps, "interface march")
         lacking = self._lacks_to_pressure(lacks.T) if self.controlled else None
-        return MarchResult(force.reshape(steps, -1).T, mass.T, pressure, lacking, self.newton.iterations)
+        return MarchResult(force.reshape(steps, -1).T, mass.T, pressure, lacking, self.newton.iterations + self.relaxation.iterations)
 
     def _pressure(self, force: FloatArray, lacks: FloatArray) -> FloatArray:
         pressure = self.points.project(force)
@@ -215,12 +218,27 @@ class _March:
         known = np.concatenate([free_stretch, asked], axis=1)
         size = known.size
         known += (self.rows[:size, :size] @ added.ravel()).reshape(known.shape)
+        done = self._together(known, added)
         flat = added.ravel()
-        for step in range(count):
+        for step in range(done, count):
             earlier = self.earlier[step]
             z = self._solve(known[step] + earlier @ flat[: earlier.shape[1]] if step else known[step])
             added[step] = self.law.excess(z)
         return added
+
+    def _together(self, known: FloatArray, added: FloatArray) -> int:
+        """Fill in n(z) of the first steps, several at once; return how many: once it does not pay, no more of this march."""
+        flat, size, done = added.ravel(), known.shape[1], 0
+        while self.relaxing and done < len(known):
+            end = min(done + self.relaxation.steps, len(known))
+            part, before = slice(done * size, end * size), slice(0, done * size)
+            found = self.relaxation.solve(known[done:end] + (self.rows[part, before] @ flat[before]).reshape(-1, size))
+            if found is None:
+                self.newton.go_on_from(self.relaxation.last)
+                self.relaxing = False
+            else:
+                added[done:end], done = found, end
+        return done
 
     def _solve(self, known: FloatArray) -> FloatArray:
         try:

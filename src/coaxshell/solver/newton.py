@@ -79,6 +79,11 @@ class ImplicitStep:
     def _target(self, known: FloatArray) -> FloatArray:
         return known if self._inverse is None else self._inverse @ known
 
+    def go_on_from(self, last: FloatArray) -> None:
+        """Begin as if the last steps had been solved here; ``last`` is their z, shape (steps, n)."""
+        for z in last:
+            self._oldest, self._before, self._last = self._before, self._last, z
+
     def solve(self, known: FloatArray) -> FloatArray:
         """Return z of the next step.
 
