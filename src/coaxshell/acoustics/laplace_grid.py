@@ -26,6 +26,10 @@ WRAP_AROUND = 1e-10
 ROLL_OFF = 0.2
 """Fraction of the band, at its top, over which spectra are brought smoothly to zero."""
 
+FEWEST_SAMPLES = 512
+"""Samples that a period has at least: what the band limit spreads from a front falls off with the number of steps only, and a short
+period brings the next front's share within reach of the end, where e^{sigma t} amplifies it."""
+
 WORKERS = min(os.cpu_count() or 1, 8)
 """Threads for FFTs and for blocks of Laplace nodes."""
 
@@ -42,16 +46,19 @@ class LaplaceGrid:
         The time axis is 0, dt, ..., steps * dt.
     wrap_around : float
         e^{-sigma P}.
+    fewest : int
+        Samples that a period has at least.
     """
 
     time_step: float
     steps: int
     wrap_around: float = WRAP_AROUND
+    fewest: int = FEWEST_SAMPLES
 
     @cached_property
     def samples(self) -> int:
         """Number of time samples in one period P, at least twice those asked for."""
-        return int(fft.next_fast_len(2 * (self.steps + 1), real=True))
+        return int(fft.next_fast_len(max(2 * (self.steps + 1), self.fewest), real=True))
 
     @property
     def period(self) -> float:

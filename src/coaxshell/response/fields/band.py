@@ -30,7 +30,7 @@ def band(grid: LaplaceGrid, resolution: float) -> LaplaceGrid:
 
 def _first_nodes(grid: LaplaceGrid, samples: int) -> LaplaceGrid:
     """Return the grid of the same period and contour with this many samples, where that is a fast length for the FFT."""
-    return LaplaceGrid(grid.period / samples, samples // 2 - 1, grid.wrap_around)
+    return LaplaceGrid(grid.period / samples, samples // 2 - 1, grid.wrap_around, fewest=0)
 
 
 def window(grid: LaplaceGrid) -> FloatArray:
