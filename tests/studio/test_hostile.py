@@ -25,6 +25,9 @@ PATHS = [
     "/api/schema/../../etc/passwd",
     "/api/runs/x/figure.png?quantity=../&time=nan",
     "/api/jobs/x/frames?start=1e9",
+    "/api/jobs/x/designs/..%2f1",
+    "/api/jobs/x/file?what=../best.toml",
+    "/api/study",
     "/vendor/../app.py",
 ]
 

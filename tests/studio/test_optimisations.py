@@ -206,6 +206,7 @@ BAD = {
     "a constraint in a wrong unit": ({"constraints": ["absorbers.mass <= 2 kPa"]}, "constraints[0]"),
     "a constraint that is a bomb": ({"constraints": ["absorbers.mass <= 9**9**9**9 kg/m"]}, "constraints[0]"),
     "an impossible constraint": ({"constraints": ["absorbers.mass <= 2 kg/m"]}, "constraints"),
+    "uncertain properties": ({"uncertain": {"absorbers.mass": {"type": "normal", "mean": 10, "deviation": 1}}}, "uncertain"),
     "no method": ({"method": "simplex"}, "method"),
     "a method for one objective": ({"objectives": ["inner.peak_stress", "absorbers.mass"], "method": "cma-es"}, "method"),
     "no evaluations": ({"evaluations": 0}, "evaluations"),

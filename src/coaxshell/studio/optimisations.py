@@ -43,6 +43,9 @@ def planned(system: System, settings: Settings, data: dict[str, Any]) -> Problem
     InputError
         As ``coaxshell.optimise``; also what is too large here, and metrics that are functions in a file, which a page must not run.
     """
+    for entry in ("uncertain", "confirm", "start"):
+        if entry in data:
+            raise InputError(entry, "is not taken here", "leave it out; coaxshell optimise takes it")
     variables = _variables(system, data.get("variables"))
     names = metric_names(system)
     objectives, constraints = _objectives(data.get("objectives"), names), _constraints(data.get("constraints", []), names)

@@ -16,6 +16,12 @@ from coaxshell.studio.links import fragment
 
 RANGES = {"absorbers.mass": cx.Range(1, 10), "absorbers.damping": cx.Range(1e4, 1e8, "log")}
 
+FIRST_OF_FRONT = """() => {
+  const plot = document.getElementById('study-plot'), {xaxis, yaxis} = plot._fullLayout, {left, top} = plot.getBoundingClientRect();
+  const [front] = plot.data.filter(trace => trace.name === 'front');
+  return [left + xaxis._offset + xaxis.l2p(front.x[0]), top + yaxis._offset + yaxis.l2p(front.y[0])];
+}"""
+
 
 @pytest.fixture
 def studies(open_page, server):
@@ -124,6 +130,13 @@ def test_a_design_of_the_front_is_adopted_by_the_keyboard_on_a_phone(studies):
     mass = sum(absorber.mass for absorber in system_of(page).absorber_list)
     shown = page.locator(".optimum tbody").first.locator("tr").nth(2).locator("td").nth(1).inner_text()
     assert_allclose(number(shown), mass, rtol=1e-3)
+    page.locator("#study-plot").scroll_into_view_if_needed()
+    x, y = page.evaluate(FIRST_OF_FRONT)
+    page.mouse.move(x, y)
+    page.locator("#study-plot .hovertext").first.wait_for()
+    page.mouse.click(x, y)
+    until(page, "value => window.coaxshell.state.system.absorbers.mass !== value", system_of(page).absorbers.mass)
+    assert design.evaluate("select => select.selectedIndex") == 0
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert violations(page) == []
 
@@ -139,6 +152,7 @@ def test_a_running_one_tells_its_best_and_can_be_cancelled(studies):
 
 def test_what_is_wrong_is_told_beside_its_field(studies):
     page = studies()
+    assert [page.locator(f'[name="variables.0.{end}"]').input_value() for end in ("from", "to")] == ["1 kg/m", "100 kg/m"]
     describe(page)
     fill(page, variables__1__to="heavy")
     start(page)
@@ -151,6 +165,10 @@ def test_what_is_wrong_is_told_beside_its_field(studies):
     start(page)
     until(page, "document.activeElement.name === 'evaluations'")
     assert field.get_attribute("aria-invalid") is None
+    page.get_by_role("button", name="Add a limit").click()
+    start(page)
+    until(page, "document.activeElement.name === 'constraints.0.value'")
+    assert "the limit is empty" in page.locator("#optimise-problem").inner_text()
 
 
 @pytest.mark.parametrize("kind", ["Optimise", "Sweep"])

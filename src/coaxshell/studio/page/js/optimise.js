@@ -96,6 +96,12 @@ export function body() {
   return { kind: "optimise", variables, objectives, constraints, evaluations: numeral(study.evaluations), method: study.method, seed: numeral(study.seed) };
 }
 
+// What the library would tell in words of its text rather than of the form.
+export function missing() {
+  const empty = study.constraints.findIndex(({ value }) => !value.trim());
+  return empty < 0 ? null : { where: `constraints[${empty}]`, problem: "the limit is empty", remedy: "give its value, or remove it" };
+}
+
 const limit = (text, unit) => (typeof numeral(text) === "number" && unit !== "1" ? `${numeral(text)} ${unit}` : plain(text));
 
 export function named({ objectives, variables }) {

@@ -48,7 +48,7 @@ function summary({ evaluations, method, resolution: { modes, time_step }, front 
 }
 
 function notes({ feasible, warnings }) {
-  const all = [...(feasible ? [] : ["No design keeps all limits: the one nearest to it is shown."]), ...warnings.map((one) => one.charAt(0).toUpperCase() + one.slice(1))];
+  const all = [...(feasible ? [] : ["No design keeps all limits: the one that comes nearest is shown."]), ...warnings.map((one) => one.charAt(0).toUpperCase() + one.slice(1))];
   return all.length ? [el("ul", { class: "warnings", "aria-label": "Warnings" }, ...all.map((one) => el("li", {}, one)))] : [];
 }
 
@@ -107,12 +107,13 @@ function drawFront(plot, result, chosen, choose) {
   const { targets, history, front } = result, [i, j] = goals(result), [x, y] = [targets[i], targets[j]];
   const scales = [x, y].map((one, k) => prefixed(one.unit, largest([one.baseline, ...front.map(({ targets: all }) => all[k ? j : i])])));
   const of = (one) => [one.targets[i] / scales[0].factor, one.targets[j] / scales[1].factor];
-  const kept = history.objectives.map((values, k) => scaled(values.map((value, n) => (history.feasible[n] ? value : null)), scales[k].factor));
+  const best = new Set(front.map((one) => one.number));
+  const kept = history.objectives.map((values, k) => scaled(values.map((value, n) => (history.feasible[n] && !best.has(n) ? value : null)), scales[k].factor));
   const { style, axis, layout } = frame({ hovermode: "closest", showlegend: true });
   const hover = `%{x:.4~g} ${scales[0].unit}, %{y:.4~g} ${scales[1].unit}<extra></extra>`;
-  const traces = [{ ...dots("designs", ...kept, "circle", "bare", { opacity: 0.55 }), hovertemplate: hover },
+  const traces = [{ ...dots("designs", ...kept, "circle", "bare", { opacity: 0.55 }), hoverinfo: "skip" },
     { ...dots("front", front.map((one) => of(one)[0]), front.map((one) => of(one)[1]), "circle", "current", { size: 8 }), mode: "lines+markers", line: { color: colour("current"), width: 1.2 }, customdata: front.map((one) => one.number), hovertemplate: `${hover.replace("<extra>", "; click to use it<extra>")}` },
-    { ...dots("baseline", [x.baseline === null ? null : x.baseline / scales[0].factor], [y.baseline === null ? null : y.baseline / scales[1].factor], "diamond", "text", { size: 9 }), hovertemplate: hover },
+    { ...dots("baseline", [x.baseline === null ? null : x.baseline / scales[0].factor], [y.baseline === null ? null : y.baseline / scales[1].factor], "diamond", "text", { size: 9 }), hoverinfo: "skip" },
     ...(chosen.targets[i] === null ? [] : [{ ...dots("chosen", [of(chosen)[0]], [of(chosen)[1]], "circle-open", "pinned", { size: 14, line: { width: 2.5, color: colour("pinned") } }), hoverinfo: "skip" }])];
   Object.assign(layout, { legend: legend(style), margin: { l: 72, r: 12, t: 30, b: 44 }, xaxis: { ...axis, zeroline: false, title: { text: axisName(x, scales[0]), font: style }, ...within(front, x, i, scales[0]) }, yaxis: { ...axis, zeroline: false, title: { text: axisName(y, scales[1]), font: style }, ...within(front, y, j, scales[1]) } });
   describe(plot, `Front of ${spelt(x.name)} against ${spelt(y.name)}, ${front.length} designs; choose one in the list above`);

@@ -3,7 +3,7 @@ import { client, request } from "./api.js";
 import { by, el } from "./dom.js";
 import { ended, onRestart, watch } from "./events.js";
 import * as optimise from "./optimise.js";
-import { told } from "./study_fields.js";
+import { fields, told } from "./study_fields.js";
 import * as sweep from "./sweep.js";
 import { show } from "./units.js";
 
@@ -39,8 +39,11 @@ function choose(name) {
 
 // Bring the form up to date with the system, unless somebody is at it.
 export function offer() {
-  if (!world.page().system || by(kind).contains(document.activeElement)) return;
-  KINDS[kind].offer(by(kind));
+  const { system, metrics } = world.page(), form = by(kind);
+  if (!system || form.contains(document.activeElement)) return;
+  const key = JSON.stringify([fields().map(({ path }) => path), metrics]); // a slider's every step comes by here
+  if (form.offered !== key) KINDS[kind].offer(form);
+  form.offered = key;
   keepFile();
 }
 
@@ -49,8 +52,9 @@ function asked() {
 }
 
 async function start() {
-  const body = asked(), { mark, named } = KINDS[kind], form = by(kind);
-  mark(form, null);
+  const body = asked(), { mark, named, missing } = KINDS[kind], form = by(kind), lack = missing?.() ?? null;
+  mark(form, lack);
+  if (lack) return;
   try {
     const answer = await request("/api/jobs", { body: { client, ...body } });
     if (answer.ok === false) return mark(form, answer.problem);
