@@ -40,7 +40,19 @@ def test_frames_are_those_of_the_library(client, field):
         assert_allclose(arrays["stress/0"], expected.stress[0][4:7], rtol=1e-4, atol=1e-6 * np.abs(expected.stress[0]).max())
 
 
-@pytest.mark.parametrize("query", ["start=-1", "start=11", "count=0", "count=x", "format=float64"])
+def test_the_bytes_of_frames_may_end_elsewhere(client, field):
+    """So that fields beside each other share their colours, whatever each one's own ends are."""
+    limit = 0.25 * client.get(f"/api/jobs/{field['id']}/result").json()["pressure_limit"]
+    pressure = {}
+    for query, zero in (("format=float16", 0), (f"limit={limit}", 128)):
+        header, arrays = decoded(client.get(f"/api/jobs/{field['id']}/frames?start=4&count=3&{query}").content)
+        scale = next(entry["scale"] for entry in header["arrays"] if entry["name"] == "pressure")
+        pressure[zero] = scale * (arrays["pressure"].astype(np.float64) - zero)
+    assert np.abs(pressure[0]).max() > 2 * limit
+    assert_allclose(pressure[128], np.clip(pressure[0], -limit, limit), rtol=0, atol=0.51 * limit / 127)
+
+
+@pytest.mark.parametrize("query", ["limit=0", "limit=nan", "start=-1", "start=11", "count=0", "count=x", "format=float64"])
 def test_frames_out_of_bounds_are_refused(client, field, query):
     assert client.get(f"/api/jobs/{field['id']}/frames?{query}").status_code == 400
 

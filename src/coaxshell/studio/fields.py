@@ -64,14 +64,14 @@ def _told(system: System, frames: Frames, pressure: float, stress: float) -> dic
     }
 
 
-def frames_of(path: Path, about: dict[str, Any], rings: Rings, start: int, count: int, kind: str) -> Packed:
-    """Return a slice of a film as ``uint8`` or ``float16``."""
+def frames_of(path: Path, about: dict[str, Any], rings: Rings, start: int, count: int, limit: float | None) -> Packed:
+    """Return a slice of a film as ``uint8``, whose ends stand for the limit (Pa), or as ``float16`` without a limit."""
     chosen = slice(start, min(start + count, about["frames"]))
     held: npt.NDArray[np.float16] = np.load(path, mmap_mode="r", allow_pickle=False)[chosen]
     scale = about["scale"]
     pressure: npt.NDArray[Any] = np.array(held)
-    if kind == "uint8":
-        scale = about["pressure_limit"] / LEVELS
+    if limit is not None:
+        scale = limit / LEVELS
         pressure = bytes_of(np.asarray(held, dtype=np.float32) * (about["scale"] / scale))
     time = np.asarray(about["time"][chosen])
     items = {"pressure": Item(pressure, "Pa", {"scale": scale}), "time": Item(time, "transits")}

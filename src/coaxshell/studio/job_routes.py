@@ -164,7 +164,8 @@ async def frames(request: Request) -> Response:
     values = min(count, about["frames"] - begin) * about["size"] ** 2
     if values > limits.FRAME_VALUES:
         raise RefusedError(422, "limit", "count", f"{values:,} values are too many", f"at most {limits.FRAME_VALUES:,}")
-    return arrays.answer(await run_in_threadpool(fields.frames_of, path, about, rings, begin, count, kind))
+    limit = bodies.number_of(query, "limit", 1e-30, 1e30, about["pressure_limit"]) if kind == "uint8" else None
+    return arrays.answer(await run_in_threadpool(fields.frames_of, path, about, rings, begin, count, limit))
 
 
 async def job_file(request: Request) -> Response:

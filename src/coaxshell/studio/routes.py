@@ -129,7 +129,7 @@ async def point(request: Request) -> Response:
     found = studio.run(request.path_params["run"])
     query = dict(request.query_params)
     x, y = (bodies.number_of(query, name, -20.0, 20.0) for name in ("x", "y"))
-    return await of_run(found, studio.workers.submit(fields.point, *found.pair, x, y, place=found.place).future)
+    return await of_run(found, studio.workers.submit(fields.point, *found.pair, x, y, place=found.place, live=False).future)
 
 
 async def link(request: Request) -> Response:

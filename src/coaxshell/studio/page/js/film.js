@@ -4,17 +4,19 @@ import { ended, unwatch, watch } from "./events.js";
 
 const FRAMES = 160, SIZE = 200, HALF_WIDTH = 3;
 
-// Fetch the film of a run; tell(fraction) while the server computes it. Aborting the signal stops the server too.
-export async function film(answer, signal, tell) {
+// Fetch the film of a run; tell(fraction) while the server computes it. Aborting the signal stops the server too. The colours end at
+// `limit` (Pa), those of another film beside it, or at what suits this one.
+export async function film(answer, signal, tell, limit = null) {
   const every = Math.max(1, Math.ceil(answer.arrays.time.values.length / FRAMES));
   const started = await request("/api/jobs", { body: { client, kind: "field", run: answer.run, every, size: SIZE, half_width: HALF_WIDTH }, signal });
   await finished(started.job, signal, tell);
   const about = await request(`/api/jobs/${started.job.id}/result`, { signal });
   const size = about.size ** 2, pressure = new Uint8Array(about.frames * size), rings = new Map();
   const most = Math.max(1, Math.floor(about.most_values / size));
+  const ends = limit ?? about.pressure_limit, asked = limit === null ? "" : `&limit=${limit}`;
   let scale = 1;
   for (let start = 0; start < about.frames; start += most) {
-    const part = await request(`/api/jobs/${started.job.id}/frames?start=${start}&count=${most}&format=uint8`, { signal });
+    const part = await request(`/api/jobs/${started.job.id}/frames?start=${start}&count=${most}&format=uint8${asked}`, { signal });
     pressure.set(part.arrays.pressure.values, start * size);
     scale = part.arrays.pressure.scale;
     for (const [name, array] of Object.entries(part.arrays)) {
@@ -24,7 +26,7 @@ export async function film(answer, signal, tell) {
       rings.get(shell).set(array.values, start * 360);
     }
   }
-  return { ...about, run: answer.run, pressure, rings, scale };
+  return { ...about, run: answer.run, pressure, rings, scale, limit: ends };
 }
 
 function finished(job, signal, tell) {
@@ -52,7 +54,7 @@ export function frameAt(one, time) {
   return Math.min(one.time.length - 1, Math.max(0, Math.floor((time - one.time[0]) / step + 1e-6)));
 }
 
-// Pressure (Pa) at a place (in units of a) of one frame, or null outside the picture.
+// Pressure (Pa) at a place (in units of a) of one frame, no farther than the ends of the colours; null outside the picture.
 export function pressureAt(one, frame, x, y) {
   const pixel = (2 * one.half_width) / one.size;
   const column = Math.floor((x + one.half_width) / pixel), line = Math.floor((y + one.half_width) / pixel);

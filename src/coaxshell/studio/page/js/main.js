@@ -245,7 +245,7 @@ function say() {
   else if (!current) box.textContent = "Solving…";
   else {
     const { modes, time_step } = current.resolution;
-    const how = `${modes} orders, step ${show(time_step, "")} a/c, ${show(current.seconds, "s", 2)}`;
+    const how = `${modes} orders, step ${show(time_step, "")} a/c${current.seconds > 0.002 ? `, ${show(current.seconds, "s", 2)}` : ""}`; // less: it was there
     box.textContent = page.job ? `Preview (${how}); full resolution: ${Math.round(100 * page.job.fraction)}\u202f% ${page.job.stage ?? ""}` : `${current.full ? "Full resolution" : "Preview"} (${how})`;
   }
 }

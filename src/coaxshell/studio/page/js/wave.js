@@ -1,19 +1,23 @@
-// The wave: pressure around the shells and the stress on them, bare and current side by side, played or scrubbed.
+// The wave: pressure around the shells and the stress on them, bare, pinned and current side by side, played or scrubbed.
+import { request } from "./api.js";
 import { by, el } from "./dom.js";
 import { film, frameAt, pressureAt } from "./film.js";
 import { PRESSURE_BAR, STRESS_BAR, WORDS, stressColour } from "./maps.js";
 import { colour } from "./theme.js";
 import { show } from "./units.js";
 
-const PANELS = [{ name: "bare", label: "Bare" }, { name: "current", label: "Current" }];
+const PANELS = [{ name: "bare", label: "Bare" }, { name: "pinned", label: "Pinned" }, { name: "current", label: "Current" }];
 const PIXELS = 480; // of a canvas, a side
 const SPEEDS = [[0.1, "0.1 transits/s"], [0.25, "0.25 transits/s"], [0.5, "0.5 transits/s"], [1, "1 transit/s"]];
 const STEP = 0.05; // of the cross-hair by arrow keys, in units of a
 
+const REST = 400; // ms without a move of the cross before its exact pressure is asked for
+
 const films = {}; // by panel
+const exact = {}; // by panel: the history of the pressure at the cross
 const parts = {}; // elements
 let told; // called with the time shown
-let loading = null, time = 0, last = 0, playing = false, before = 0, probe = null;
+let loading = null, time = 0, last = 0, playing = false, before = 0, probe = null, resting = 0, asking = false;
 
 export function setUp(onTime) {
   told = onTime;
@@ -40,23 +44,29 @@ export async function load(runs) {
     by(`panel-${name}`).hidden = !runs[name];
     if (!runs[name]) delete films[name];
   }
-  if (wanted.every(({ name }) => films[name]?.run === runs[name].run)) return;
+  by("wave").querySelector(".fields").dataset.count = wanted.length;
+  // All share the colours of the first one, the bare system, so that they can be compared.
+  const there = ({ name }) => films[name]?.run === runs[name].run && films[name].limit === films[wanted[0].name]?.limit;
+  if (wanted.every(there)) return draw();
   loading?.abort();
   const mine = (loading = new AbortController());
   parts.stop.hidden = false;
   const shares = {};
   const progress = () => { parts.state.textContent = `Computing the field: ${Math.round((100 * Object.values(shares).reduce((a, b) => a + b, 0)) / wanted.length)}\u202f%`; };
   try {
-    for (const { name } of wanted) {
+    for (const one of wanted) {
+      const { name } = one;
       shares[name] = 0;
       progress();
-      if (films[name]?.run !== runs[name].run) films[name] = await film(runs[name], mine.signal, (fraction) => { shares[name] = fraction; progress(); });
+      const ends = one === wanted[0] ? null : films[wanted[0].name].limit;
+      if (!there(one)) films[name] = await film(runs[name], mine.signal, (fraction) => { shares[name] = fraction; progress(); }, ends);
       shares[name] = 1;
     }
     parts.state.textContent = "";
     last = Math.max(...wanted.map(({ name }) => films[name].time.at(-1)));
     parts.scrub.max = last;
     draw();
+    moved();
   } catch (failure) {
     parts.state.textContent = failure.name === "AbortError" ? (loading === mine ? "Cancelled." : parts.state.textContent) : failure.message;
   }
@@ -92,17 +102,13 @@ function tick(now) {
   if (playing) requestAnimationFrame(tick);
 }
 
-// Both panels share the scales of the bare system, so that they can be compared.
-function limits() {
-  const one = films.bare ?? films.current;
-  return { pressure: 127 * one.scale, stress: one.stress_limit };
-}
+const first = () => films[PANELS.find(({ name }) => films[name])?.name];
 
 export function draw() {
-  const shown = films.current ?? films.bare;
+  const shown = first();
   if (!shown) return;
   parts.time.textContent = `t = ${time.toFixed(2)} (${show(time * shown.transit_time_seconds, "s", 3)})`;
-  const limit = limits();
+  const limit = { pressure: shown.limit, stress: shown.stress_limit };
   for (const { name } of PANELS) if (films[name]) panel(parts[name], films[name], limit);
   parts.scales.replaceChildren(scale("pressure", limit.pressure, PRESSURE_BAR), scale("hoop stress", limit.stress, STRESS_BAR));
   read();
@@ -115,13 +121,9 @@ function panel(canvas, one, limit) {
   if (buffers.get(canvas)?.width !== size) buffers.set(canvas, new OffscreenCanvas(size, size));
   const buffer = buffers.get(canvas), inner = buffer.getContext("2d"), image = inner.createImageData(size, size);
   const words = new Uint32Array(image.data.buffer), start = frame * size * size;
-  const stretch = one.scale / (limit.pressure / 127);
   for (let line = 0; line < size; line += 1) {
     const from = start + (size - 1 - line) * size, to = line * size; // the lowest y comes first
-    for (let column = 0; column < size; column += 1) {
-      const level = Math.round((one.pressure[from + column] - 128) * stretch);
-      words[to + column] = WORDS[128 + Math.max(-127, Math.min(127, level))];
-    }
+    for (let column = 0; column < size; column += 1) words[to + column] = WORDS[one.pressure[from + column]];
   }
   inner.putImageData(image, 0, 0);
   context.imageSmoothingEnabled = true;
@@ -173,10 +175,11 @@ function scale(label, limit, gradient) {
 }
 
 function pointed(event, canvas) {
-  const one = films.current ?? films.bare, box = canvas.getBoundingClientRect();
+  const one = first(), box = canvas.getBoundingClientRect();
   if (!one || !box.width) return;
   probe = { x: ((event.clientX - box.left) / box.width * 2 - 1) * one.half_width, y: (1 - ((event.clientY - box.top) / box.height) * 2) * one.half_width };
   if (playing) read(); else draw();
+  moved();
 }
 
 function keyed(event) {
@@ -186,13 +189,50 @@ function keyed(event) {
   event.preventDefault();
   probe = { x: (probe?.x ?? 0) + turn[0], y: (probe?.y ?? 0) + turn[1] };
   draw();
+  moved();
+}
+
+// Once the cross rests, its pressure over the whole run: the picture has few levels, and none beyond the ends of its colours.
+function moved() {
+  clearTimeout(resting);
+  if (probe) resting = setTimeout(ask, REST);
+}
+
+async function ask() {
+  if (asking) return moved();
+  asking = true;
+  const { x, y } = probe;
+  for (const { name } of PANELS.filter((panel) => films[panel.name])) {
+    const { run } = films[name];
+    if (exact[name]?.run === run && exact[name].x === x && exact[name].y === y) continue;
+    const answer = await request(`/api/runs/${run}/point?x=${x}&y=${y}`).catch(() => null);
+    if (answer?.arrays) exact[name] = { run, x, y, time: answer.arrays.time.values, pressure: answer.arrays.pressure.values };
+    read();
+  }
+  asking = false;
+}
+
+// The exact pressure at the cross and the time shown, or null while it is not known.
+function exactly(name) {
+  const { run, x, y, time: times, pressure } = exact[name] ?? {};
+  if (run !== films[name].run || x !== probe.x || y !== probe.y) return null;
+  const place = (time - times[0]) / (times[1] - times[0]), low = Math.min(Math.max(Math.floor(place), 0), times.length - 2);
+  return pressure[low] + Math.min(place - low, 1) * (pressure[low + 1] - pressure[low]);
 }
 
 function read() {
   if (!probe) return;
   const at = `x = ${probe.x.toFixed(2)}, y = ${probe.y.toFixed(2)} (radii)`.replaceAll("-", "−");
-  const values = PANELS.filter(({ name }) => films[name]).map(({ name, label }) => `${label.toLowerCase()} ${show(pressureAt(films[name], frameAt(films[name], time), probe.x, probe.y), "Pa", 3)}`);
+  const values = PANELS.filter(({ name }) => films[name]).map(({ name, label }) => `${label.toLowerCase()} ${reading(name)}`);
   parts.point.textContent = `${at}: ${values.join(", ")}`;
+}
+
+function reading(name) {
+  const value = exactly(name);
+  if (value !== null) return show(value, "Pa", 3);
+  const seen = pressureAt(films[name], frameAt(films[name], time), probe.x, probe.y);
+  if (seen !== null && Math.abs(seen) >= 0.999 * films[name].limit) return `${seen < 0 ? "below" : "above"} ${show(seen, "Pa", 3)}`;
+  return seen === null ? "–" : `about ${show(seen, "Pa", 2)}`;
 }
 
 document.addEventListener("theme", () => { if (colour("text")) draw(); });
