@@ -164,6 +164,9 @@ def test_an_optimisation_tells_its_best_on_the_way_and_is_cancelled_midway(clien
     assert re.fullmatch(r"\d+: best inner\.peak_stress \d+\.\d+ kPa", job["stage"]), job["stage"]
     assert 0 < job["fraction"] < 0.1
     assert client.get(f"/api/jobs/{job['id']}/result").json()["error"]["code"] == "not-ready"
+    beside = start(client, kind="solve", slot="beside", revision=1, system=described("bare"), resolution={**SMALL, "modes": 10})
+    assert ended(client, beside)["state"] == "done", "nothing else waits for a study"
+    assert client.get(f"/api/jobs/{job['id']}").json()["job"]["state"] == "running"
     assert client.delete(f"/api/jobs/{job['id']}").status_code == 204
     assert client.get(f"/api/jobs/{job['id']}").json()["job"]["state"] == "cancelled"
     assert client.get(f"/api/jobs/{job['id']}/designs/0").json()["error"]["code"] == "cancelled"

@@ -17,6 +17,7 @@ from coaxshell.studio.workers import Work, Workers
 
 WAITING, RUNNING, DONE, FAILED, CANCELLED = "waiting", "running", "done", "failed", "cancelled"
 ENDED = (DONE, FAILED, CANCELLED)
+STUDIES = ("sweep", "optimise")
 
 
 @dataclass(eq=False)
@@ -71,7 +72,9 @@ class Jobs:
                     self.cancel(other)
         if len([other for other in self.of(job.client) if other.state not in ENDED]) >= limits.JOBS_OF_CLIENT:
             raise RefusedError(429, "busy", "jobs", f"{len(open_jobs)} are open", "wait for one or cancel it")
-        job.work = self.workers.submit(task, *arguments, place=place, live=False, started=lambda: self._began(job))
+        job.work = self.workers.submit(
+            task, *arguments, place=place, live=False, study=job.kind in STUDIES, started=lambda: self._began(job)
+        )
         self._jobs[job.id] = job
         self._tidy()
         waiter = asyncio.get_running_loop().create_task(self._watched(job, job.work))

@@ -49,11 +49,11 @@ class _Here:
     answers: Cache[Response] = Cache(ANSWER_BYTES, held_bytes)
 
 
-def begin(board: Any, stage: Any) -> None:
+def begin(board: Any, stage: Any, niceness: int) -> None:
     """Set up a worker process: Ctrl-C is the server's to handle, and a worker whose server is gone goes too."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _Here.board, _Here.stage = board, stage
-    os.nice(5)  # the page's own requests go first
+    os.nice(niceness)
     ThreadpoolController().limit(limits=1, user_api="blas")  # the workers share the cores
     parent = parent_process()
     if parent is not None:

@@ -1,4 +1,4 @@
-"""Worker processes, and who is served next: what a person waits for before what may take its time.
+"""Worker processes, and who is served next: what a person waits for before what may take its time; studies have a process of their own.
 
 Everything here runs in the event loop; only :func:`coaxshell.studio.worker.perform` runs elsewhere.
 """
@@ -22,6 +22,8 @@ from coaxshell.studio.refusals import RefusedError
 
 REMEMBERED = 4
 """Structures that a worker is taken to have at hand."""
+NICENESS, STUDY_NICENESS = 5, 15
+"""The page's own requests go first, and studies last."""
 WATCHED_EVERY = 1.0
 """Seconds between two looks at a task that runs."""
 
@@ -38,6 +40,8 @@ class Work:
         The structure it needs; a worker that has it is preferred.
     live : bool
         A person waits for it.
+    study : bool
+        It may take many minutes, so that nothing else should wait for it.
     future : asyncio.Future
         Its value; InputError, RefusedError, or cancelled.
     """
@@ -47,6 +51,7 @@ class Work:
     arguments: tuple[Any, ...]
     place: Hashable
     live: bool
+    study: bool
     future: asyncio.Future[Any]
     process: _Process | None = None
     started: Callable[[], None] | None = None
@@ -58,6 +63,7 @@ class _Process:
     board: Any
     stage: Any
     executor: ProcessPoolExecutor
+    study: bool = False
     work: Work | None = None
     recent: OrderedDict[Hashable, None] = field(default_factory=OrderedDict)
 
@@ -75,6 +81,8 @@ class _Process:
 class Workers:
     """A few worker processes with two queues; of more than one worker, one is always left for what is live.
 
+    Studies wait in a queue of their own for a process of their own, started with the first of them, that gives way to all others.
+
     Parameters
     ----------
     processes : int
@@ -84,15 +92,17 @@ class Workers:
         self._context = multiprocessing.get_context("spawn")
         self._numbers = count(1)
         self._processes = [self._started() for _ in range(processes)]
-        self._queues: dict[bool, deque[Work]] = {True: deque(), False: deque()}
+        self._queues: dict[str, deque[Work]] = {"live": deque(), "jobs": deque(), "studies": deque()}
         self._tasks: set[asyncio.Task[None]] = set()
         self._closed = False
 
-    def _started(self) -> _Process:
+    def _started(self, study: bool = False) -> _Process:
         board, stage = self._context.RawArray("d", [0.0, 0.0]), self._context.RawArray("c", 64)
-        executor = ProcessPoolExecutor(1, mp_context=self._context, initializer=worker.begin, initargs=(board, stage))
+        executor = ProcessPoolExecutor(
+            1, mp_context=self._context, initializer=worker.begin, initargs=(board, stage, STUDY_NICENESS if study else NICENESS)
+        )
         executor.submit(worker.ready)
-        return _Process(board, stage, executor)
+        return _Process(board, stage, executor, study)
 
     def submit(
         self,
@@ -100,17 +110,18 @@ class Workers:
         *arguments: Any,
         place: Hashable = None,
         live: bool = True,
+        study: bool = False,
         started: Callable[[], None] | None = None,
         instead_of: Work | None = None,
     ) -> Work:
         """Queue a task, in the place of another if that still waits; RefusedError when too many wait."""
         if self._closed:
             raise RefusedError(503, "closing", "server", "is ending", "start it again")
-        queue = self._queues[live]
+        queue = self._queues[_queue(live, study)]
         replaced = instead_of is not None and instead_of in queue
         if not replaced and len(queue) >= (limits.LIVE_WAITING if live else limits.JOBS_WAITING):
             raise RefusedError(429, "busy", "server", f"{len(queue)} tasks are waiting", "try again in a moment")
-        work = Work(next(self._numbers), task, arguments, place, live, asyncio.get_running_loop().create_future(), started=started)
+        work = Work(next(self._numbers), task, arguments, place, live, study, asyncio.get_running_loop().create_future(), started=started)
         if replaced and instead_of is not None:
             queue[queue.index(instead_of)] = work
             instead_of.future.cancel()
@@ -124,8 +135,8 @@ class Workers:
         work.dropped = True
         if work.process is not None:
             work.process.board[worker.STOP] = work.number
-        elif work in self._queues[work.live]:
-            self._queues[work.live].remove(work)
+        elif work in (queue := self._queues[_queue(work.live, work.study)]):
+            queue.remove(work)
             work.future.cancel()
 
     def progress(self, work: Work) -> tuple[float, str]:
@@ -138,8 +149,7 @@ class Workers:
     def _feed(self) -> None:
         if self._closed:
             return
-        for live in (True, False):
-            queue = self._queues[live]
+        for queue in self._queues.values():
             while queue:
                 process = self._free_for(queue[0])
                 if process is None:
@@ -151,9 +161,12 @@ class Workers:
                 task.add_done_callback(self._tasks.discard)
 
     def _free_for(self, work: Work) -> _Process | None:
-        free = [process for process in self._processes if process.work is None]
-        behind = sum(process.work is not None and not process.work.live for process in self._processes)
-        if not free or (not work.live and behind >= max(1, len(self._processes) - 1)):
+        if work.study and not any(process.study for process in self._processes):
+            self._processes.append(self._started(study=True))
+        mine = [process for process in self._processes if process.study == work.study]
+        free = [process for process in mine if process.work is None]
+        behind = sum(process.work is not None and not process.work.live for process in mine)
+        if not free or (not work.live and behind >= max(1, len(mine) - 1)):
             return None
         return next((process for process in free if work.place in process.recent), free[0])
 
@@ -172,7 +185,7 @@ class Workers:
         except BrokenProcessPool:
             process.executor.shutdown(wait=False)
             if not self._closed and process in self._processes:
-                self._processes[self._processes.index(process)] = self._started()
+                self._processes[self._processes.index(process)] = self._started(process.study)
             if work.dropped:
                 work.future.cancel()
             _settle(work, _lost(silent))
@@ -226,6 +239,10 @@ async def _watched(process: _Process, work: Work, future: asyncio.Future[Any]) -
             await asyncio.wait([future])
             return True
     return False
+
+
+def _queue(live: bool, study: bool) -> str:
+    return "studies" if study else "live" if live else "jobs"
 
 
 def _lost(silent: bool) -> InputError:
