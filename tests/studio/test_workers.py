@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from asking import reporting
@@ -32,7 +33,8 @@ def carried_out(story, **seconds):
         finally:
             crew.close()
 
-    return asyncio.run(told())
+    with ThreadPoolExecutor(1) as apart:  # the browser of other tests may have left a loop running in this thread
+        return apart.submit(lambda: asyncio.run(told())).result()
 
 
 def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs():
