@@ -3,7 +3,7 @@ import { client, request } from "./api.js";
 import { by, el } from "./dom.js";
 import { ended, onRestart, watch } from "./events.js";
 import * as optimise from "./optimise.js";
-import { fields, told } from "./study_fields.js";
+import { fields, spelt, told } from "./study_fields.js";
 import * as sweep from "./sweep.js";
 import { show } from "./units.js";
 
@@ -94,7 +94,7 @@ function parts(job, { kind: of, title }) {
 function progressed({ state, stage }) {
   if (state !== "running") return state;
   const [, number, words] = stage.match(/^(\d+): (.*)$/) ?? [null, "", stage];
-  return `${number ? `${number} designs, ` : ""}${words}`.replace(/(^|\s)-(?=\d)/g, "$1−");
+  return `${number ? `${number} designs, ` : ""}${spelt(words)}`.replace(/(^|\s)-(?=\d)/g, "$1−");
 }
 
 async function open(id) {
