@@ -56,9 +56,9 @@ def test_statistics_alone_and_failures(run, study):
         ("20 cm", "20 kg", "uncertain.source.distance.deviation: '20 kg' is not a length"),
         ("relative = 0.1", "relative = -0.1", "uncertain.source.peak_pressure: a standard deviation of -0.1 is not allowed"),
         ("samples = 8", "samples = 12", "samples: 12 is not a power of two"),
-        ("samples = 8", "sample = 8", "sample: is not an entry of SensitivityStudy"),
+        ("samples = 8", "sample = 8", "sample: is not an entry of a study of uncertain properties; did you mean 'samples'?"),
         ("mean = ", "middle = ", "uncertain.source.distance.normal.middle: is not an entry of a normal distribution"),
-        ("[uncertain]", "[over]", "uncertain: is missing"),
+        ("[uncertain]", "[over]", "over: is not an entry of a study of uncertain properties; allowed: scenario, set"),
     ],
 )
 def test_bad_study_files(refused, study, old, new, message):

@@ -78,6 +78,7 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "fluid of wrong type": (lambda: BARE.replace(fluids=[1, 2, 3]), ("fluids[0]:", "1 is not a fluid", "give a Fluid, VACUUM")),
     # layers and shells
     "negative thickness": (lambda: cx.Layer(ALUMINIUM, -0.003), ("thickness:", "-0.003 m", "greater than 0")),
+    "misspelt thickness": (lambda: cx.Layer(ALUMINIUM, thicknes=1e-3), ("thicknes:", "is not an entry of Layer", "'thickness'")),
     "missing thickness": (lambda: cx.Layer(ALUMINIUM), ("thickness:", "is missing", "Layer needs it")),
     "ceramic without role": (lambda: cx.Layer(PZT, 0.003), ("role:", "missing", "'PZT-4'", "'sensor', 'actuator' or 'passive'")),
     "ceramic as core": (lambda: cx.Layer(PZT, 0.003, "core"), ("role:", "'core'", "'PZT-4'", "'sensor', 'actuator' or 'passive'")),

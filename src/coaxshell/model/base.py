@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -58,6 +58,9 @@ class Described(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
+    called: ClassVar[str] = ""
+    """What errors call it, where its users do not know the name of the class."""
+
     def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)
@@ -87,18 +90,20 @@ def _told(error: ValidationError, cls: type[BaseModel]) -> InputError:
     """Translate pydantic's report into the first problem, in the user's terms."""
     # A default that depends on a bad field is a consequence, not a problem of its own.
     problems = [p for p in error.errors(include_url=False) if p["type"] != "default_factory_not_called"]
-    first = problems[0]
+    # An entry that is misspelt is often missing too: the name is what is wrong.
+    first = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])
     where = dotted(first["loc"])
     value = first["input"]
+    name = getattr(cls, "called", "") or cls.__name__
     context: Mapping[str, Any] = first.get("ctx") or {}
     cause = context.get("error")
     if isinstance(cause, InputError):
         return within(where, cause)
     match first["type"]:
         case "missing":
-            return InputError(where, "is missing", f"{cls.__name__} needs it")
+            return InputError(where, "is missing", f"{name} needs it")
         case "extra_forbidden":
-            return InputError(where, f"is not an entry of {cls.__name__}", suggestion(str(first["loc"][-1]), _entries(cls)))
+            return InputError(where, f"is not an entry of {name}", suggestion(str(first["loc"][-1]), _entries(cls)))
         case "literal_error":
             return InputError(where, f"{shown(value)} is not allowed", f"must be {context['expected']}")
         case "value_error":
@@ -113,4 +118,4 @@ def _told(error: ValidationError, cls: type[BaseModel]) -> InputError:
 
 
 def _entries(cls: type[BaseModel]) -> list[str]:
-    return list(cls.model_fields)
+    return [field.alias or name for name, field in cls.model_fields.items()]

@@ -20,7 +20,6 @@ from coaxshell.solver.scaling import dimensionless
 
 FloatArray = npt.NDArray[np.float64]
 
-PRESETS = ("iakovlev-evacuated", "iakovlev-filled", "iakovlev-double")
 THICKNESSES = {5e-3: "sky", 1e-2: "blue", 2e-2: "green", 4e-2: "orange"}
 """Of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
 

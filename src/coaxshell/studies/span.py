@@ -19,6 +19,7 @@ class Span(Described):
     """Describe an interval: ``{from = 0, to = 50, step = 1}`` or ``{from = "1 kg", to = "20 kg", count = 20, scale = "log"}``."""
 
     model_config = ConfigDict(populate_by_name=True, validate_by_name=True)
+    called = "a range"
 
     start: Annotated[Any, Entry(alias="from")]
     """Lower end, a number in SI or text with a unit."""

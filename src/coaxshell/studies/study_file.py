@@ -26,6 +26,8 @@ MetricTexts = list[str] | dict[str, str]
 class ResolutionEntry(Described):
     """Describe the resolution of every run of a study; entries as the options of ``coaxshell run``."""
 
+    called = "a resolution"
+
     duration: float = 5.0
     """How long, in transits a/c_e."""
     time_step: float = 1e-3
@@ -88,6 +90,8 @@ class Study(Described):
 
 class SweepStudy(Study):
     """Describe a sweep."""
+
+    called = "a sweep"
 
     over: dict[str, Any]
     """What to vary: values by dotted path."""

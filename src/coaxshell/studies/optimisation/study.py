@@ -17,6 +17,8 @@ _ENTRIES = frozenset({"from", "to", "values"})
 class OptimisationStudy(Study):
     """Describe an optimisation; entries as the arguments of :func:`coaxshell.optimise`."""
 
+    called = "an optimisation"
+
     variables: dict[str, Any]
     """What may change: ranges by dotted path."""
     objectives: list[Any]

@@ -14,6 +14,8 @@ from coaxshell.studies.uncertainty.plan import Plan, plan_of
 class SensitivityStudy(Study):
     """Describe a study of uncertain properties."""
 
+    called = "a study of uncertain properties"
+
     uncertain: dict[str, Any]
     """Distributions by dotted path."""
     metrics: MetricTexts
