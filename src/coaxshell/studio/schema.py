@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from importlib.util import find_spec
 from typing import Any
 
 from coaxshell._version import __version__
@@ -36,6 +37,7 @@ def schema() -> dict[str, Any]:
         "metric_units": _metric_units(),
         "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in QUANTITIES.items()],
         "resolutions": {"preview": limits.PREVIEW, "full": limits.FULL},
+        "films": ["mp4", "webp"] if find_spec("imageio_ffmpeg") else ["webp"],
         "limits": limits.table(),
     }
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from page_reading import rest, run_of, solved, system_of, until
 
 import coaxshell as cx
+from coaxshell.studio.links import fragment
 
 
 def test_two_tabs_do_not_disturb_each_other(open_page):
@@ -44,6 +46,18 @@ def test_a_link_holds_the_whole_system(page, open_page):
     assert system_of(again) == cx.presets.load("absorbers")
 
 
+SMALL = {"duration": 2.0, "time_step": 0.02, "modes": 12}
+
+
+@pytest.fixture
+def small_page(server, open_page):
+    """A page with a system at a resolution that takes hundredths of a second."""
+    held = {"v": 1, "system": cx.presets.load("absorbers").model_dump(mode="json"), "resolution": {**SMALL, "refinement": 1}}
+    page = open_page(f"{server.address}#{fragment(held)}")
+    until(page, "!!window.coaxshell.state.runs.current?.full && !!window.coaxshell.state.runs.bare?.full")
+    return page
+
+
 @pytest.mark.parametrize("ending", ["toml", "nc"])
 def test_a_file_comes_in_and_goes_out_again(page, tmp_path, ending):
     mine = cx.presets.load("bare").with_overrides({"source.peak_pressure": 1.5e5}).replace(name="mine")
@@ -63,6 +77,41 @@ def test_a_file_comes_in_and_goes_out_again(page, tmp_path, ending):
     started.value.save_as(saved)
     back = cx.System.from_toml(saved) if ending == "toml" else cx.load_response(saved).system
     assert back == mine
+
+
+BEGINNINGS = {"csv": b"time (a/c),", "png": b"\x89PNG\r\n\x1a\n", "svg": b"<?xml"}
+
+
+def test_figures_and_tables_are_taken_home(small_page, tmp_path):
+    for ending, beginning in BEGINNINGS.items():
+        small_page.locator("#download > button").click()
+        with small_page.expect_download() as started:
+            small_page.locator(f'#download-list a[href*=".{ending}"]').click()
+        saved = tmp_path / f"taken.{ending}"
+        started.value.save_as(saved)
+        assert saved.read_bytes().startswith(beginning)
+    table = np.genfromtxt(tmp_path / "taken.csv", delimiter=",", skip_header=1)
+    names = (tmp_path / "taken.csv").read_text().splitlines()[0].split(",")
+    settings = {name: run_of(small_page)["resolution"][name] for name in SMALL}
+    head = np.asarray(cx.simulate(system_of(small_page), **settings).stress("inner", angle=0))
+    assert_allclose(table[:, names.index("inner stress head (Pa)")], head, rtol=1e-6, atol=1e-6 * np.abs(head).max())
+
+
+def test_a_film_is_made_and_can_be_cancelled(small_page, tmp_path):
+    def choose(entry):
+        small_page.locator("#download > button").click()
+        small_page.locator(f"#{entry}").click()
+
+    choose("film")
+    until(small_page, "document.getElementById('toast').textContent.startsWith('Film:')")
+    choose("no-film")
+    until(small_page, "document.getElementById('toast').textContent.includes('cancelled')")
+    with small_page.expect_download(timeout=120_000) as started:
+        choose("film")
+    saved = tmp_path / started.value.suggested_filename
+    started.value.save_as(saved)
+    assert saved.suffix == ".mp4"
+    assert saved.read_bytes()[4:8] == b"ftyp"
 
 
 def test_a_file_that_is_no_scenario_is_refused_in_words(page, tmp_path):

@@ -10,13 +10,17 @@ const FILES = [
   ["figure.png", "Stress figure", "PNG"],
   ["figure.svg", "Stress figure", "SVG"],
 ];
+const TOGETHER = ["bare", "pinned", "current"]; // what a figure and a film show, the first ones first
+let format = "mp4", making = null; // the id of the film being made
+
 const KINDS = { toml: "application/toml", nc: "application/x-netcdf" };
 
-export function setUp({ runs, opened, described }) {
+export function setUp({ runs, opened, described, films }) {
   const button = by("download").querySelector("button"), list = by("download-list");
   const toggle = (open) => { list.hidden = !open; button.setAttribute("aria-expanded", String(open)); };
   button.addEventListener("click", () => {
     if (!runs().current) return toast("Nothing solved yet.");
+    [format] = films();
     fill(list, runs(), () => toggle(false));
     toggle(list.hidden);
   });
@@ -27,20 +31,28 @@ export function setUp({ runs, opened, described }) {
   by("link").addEventListener("click", () => copyLink(described()));
 }
 
+const together = (runs) => [...new Set(TOGETHER.map((name) => runs[name]?.run).filter(Boolean))];
+
 function fill(list, runs, close) {
-  const run = runs.current.run, compare = runs.bare ? `?compare=${encodeURIComponent(runs.bare.run)}` : "";
-  list.replaceChildren(...FILES.map(([path, name, kind]) => el("li", {}, el("a", { href: `/api/runs/${run}/${path}${path.startsWith("figure") ? compare : ""}`, download: "", onclick: close }, name, el("small", {}, kind)))),
-    el("li", {}, el("button", { type: "button", id: "film", onclick: () => { close(); film(runs); } }, "Film", el("small", {}, "MP4, bare beside current"))));
+  const run = runs.current.run, compare = together(runs).filter((name) => name !== run).map((name) => `compare=${encodeURIComponent(name)}`).join("&");
+  const query = (path) => (path.startsWith("figure") && compare ? `?${compare}` : "");
+  const act = (what) => () => { close(); what(); };
+  list.replaceChildren(...FILES.map(([path, name, kind]) => el("li", {}, el("a", { href: `/api/runs/${run}/${path}${query(path)}`, download: "", onclick: close }, name, el("small", {}, kind)))),
+    el("li", {}, making ? el("button", { type: "button", id: "no-film", onclick: act(() => request(`/api/jobs/${making}`, { method: "DELETE" }).catch(() => {})) }, "Cancel the film")
+      : el("button", { type: "button", id: "film", onclick: act(() => film(runs)) }, "Film", el("small", {}, `${format === "mp4" ? "MP4" : "WebP"}, side by side`))));
 }
 
 async function film(runs) {
   try {
-    const body = { client, kind: "film", runs: [runs.bare?.run, runs.current.run].filter(Boolean), frames: 120, fps: 24, size: 360, format: "mp4" };
+    const body = { client, kind: "film", runs: together(runs), frames: 120, fps: 24, size: 360, format };
     const { job } = await request("/api/jobs", { body });
+    making = job.id;
     watch(job, (told) => {
       if (!ended(told)) return toast(`Film: ${Math.round(100 * (told.fraction ?? 0))} %`);
-      if (told.state !== "done") return toast(`No film: ${[told.error?.problem, told.error?.remedy].filter(Boolean).join("; ") || told.state}`);
-      const link = el("a", { href: `/api/jobs/${told.id}/file`, download: "coaxshell.mp4" });
+      making = null;
+      if (told.state === "cancelled") return toast("No film: cancelled.");
+      if (told.state !== "done") return toast(`No film: ${[told.error?.problem, told.error?.remedy].filter(Boolean).join("; ")}`);
+      const link = el("a", { href: `/api/jobs/${told.id}/file`, download: `coaxshell.${format}` });
       document.body.append(link);
       link.click();
       link.remove();

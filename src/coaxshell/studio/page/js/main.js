@@ -275,7 +275,7 @@ function wire() {
   document.addEventListener("theme", () => { energy.forget(); if (page.runs.current) drawRuns(); });
   tabs.onTab((name) => { drawTab(name); if (page.system) keepLink(); });
   addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "/api/link/open"));
-  files.setUp({ runs: () => page.runs, opened, described: content });
+  files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
   wave.setUp(curves.cursor);
   curves.onTime((time) => { wave.pause(); wave.seek(time); });
