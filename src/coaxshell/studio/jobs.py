@@ -156,7 +156,11 @@ class Jobs:
         elif work.future.cancelled():
             self._end(job, CANCELLED)
         elif (error := work.future.exception()) is not None:
-            bad = error if isinstance(error, InputError) else InputError("server", "the job failed", "see the terminal")
+            bad = (
+                error
+                if isinstance(error, InputError)
+                else InputError("server", "the job failed unexpectedly", "the terminal that runs coaxshell studio says why")
+            )
             job.error = {"where": bad.where, "problem": bad.problem, "remedy": bad.remedy}
             self._end(job, FAILED)
         else:

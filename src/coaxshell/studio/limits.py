@@ -114,7 +114,7 @@ def check_path(where: str, path: str) -> None:
 def check_counts(where: str, largest: float) -> None:
     """Raise InputError for a study that goes to larger counts than the studio solves."""
     if largest > ABSORBERS:
-        raise InputError(where, f"{largest:,} is too many here", f"at most {ABSORBERS}")
+        raise InputError(where, f"{largest:,.15g} is too many here", f"at most {ABSORBERS}")
 
 
 def settings_of(given: object, *, live: bool) -> Settings:

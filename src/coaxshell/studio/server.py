@@ -53,7 +53,7 @@ def listening(port: int) -> socket.socket:
         listener.close()
         if error.errno == errno.EADDRINUSE:
             raise InputError("--port", f"{port} is in use", "stop what uses it, or give another one (0 takes any free one)") from None
-        raise InputError("--port", f"{port} cannot be had ({error.strerror})", "give a number from 1024 to 65535, or 0") from None
+        raise InputError("--port", f"{port} cannot be used ({error.strerror})", "give a number from 1024 to 65535, or 0") from None
     listener.listen(128)
     return listener
 

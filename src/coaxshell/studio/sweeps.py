@@ -41,7 +41,7 @@ def planned(system: System, over: Any, metrics: Any, points: str, samples: int |
         limits.check_values(f"over.{path}", given)
         count = len(given) if isinstance(given, list) else given.get("count", 2) if isinstance(given, dict) else 1
         if not isinstance(count, int) or count > limits.CASES:
-            raise InputError(f"over.{path}", f"{shown(count)} values are too many here", f"at most {limits.CASES}")
+            raise InputError(f"over.{path}", f"{shown(count)} values are not allowed here", f"give a whole number, at most {limits.CASES}")
     if samples is not None and samples > limits.CASES:
         raise InputError("samples", f"{samples} are too many here", f"at most {limits.CASES}")
     known = metric_names(system)

@@ -26,6 +26,7 @@ NICENESS, STUDY_NICENESS = 5, 15
 """The page's own requests go first, and studies last."""
 WATCHED_EVERY = 1.0
 """Seconds between two looks at a task that runs."""
+_FEWER = "ask for fewer orders, a coarser time step or a shorter duration"
 
 
 @dataclass(eq=False)
@@ -247,8 +248,8 @@ def _queue(live: bool, study: bool) -> str:
 
 def _lost(silent: bool) -> InputError:
     if silent:
-        return InputError("system", f"its solution made no progress for {limits.SILENT_SECONDS:g} s and was ended", "ask for less")
-    return InputError("system", "the worker that solved it has died", "most likely for want of memory: ask for less")
+        return InputError("system", f"its solution made no progress for {limits.SILENT_SECONDS:g} s and was ended", _FEWER)
+    return InputError("system", "the worker that solved it has died, most likely for want of memory", _FEWER)
 
 
 def _settle(work: Work, error: Exception) -> None:
