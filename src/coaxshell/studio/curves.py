@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,16 @@ import numpy.typing as npt
 
 from coaxshell.model import RigidShell, Shell
 from coaxshell.response import Response
+from coaxshell.response.histories import combined
 from coaxshell.response.labels import shell_name
+from coaxshell.response.modal import displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Peak
 from coaxshell.response.summary import Summary
+from coaxshell.response.voltages import actuator_values
+from coaxshell.solver.solution import ModalSolution
 from coaxshell.studio.arrays import Item, Packed, packed
+
+FloatArray = npt.NDArray[np.float64]
 
 QUANTITIES = {
     "stress": ("hoop stress", "Pa"),
@@ -32,6 +39,14 @@ BARS = {
     "displacement_tail": ("peak displacement at the tail", "m"),
     "sensor_voltage": ("peak sensor voltage", "V"),
     "actuator_voltage": ("peak actuator voltage asked for", "V"),
+}
+
+
+_AT_ENDS: dict[str, Callable[[ModalSolution, int, FloatArray], FloatArray]] = {
+    "stress": lambda solution, shell, ends: combined(solution, shell, stress_gain_of(solution, shell), ends),
+    "displacement": lambda solution, shell, ends: combined(solution, shell, displacement_gain(solution), ends),
+    "sensor_voltage": lambda solution, shell, ends: combined(solution, shell, voltage_gain(solution, shell), ends),
+    "actuator_voltage": actuator_values,
 }
 
 
@@ -71,15 +86,16 @@ def curves(response: Response, seconds: float) -> Packed:
 
 
 def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]:
-    head = response.system.sources[0].angle
-    ends = [head, head + 180.0]
+    """Return all histories at the ends of the shells; straight from the solution, since labels would take longer than the numbers."""
+    solution, head = response.solution, response.system.sources[0].angle
+    ends = np.array([head, head + 180.0])
     items: dict[str, Item] = {}
     for index in range(len(response.system.shells)):
         for quantity in _given(response, index):
-            values = np.asarray(getattr(response, quantity)(index, angle=ends), dtype=np.float32).T
-            items[f"{quantity}/{index}"] = Item(values, QUANTITIES[quantity][1])
-    if response.system.absorber_list:
-        forces = np.asarray(response.absorber_force())
+            values = _AT_ENDS[quantity](solution, index, ends)
+            items[f"{quantity}/{index}"] = Item(np.asarray(values, dtype=np.float32).T, QUANTITIES[quantity][1])
+    if solution.absorber_force is not None and response.system.absorber_list:
+        forces = solution.problem.scales.line_force * solution.absorber_force
         for index in range(len(response.system.shells)):
             for side, first in ((0, index), (1, index - 1)):  # a shell is the inner one of the gap outside it, the outer one of that inside
                 pair = _nearest(response, head, first)
