@@ -10,6 +10,7 @@ whose inverse is the modal compliance C_m(s).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,10 +43,14 @@ def shell_operator(problem: Problem, index: int, s: ComplexArray, orders: FloatA
     impedance = inertia + stiffness.ww + stiffness.vw * tangential
     gains = problem.shells[index].gains
     if gains is not None:
-        sensor_v, sensor_w = problem.sensor_gain(index, m)
-        volts = sensor_v * tangential + sensor_w
-        impedance -= problem.actuator_pressure(index) * (gains.proportional + gains.derivative * s) * volts
+        impedance -= (gains.proportional + gains.derivative * s) * pressure_fed_back(problem, index, tangential, m)
     return ShellOperator(impedance, tangential)
+
+
+def pressure_fed_back(problem: Problem, index: int, tangential: ComplexArray, m: FloatArray) -> ComplexArray:
+    """Return the actuator's pressure per normal displacement and unit gain: pressure per volt times the sensor's voltage per W."""
+    sensor_v, sensor_w = problem.sensor_gain(index, m)
+    return np.asarray(problem.actuator_pressure(index) * (sensor_v * tangential + sensor_w))
 
 
 @dataclass
@@ -186,13 +191,29 @@ class ModalSystem:
                 answer[i] = answer[i] - self._inward[i] * answer[i + 1]
         return answer
 
+    @property
+    def diagonal(self) -> list[ComplexArray]:
+        """Of the tridiagonal system, one entry a shell, each of shape (orders, nodes)."""
+        return self._diagonal
+
+    @property
+    def coupling(self) -> list[ComplexArray | float]:
+        """lower_i times upper_{i-1}: what neighbouring shells, i = 1 onwards, do to the determinant."""
+        return [self._lower[i] * self._upper[i - 1] for i in range(1, len(self.shells))]
+
     def determinant(self) -> ComplexArray:
         """Return the determinant of the tridiagonal system, shape (orders, nodes): zero at the poles of the response."""
-        product = self._inverse_pivot[0].copy()
-        for inverse in self._inverse_pivot[1:]:
-            product *= inverse
-        return np.reciprocal(product)
+        return determinant(self.diagonal, self.coupling)
 
     def tangential(self, normal: list[ComplexArray]) -> list[ComplexArray]:
         """Return V of every shell from W of every shell (no tangential load)."""
         return [op.tangential * w if op is not None else w for op, w in zip(self.shells, normal, strict=True)]
+
+
+def determinant(diagonal: Sequence[ComplexArray], coupling: Sequence[ComplexArray | float]) -> ComplexArray:
+    """Return the determinant of a tridiagonal matrix by its three-term recursion."""
+    before: ComplexArray | float = 1.0
+    present = diagonal[0]
+    for entry, product in zip(diagonal[1:], coupling, strict=True):
+        before, present = present, entry * present - product * before
+    return present

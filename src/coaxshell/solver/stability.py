@@ -7,7 +7,8 @@ s = sigma_0 + i omega, omega from 0 to infinity, divided by pi.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ import numpy as np
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray, all_orders
 from coaxshell.errors import InputError
-from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.coupling import ModalSystem, determinant, pressure_fed_back
 from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import ControlGains, Problem
 from coaxshell.solver.workshop import Workshop
@@ -32,6 +33,52 @@ class UnstablePoles(NamedTuple):
 
     orders: FloatArray
     counts: FloatArray
+
+
+@dataclass(frozen=True)
+class OpenLoop:
+    """The system without feedback at some nodes, and what feedback adds to it per unit gain: the same for all gains.
+
+    Attributes
+    ----------
+    diagonal, coupling : sequence of ndarray, shape (orders, nodes)
+        Of its tridiagonal matrix; see :class:`coaxshell.solver.coupling.ModalSystem`.
+    determinant : ndarray, shape (orders, nodes)
+    fed_back : dict of int to ndarray
+        By number of the controlled shell.
+    """
+
+    diagonal: Sequence[ComplexArray]
+    coupling: Sequence[ComplexArray | float]
+    determinant: ComplexArray
+    fed_back: dict[int, ComplexArray]
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        arrays = [*self.diagonal, *self.coupling, self.determinant, *self.fed_back.values()]
+        return sum(x.nbytes for x in arrays if isinstance(x, np.ndarray))
+
+    @classmethod
+    def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, workshop: Workshop | None) -> OpenLoop:
+        """Return it for a problem, whose gains only tell which shells are controlled."""
+        bare = replace(problem, shells=tuple(replace(shell, gains=None) for shell in problem.shells))
+        system = ModalSystem(bare, nodes, orders, workshop=workshop)
+        fed_back = {
+            i: pressure_fed_back(problem, i, operator.tangential, orders[:, None])
+            for i, operator in enumerate(system.shells)
+            if operator is not None and problem.shells[i].gains is not None
+        }
+        return cls(system.diagonal, system.coupling, determinant(system.diagonal, system.coupling), fed_back)
+
+    def closed(self, problem: Problem, nodes: ComplexArray) -> ComplexArray:
+        """Return D_m/D0_m, the determinant with the feedback of a problem over that without."""
+        diagonal = list(self.diagonal)
+        for i, pressure in self.fed_back.items():
+            gains = problem.shells[i].gains
+            if gains is not None:
+                diagonal[i] = diagonal[i] - (gains.proportional + gains.derivative * nodes) * pressure
+        return np.asarray(determinant(diagonal, self.coupling) / self.determinant)
 
 
 def with_gains(problem: Problem, proportional: float, derivative: float) -> Problem:
@@ -71,27 +118,24 @@ def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, 
 def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: Workshop | None = None) -> UnstablePoles:
     """Return the orders whose response would grow by more than a factor e within the duration."""
     shift, frequencies = _contour(problem, max_order, duration)
-    open_loop = replace(problem, shells=tuple(replace(shell, gains=None) for shell in problem.shells))
-    known = (open_loop.shells, open_loop.fluids, open_loop.scales, max_order)
+    controlled = tuple(shell.gains is not None for shell in problem.shells)
+    structure = tuple(replace(shell, gains=None) for shell in problem.shells)
+    known = (structure, controlled, problem.fluids, problem.scales, max_order)
     orders = all_orders(max_order)
     turned = np.zeros(orders.size)
     for start in range(0, frequencies.size, _BLOCK):
         block = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
-        closed = ModalSystem(problem, block, orders, workshop=workshop)
-        without = partial(_determinant, open_loop, block, orders, closed)
+        make = partial(OpenLoop.of, problem, block, orders, workshop)
         if workshop is not None and problem.ingredients == OWN:
-            ratio = closed.determinant() / workshop.part(("open loop", *known, block.tobytes()), without)
+            open_loop = workshop.part(("open loop", *known, block.tobytes()), make)
         else:
-            ratio = closed.determinant() / without()
+            open_loop = make()
+        ratio = open_loop.closed(problem, block)
         turned += np.angle(ratio[:, 1:] / ratio[:, :-1]).sum(axis=1)
     turned += np.angle(1.0 / ratio[:, -1])  # beyond the last node the ratio tends to 1 without turning
     counts = np.rint(-turned / np.pi)
     found = counts > 0
     return UnstablePoles(orders[found], counts[found])
-
-
-def _determinant(problem: Problem, nodes: ComplexArray, orders: FloatArray, like: ModalSystem) -> ComplexArray:
-    return ModalSystem(problem, nodes, orders, like=like).determinant()
 
 
 def require_stable(problem: Problem, max_order: int, duration: float, workshop: Workshop | None = None) -> None:
