@@ -21,7 +21,7 @@ from coaxshell.model import presets
 from coaxshell.studio.limits import settings_of
 from coaxshell.studio.worker import solve
 
-CLIENTS, SECONDS = 50, 20.0
+CLIENTS, SECONDS, ROUNDS = 50, 15.0, 8
 SYSTEMS = {name: presets.load(name).model_dump(mode="json") for name in ("absorbers", "hybrid")}
 SLIDERS = (("absorbers", "absorbers.mass", 5.0), ("hybrid", "absorbers.mass", 5.0), ("hybrid", "control.derivative", -150.0))
 PAUSE = 0.05
@@ -51,7 +51,7 @@ async def _measured(address: str, pid: int) -> None:
             assert {status for _, status in alone} == {200}
             told = f"median {_ms(statistics.median(x for x, _ in alone[4:]))}, first {_ms(alone[0][0])}"
             print(f"{preset}, {path}, one client at M = 60, dt = 4e-3: {told}; in this process {_plain(preset, path, low)}", flush=True)
-        for half in (1, 2, 3):
+        for half in range(1, ROUNDS + 1):
             answered: list[float] = []
             replaced: list[float] = []
             light: list[float] = []
