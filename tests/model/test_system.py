@@ -60,6 +60,13 @@ def test_a_ring_is_evenly_spaced(count: int, offset: float) -> None:
         assert (absorber.mass, absorber.damping, absorber.inner_shell) == (1.0, 2.0, 3)
 
 
+def test_a_changed_copy_of_a_ring_writes_its_own_absorbers_out() -> None:
+    ring = cx.absorber_ring(3, mass=1.0)
+    assert [absorber.mass for absorber in ring.absorbers] == [1.0] * 3
+    for changed in (ring.replace(mass=9.0), ring.model_copy(update={"mass": 9.0})):
+        assert [absorber.mass for absorber in changed.absorbers] == [9.0] * 3
+
+
 def test_rings_of_several_gaps_are_written_out() -> None:
     base = presets.load("bare")
     middle = base.shells[0].replace(radius=0.75)

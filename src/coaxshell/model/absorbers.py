@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import lru_cache
 from typing import Annotated, Any, Self
 
 from pydantic import model_validator
@@ -57,11 +57,10 @@ class AbsorberRing(_Link):
     offset: Angle = 0.0
     """Angle of the first one (degrees)."""
 
-    @cached_property
+    @property
     def absorbers(self) -> tuple[Absorber, ...]:
         """The single absorbers of the ring."""
-        shared = {name: getattr(self, name) for name in _Link.model_fields}
-        return tuple(Absorber(angle=angle, **shared) for angle in self.angles)
+        return _written_out(self)
 
     @property
     def angles(self) -> tuple[float, ...]:
@@ -74,6 +73,13 @@ class AbsorberRing(_Link):
 
     def __bool__(self) -> bool:
         return True  # an empty ring is still a ring, whose count a study may change
+
+
+@lru_cache(maxsize=64)
+def _written_out(ring: AbsorberRing) -> tuple[Absorber, ...]:
+    """Return the absorbers of a ring; kept by its value, since each of them is checked anew and a run asks for them many times."""
+    shared = {name: getattr(ring, name) for name in _Link.model_fields}
+    return tuple(Absorber(angle=angle, **shared) for angle in ring.angles)
 
 
 def absorber_ring(count: int, **properties: Any) -> AbsorberRing:
