@@ -137,6 +137,10 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "negative count": (lambda: ring(count=-1), ("count:", "-1", "greater than or equal to 0")),
     "boolean count": (lambda: ring(count=True), ("count:", "True", "whole number")),
     "absorber on one shell": (lambda: SINGLE.replace(absorbers=ring()), ("absorbers:", "links two shells", "has 1", "add a shell")),
+    "ring without count": (
+        lambda: BARE.replace(absorbers={"mass": 1, "offset": 7}),
+        ("absorbers.count:", "is missing", "AbsorberRing needs it"),
+    ),
     "absorber beyond": (lambda: BARE.replace(absorbers=ring(inner_shell=1)), ("absorbers.inner_shell:", "1", "at most 0")),
     "single absorber beyond": (
         lambda: BARE.replace(absorbers=[cx.Absorber(mass=1), cx.Absorber(mass=1, inner_shell=5)]),

@@ -36,7 +36,7 @@ def _as_sources(value: Any) -> Any:
 def _as_absorber(value: Any) -> Absorber | AbsorberRing:
     if isinstance(value, Absorber | AbsorberRing):
         return value
-    if isinstance(value, Mapping) and "count" in value:
+    if isinstance(value, Mapping) and not {"count", "offset"}.isdisjoint(value):
         return AbsorberRing.model_validate(dict(value))
     if isinstance(value, Mapping):
         return Absorber.model_validate(dict(value))
