@@ -202,9 +202,9 @@ async function ask() {
   if (asking) return moved();
   asking = true;
   const { x, y } = probe;
-  for (const { name } of PANELS.filter((panel) => films[panel.name])) {
-    const { run } = films[name];
-    if (exact[name]?.run === run && exact[name].x === x && exact[name].y === y) continue;
+  for (const { name } of PANELS) {
+    const run = films[name]?.run; // asked for late: a film may have gone meanwhile
+    if (!run || (exact[name]?.run === run && exact[name].x === x && exact[name].y === y)) continue;
     const answer = await request(`/api/runs/${run}/point?x=${x}&y=${y}`).catch(() => null);
     if (answer?.arrays) exact[name] = { run, x, y, time: answer.arrays.time.values, pressure: answer.arrays.pressure.values };
     read();
