@@ -32,7 +32,7 @@ class LinkedSpectra:
     correction : ndarray, shape (shells, halves, M + 1, T), or None
         Modal pressure of what saturated actuators lack.
     iterations : int
-        Newton iterations in all, 0 if solved exactly.
+        Of all steps, 0 if solved exactly.
     """
 
     normal: ComplexArray

@@ -9,7 +9,8 @@ summed by product integration; springs and masses are stepped by the trapezoidal
 part of the kernel and the trapezoidal rule keeps energy, so no step is unstable, however stiff or damped the absorbers.
 
 Time is worked through in blocks of a few steps. What came before a block, and what is linear in it, is summed for all its steps at
-once; step by step remains z_n = z_known + sum_l Z_l n(z_{n-l}), n(z) what the nonlinear laws add to the linear ones.
+once; step by step remains z_n = z_known + sum_l Z_l n(z_{n-l}), n(z) what the nonlinear laws add to the linear ones. Where springs are
+soft on the scale of a step, several steps are solved together instead.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ class MarchResult:
     correction : ndarray, same shape, or None
         Of what saturated actuators lack.
     iterations : int
-        Newton iterations in all.
+        Of all steps, each step's own.
     """
 
     force: FloatArray

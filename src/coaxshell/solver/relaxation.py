@@ -17,7 +17,7 @@ UNKNOWNS = 224
 """Of the steps taken at once: above, the product with R costs more than the work a step that it saves."""
 _MOST_ITERATIONS = 10
 _SLOWEST = 0.05
-"""Factor that an iteration must gain."""
+"""The change of an iteration over that of the one before it, at most."""
 
 
 class Relaxation:

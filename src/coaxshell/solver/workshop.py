@@ -20,7 +20,7 @@ class Part(Protocol):
 P = TypeVar("P", bound=Part)
 
 ROOM = 512 * 1024 * 1024
-"""Bytes; one structure with feedback takes about 250 MB of it at the paper's resolution, 20 MB at preview."""
+"""Bytes; one structure with feedback takes about 225 MB of it at the paper's resolution, 35 MB at preview."""
 
 
 class Workshop:
