@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 import coaxshell as cx
+from coaxshell.studio.links import fragment
 
 PATIENCE = 90
 """Seconds: a machine that does other things beside is slow, not wrong."""
@@ -19,6 +20,15 @@ RUN = """slot => {
   const arrays = Object.fromEntries(Object.entries(run.arrays).map(plain));
   return {arrays, bars: run.bars, resolution: run.resolution, run: run.run};
 }"""
+
+
+def open_preset(open_page, server, resolution, preset="absorbers", **options):
+    """Return a page with a preset at a resolution of its own, as a link holds it; its last answers are shown."""
+    held = {"v": 1, "system": cx.presets.load(preset).model_dump(mode="json"), "resolution": resolution}
+    page = open_page(f"{server.address}#{fragment(held)}", **options)
+    rest(page)
+    until(page, "!!window.coaxshell.state.runs.current?.full && !!window.coaxshell.state.runs.bare?.full")
+    return page
 
 
 def until(page, expression, argument=None):

@@ -9,10 +9,9 @@ import pytest
 from asking import SMALL
 from axe_playwright_python.sync_playwright import Axe
 from numpy.testing import assert_allclose
-from page_reading import rest, run_of, solved, system_of, until
+from page_reading import open_preset, rest, run_of, solved, system_of, until
 
 import coaxshell as cx
-from coaxshell.studio.links import fragment
 
 RANGES = {"absorbers.mass": cx.Range(1, 10), "absorbers.damping": cx.Range(1e4, 1e8, "log")}
 
@@ -28,9 +27,7 @@ def studies(open_page, server):
     """Give what opens the page at a small resolution with the optimisation's form."""
 
     def start(**options):
-        held = {"v": 1, "system": cx.presets.load("absorbers").model_dump(mode="json"), "resolution": SMALL}
-        page = open_page(f"{server.address}#{fragment(held)}", **options)
-        rest(page)
+        page = open_preset(open_page, server, SMALL, **options)
         page.locator("#tab-studies").click()
         page.get_by_role("radio", name="Optimise").check(force=True)
         return page

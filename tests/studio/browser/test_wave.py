@@ -6,10 +6,9 @@ import re
 
 import numpy as np
 from numpy.testing import assert_allclose
-from page_reading import rest, run_of, system_of, until
+from page_reading import open_preset, run_of, system_of, until
 
 import coaxshell as cx
-from coaxshell.studio.links import fragment
 
 PIXELS = """id => {
   const canvas = document.getElementById(id);
@@ -26,9 +25,7 @@ SMALL = {"duration": 2.0, "time_step": 0.01, "modes": 20, "refinement": 1}
 
 
 def test_the_field_plays_and_its_values_are_the_library_s(server, open_page):
-    held = {"v": 1, "system": cx.presets.load("absorbers").model_dump(mode="json"), "resolution": SMALL}
-    page = open_page(f"{server.address}#{fragment(held)}")
-    rest(page)
+    page = open_preset(open_page, server, SMALL)
     page.locator("#tab-wave").click()
     until(page, "document.getElementById('wave-time').textContent.includes('t =')")
     page.locator("#scrub").evaluate("input => { input.value = 1.0; input.dispatchEvent(new Event('input')); }")
@@ -64,9 +61,7 @@ def pascal(told, name):
 
 
 def test_all_panels_share_their_colours_and_a_pinned_run_has_one(server, open_page):
-    held = {"v": 1, "system": cx.presets.load("absorbers").model_dump(mode="json"), "resolution": SMALL}
-    page = open_page(f"{server.address}#{fragment(held)}")
-    rest(page)
+    page = open_preset(open_page, server, SMALL)
     page.locator("#pin").click()
     until(page, "!!window.coaxshell.state.runs.pinned")
     page.locator("#tab-wave").click()
