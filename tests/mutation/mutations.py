@@ -339,8 +339,8 @@ MUTATIONS = (
     Mutation(
         "peak-instant",
         "response/peaks.py",
-        "block.start + int(instant)",
-        "int(instant)",
+        "block.start + found.instant",
+        "found.instant",
         "instant of the peak when the search takes several blocks",
         "response/test_summary.py",
     ),

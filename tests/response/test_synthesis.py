@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from coaxshell.response.synthesis import BLOCK, angle_basis, at_angles, circle_angles, mean_square, on_circle, time_blocks
+from coaxshell.acoustics.circle import circle_angles, on_circle
+from coaxshell.response.synthesis import BLOCK, angle_basis, at_angles, mean_square, time_blocks
 
 ANGLES = [0.0, 37.5, 180.0, -90.0, 401.0]
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.response.synthesis import angle_basis, at_angles, circle_angles, mean_square, on_circle, time_blocks
+from coaxshell.acoustics.circle import circle_angles, crest
+from coaxshell.response.synthesis import angle_basis, at_angles, mean_square, time_blocks
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -66,14 +67,12 @@ def peak_anywhere(amplitudes: Amplitudes, time: FloatArray, window: slice, width
     width : int
         Angles of the search, ``len(circle_angles(...))``: sets the size of a block.
     """
-    best = (-1.0, window.start, 0)
+    highest, instant, place = -1.0, window.start, 0
     for block in time_blocks(window, width):
-        field = on_circle(amplitudes(block))
-        np.abs(field, out=field)
-        place, instant = np.unravel_index(int(field.argmax()), field.shape)
-        if field[place, instant] > best[0]:
-            best = (float(field[place, instant]), block.start + int(instant), int(place))
-    return _refined(amplitudes, time, window, best[1], best[2])
+        found = crest(amplitudes(block), above=highest)
+        if found is not None:
+            highest, instant, place = found.value, block.start + found.instant, found.place
+    return _refined(amplitudes, time, window, instant, place)
 
 
 def _refined(amplitudes: Amplitudes, time: FloatArray, window: slice, instant: int, place: int) -> Peak:

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from coaxshell.acoustics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.labels import shell_name
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.summary_text import summary_text
-from coaxshell.response.synthesis import circle_angles
 from coaxshell.response.voltages import actuator_limit, demanded_voltage
 from coaxshell.solver.solution import ModalSolution
 

@@ -1,4 +1,4 @@
-"""Sums of circumferential orders: at given angles by a cosine matrix, on the whole circle by FFT.
+"""Sums of circumferential orders at given angles, by a cosine matrix, and their mean squares.
 
 A modal array has the shape (halves, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
 """
@@ -9,7 +9,6 @@ from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
-import scipy.fft
 import scipy.special
 
 FloatArray = npt.NDArray[np.float64]
@@ -58,40 +57,6 @@ def at_angles(modal: FloatArray, basis: FloatArray) -> FloatArray:
     """
     times = modal.shape[-1]
     return np.asarray((basis.reshape(len(basis), -1) @ modal.reshape(-1, times)).T, dtype=np.float64)
-
-
-def circle_angles(orders: int, halves: int) -> FloatArray:
-    """Return the angles in degrees of :func:`on_circle`: steps of 1 degree or a whole fraction of it, four to the shortest wave at least.
-
-    0 to 180 for one half (the rest is its mirror image), 0 to below 360 for two.
-    """
-    per_degree = -(-4 * orders // 360)
-    count = 360 * max(1, per_degree)
-    return np.arange(count // 2 + 1 if halves == 1 else count, dtype=np.float64) * (360.0 / count)
-
-
-def on_circle(modal: FloatArray) -> FloatArray:
-    """Return the sum of all orders at the angles of :func:`circle_angles`, by FFT.
-
-    Parameters
-    ----------
-    modal : ndarray, shape (halves, M + 1, T)
-
-    Returns
-    -------
-    ndarray, shape (angles, T)
-    """
-    halves, orders, times = modal.shape
-    points = len(circle_angles(orders, halves))
-    if halves == 1:
-        cosine = np.zeros((points, times))
-        cosine[0] = modal[0, 0]
-        cosine[1:orders] = 0.5 * modal[0, 1:]
-        return np.asarray(scipy.fft.dct(cosine, type=1, axis=0, overwrite_x=True), dtype=np.float64)
-    spectrum = np.zeros((points // 2 + 1, times), dtype=np.complex128)
-    spectrum[0] = modal[0, 0]
-    spectrum[1:orders] = 0.5 * (modal[0, 1:] - 1j * modal[1, 1:])
-    return np.asarray(scipy.fft.irfft(spectrum, n=points, axis=0, overwrite_x=True, norm="forward"), dtype=np.float64)
 
 
 def mean_square(modal: FloatArray) -> FloatArray:

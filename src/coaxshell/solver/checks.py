@@ -6,9 +6,9 @@ Each is one sentence with both numbers and the remedy.
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
 
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.acoustics.circle import crest
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linked import LinkedSpectra
@@ -89,10 +89,10 @@ def actuators(solution: ModalSolution) -> list[str]:
     for i, shell in enumerate(solution.problem.shells):
         if shell.gains is None or solution.normal_rate is None or solution.tangential_rate is None:
             continue
-        asked = peak_voltage(solution, i)
         limit = voltage_limit(solution.problem, i)
+        asked = voltage_above(solution, i, limit)
         control = solution.problem.system.control
-        if control is None or asked <= limit:
+        if control is None or asked is None:
             continue
         label = shell_label(i, len(solution.problem.shells))
         if control.saturation:
@@ -105,8 +105,8 @@ def actuators(solution: ModalSolution) -> list[str]:
     return warnings
 
 
-def peak_voltage(solution: ModalSolution, index: int) -> float:
-    """Return the largest voltage that the control law of one shell asks for, anywhere and at any time (Eq. 17)."""
+def voltage_above(solution: ModalSolution, index: int, limit: float) -> float | None:
+    """Return the largest voltage that the control law of one shell asks for, anywhere and at any time (Eq. 17); None if within a limit."""
     gains = solution.problem.shells[index].gains
     assert gains is not None
     assert solution.normal_rate is not None
@@ -115,16 +115,8 @@ def peak_voltage(solution: ModalSolution, index: int) -> float:
     sensor_v, sensor_w = solution.problem.sensor_gain(index, orders)
     w = gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index]
     v = gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index]
-    volts = sensor_v * v + sensor_w * w
-    points = max(8 * orders.size, 720)
-    if volts.shape[0] == 1:  # even: the cosine transform does half the work
-        cosines = np.zeros((points // 2 + 1, volts.shape[-1]))
-        cosines[0], cosines[1 : orders.size] = volts[0, 0], 0.5 * volts[0, 1:]
-        return float(np.abs(fft.dct(cosines, type=1, axis=0, overwrite_x=True, workers=WORKERS)).max())
-    spectrum = np.zeros((points // 2 + 1, volts.shape[-1]), np.complex128)
-    spectrum[: orders.size] = volts[0] - 1j * volts[1]
-    spectrum[1:] *= 0.5
-    return float(np.abs(fft.irfft(spectrum, points, axis=0, workers=WORKERS)).max() * points)
+    highest = crest(sensor_v * v + sensor_w * w, above=limit, finer=2)
+    return None if highest is None else highest.value
 
 
 def _stretch(force: float, linear: float, cubic: float) -> float:

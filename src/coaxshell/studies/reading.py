@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from coaxshell.acoustics.circle import circle_angles
 from coaxshell.model.layers import Shell
 from coaxshell.model.system import System
 from coaxshell.response import Response
@@ -15,7 +16,6 @@ from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
-from coaxshell.response.synthesis import circle_angles
 from coaxshell.response.voltages import actuator_limit, demanded_voltage
 
 

@@ -128,19 +128,24 @@ def answer(system: System, settings: Settings) -> Response:
     found = _Here.answers.get(key)
     if found is not None:
         return found
-    prepared = structure(system, settings)
-    response = prepared.simulate(system.absorbers, progress=report)
-    _Here.structures.put(structure_key(system, settings), prepared)  # weighed again: it has grown with the run
+    prepared = _at_hand(system, settings)
+    try:
+        response = prepared.simulate(system.absorbers, progress=report)
+    finally:
+        _Here.structures.put(structure_key(system, settings), prepared)  # weighed afterwards: it grows with the run
     _Here.answers.put(key, response)
     return response
 
 
 def structure(system: System, settings: Settings) -> PreparedSystem:
     """Return all of a system but its absorbers, prepared: kept, or made and kept."""
-    place = structure_key(system, settings)
-    prepared = _Here.structures.get(place) or _structure(system.replace(absorbers=()), settings)
-    _Here.structures.put(place, prepared)
+    prepared = _at_hand(system, settings)
+    _Here.structures.put(structure_key(system, settings), prepared)
     return prepared
+
+
+def _at_hand(system: System, settings: Settings) -> PreparedSystem:
+    return _Here.structures.get(structure_key(system, settings)) or _structure(system.replace(absorbers=()), settings)
 
 
 def _structure(system: System, settings: Settings) -> PreparedSystem:
