@@ -10,6 +10,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
 from coaxshell.response.response import Response
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.workshop import Workshop
 
 
 def simulate(
@@ -92,8 +93,9 @@ class PreparedSystem:
 
         A change of absorbers shares all of it; of sources, the structure's answers to forces; of gains or layers, the fluids, the
         incident waves and, where the nodes of the contour stay, half of the stability check. The answers are those of a fresh
-        :func:`prepare`. The first call makes what later ones share, at most half a gigabyte, the longest unused let go first: retune
-        the one returned, or the same one again, for every step of a slider or of an optimisation.
+        :func:`prepare`. What is shared takes at most half a gigabyte, the longest unused let go first; one prepared as retunable has
+        it from the start, any other from its first call on. Retune the one returned, or the same one again, for every step of a
+        slider or of an optimisation.
 
         Parameters
         ----------
@@ -115,12 +117,18 @@ def prepare(
     modes: int | Literal["auto"] = 150,
     tolerance: float = 1e-3,
     refinement: int = 1,
+    retunable: bool = False,
     progress: Callable[[float, str], None] | None = None,
 ) -> PreparedSystem:
     """Solve once all that does not depend on the absorbers: shells, fluids, sources and feedback.
 
-    Parameters are those of :func:`simulate`. The linear response and the compliance kernels are computed when first needed and
-    kept, about 0.3 GB at the paper's resolution.
+    The other parameters are those of :func:`simulate`. The linear response and the compliance kernels are computed when first
+    needed and kept, about 0.3 GB at the paper's resolution.
+
+    Parameters
+    ----------
+    retunable : bool
+        Keep from the start what :meth:`PreparedSystem.retuned` shares, so that already its first call finds it.
 
     Raises
     ------
@@ -128,4 +136,4 @@ def prepare(
         If a setting is not allowed or the feedback is unstable.
     """
     settings = Settings(duration, time_step, modes, "spectral", tolerance, refinement)
-    return PreparedSystem(solver.Prepared(system, settings, progress))
+    return PreparedSystem(solver.Prepared(system, settings, progress, workshop=Workshop() if retunable else None))

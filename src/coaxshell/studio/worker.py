@@ -160,6 +160,7 @@ def _structure(system: System, settings: Settings) -> PreparedSystem:
         time_step=settings.time_step,
         modes=settings.modes,
         refinement=settings.refinement,
+        retunable=live,
         progress=report,
     )
 
