@@ -12,6 +12,8 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,13 +32,22 @@ PAUSE = 0.05
 
 def main() -> None:
     """Start a server and measure it."""
+    with served() as (address, pid):
+        asyncio.run(_measured(address, pid))
+
+
+@contextmanager
+def served() -> Iterator[tuple[str, int]]:
+    """Give the address and the process of a server that ends with the ``with`` block."""
     command = [sys.executable, "-m", "coaxshell", "studio", "--no-browser", "--port", "0"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        found = re.search(r"http://127\.0\.0\.1:\d+", process.stdout.readline())
-        assert found is not None
-        asyncio.run(_measured(found.group(), process.pid))
-        process.terminate()
+        try:
+            assert process.stdout is not None
+            found = re.search(r"http://127\.0\.0\.1:\d+", process.stdout.readline())
+            assert found is not None
+            yield found.group(), process.pid
+        finally:
+            process.terminate()
 
 
 async def _measured(address: str, pid: int) -> None:

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from coaxshell.acoustics.circle import circle_angles, on_circle
 from coaxshell.response.synthesis import BLOCK, angle_basis, at_angles, mean_square, time_blocks
 
 ANGLES = [0.0, 37.5, 180.0, -90.0, 401.0]
@@ -44,22 +43,6 @@ def test_head_and_tail_are_exact() -> None:
     np.testing.assert_array_equal(basis[1], [sign, np.zeros(2001)])
     np.testing.assert_array_equal(basis[3], [sign, np.zeros(2001)])
     np.testing.assert_array_equal(basis[2, 0, :4], [1, 0, -1, 0])
-
-
-@pytest.mark.parametrize("halves", [1, 2])
-def test_on_circle_is_the_sum_at_its_angles(modal: np.ndarray, halves: int) -> None:
-    modal = modal[:halves]
-    angles = circle_angles(9, halves)
-    np.testing.assert_allclose(on_circle(modal), at_angles(modal, angle_basis(angles, 9, halves)).T, rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize(("orders", "step"), [(2, 1.0), (90, 1.0), (91, 0.5), (151, 0.5), (2001, 360 / (23 * 360))])
-def test_circle_is_fine_enough_and_holds_whole_degrees(orders: int, step: float) -> None:
-    whole, half = circle_angles(orders, 2), circle_angles(orders, 1)
-    assert whole[1] == pytest.approx(step)
-    assert len(whole) >= 4 * orders
-    assert half[-1] == 180.0
-    np.testing.assert_allclose(whole[:: len(whole) // 360], np.arange(360.0), rtol=1e-14)
 
 
 @pytest.mark.parametrize("halves", [1, 2])

@@ -144,6 +144,19 @@ def test_public_form() -> None:
     np.testing.assert_array_equal(ready.simulate().stress("inner"), cx.simulate(changed, **settings).stress("inner"))
 
 
+def test_retunable_shares_from_its_first_retuning_on(counted: dict[str, int]) -> None:
+    settings = {"duration": 1.0, "time_step": 5e-3, "modes": 15}
+    prepared = cx.prepare(ACTIVE, **settings, retunable=True)
+    response = prepared.simulate()
+    before = dict(counted)
+    assert before["fluids"] > 0
+    changed = CHANGES["gains"](ACTIVE)
+    retuned = prepared.retuned(changed).simulate()
+    assert counted == before
+    np.testing.assert_array_equal(retuned.stress("inner"), cx.simulate(changed, **settings).stress("inner"))
+    np.testing.assert_array_equal(response.stress("inner"), cx.simulate(ACTIVE, **settings).stress("inner"))
+
+
 class TestWorkshop:
     def test_it_keeps_and_lets_go_of_the_longest_unused(self) -> None:
         workshop, made = Workshop(room=3 * 80), []

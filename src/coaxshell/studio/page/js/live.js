@@ -4,7 +4,7 @@ import { finished } from "./events.js";
 
 const PATIENCE = 900; // ms without a change before full resolution starts
 let revision = 0;
-export const times = []; // ms from a change to its curves drawn, the newest last
+export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
 export class Slot {
   // `name` of the slot; `show(result)` draws, `problem(problem)`, `progress(job or null)`, `fail(error)`.
@@ -43,7 +43,7 @@ export class Slot {
       return this.tell.problem(answer.problem);
     }
     this.keep(wish, answer, false);
-    times.push(performance.now() - wish.since);
+    if (this.name === "current") times.push(performance.now() - wish.since);
     if (wish.full && this.wanted.revision === wish.revision) this.timer = setTimeout(() => this.refine(), PATIENCE);
   }
 

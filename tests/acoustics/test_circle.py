@@ -1,0 +1,115 @@
+"""Sums over the circle and their largest value, against plain cosines and sines at every angle and instant."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coaxshell.acoustics import circle
+from coaxshell.acoustics.circle import Crest, circle_angles, crest, on_circle, reachable
+
+SEVERAL = 400
+"""Instants, many times as many as are summed before the others are judged."""
+
+
+@pytest.fixture
+def modal() -> np.ndarray:
+    values = np.random.default_rng(1).standard_normal((2, 9, 5))
+    values[1, 0] = 0.0
+    return values
+
+
+def plain(modal: np.ndarray, *, finer: int = 1) -> np.ndarray:
+    """Return what :func:`on_circle` does, order by order."""
+    halves, orders, _ = modal.shape
+    arguments = np.radians(np.outer(circle_angles(orders, halves, finer=finer), np.arange(orders)))
+    sums = np.cos(arguments) @ modal[0]
+    return np.asarray(sums if halves == 1 else sums + np.sin(arguments) @ modal[1])
+
+
+def histories(halves: int, *, seed: int = 3) -> np.ndarray:
+    """Return orders that fall off, with a pulse in time, as those of a shell do."""
+    random = np.random.default_rng(seed)
+    fall = np.exp(-0.4 * np.arange(12))[None, :, None] * np.exp(-(((np.arange(SEVERAL) - 150) / 60) ** 2))
+    values = random.standard_normal((2, 12, SEVERAL)) * fall
+    values[1, 0] = 0.0
+    return np.asarray(values[:halves])
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("finer", [1, 2])
+def test_on_circle_is_the_sum_at_its_angles(modal: np.ndarray, halves: int, finer: int) -> None:
+    modal = np.concatenate([modal] * 12, axis=1)[:halves]  # 108 orders: finer than whole degrees
+    modal[1:, 0] = 0.0
+    np.testing.assert_allclose(on_circle(modal, finer=finer), plain(modal, finer=finer), rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize(("orders", "step"), [(2, 1.0), (90, 1.0), (91, 0.5), (151, 0.5), (2001, 360 / (23 * 360))])
+def test_circle_is_fine_enough_and_holds_whole_degrees(orders: int, step: float) -> None:
+    whole, half = circle_angles(orders, 2), circle_angles(orders, 1)
+    assert whole[1] == pytest.approx(step)
+    assert len(whole) >= 4 * orders
+    assert half[-1] == 180.0
+    np.testing.assert_allclose(whole[:: len(whole) // 360], np.arange(360.0), rtol=1e-14)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_nothing_exceeds_what_is_reachable(halves: int) -> None:
+    modal = histories(halves)
+    highest = np.abs(plain(modal)).max(axis=0)
+    assert np.all(highest <= reachable(modal) * (1 + 1e-12))
+    alone = np.zeros((halves, 5, 1))
+    alone[:, 3, 0] = [3.0, 4.0][:halves]
+    assert reachable(alone) == pytest.approx(np.hypot(*alone[:, 3, 0]) if halves == 2 else 3.0)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("seed", range(5))
+def test_crest_is_the_largest_of_the_whole_field(halves: int, seed: int) -> None:
+    modal = histories(halves, seed=seed)
+    field = np.abs(plain(modal))
+    place, instant = np.unravel_index(field.argmax(), field.shape)
+    found = crest(modal)
+    assert found is not None
+    assert (found.place, found.instant) == (place, instant)
+    assert found.value == pytest.approx(field.max(), rel=1e-12)
+
+
+def test_crest_is_found_where_few_instants_promise_it() -> None:
+    """The instant that could reach most, by its orders, does not: they cancel each other."""
+    modal = np.zeros((1, 12, SEVERAL))
+    modal[0, 1:, 100:100 + 2 * circle._FIRST] = 0.1 * np.array([1, 1, -1, -1] * 3)[:11, None]  # can reach 1.1
+    modal[0, 0, 300] = 0.9
+    highest = np.abs(plain(modal))
+    assert highest[:, 100].max() < 0.9
+    assert crest(modal) == Crest(0.9, 0, 300)
+
+
+def test_crest_of_equal_values_is_the_first() -> None:
+    modal = np.zeros((1, 3, SEVERAL))
+    modal[0, 0, 7::40] = -2.0
+    assert crest(modal) == Crest(2.0, 0, 7)
+
+
+def test_crest_of_nothing() -> None:
+    assert crest(np.zeros((2, 4, 30))) == Crest(0.0, 0, 0)
+    assert crest(np.zeros((2, 4, 30)), above=0.0) is None
+
+
+@pytest.mark.parametrize("times", [1, 3])
+def test_crest_of_few_instants(times: int) -> None:
+    modal = histories(2)[..., 150 : 150 + times]
+    found = crest(modal)
+    assert found is not None
+    assert found.value == pytest.approx(np.abs(plain(modal)).max(), rel=1e-12)
+
+
+def test_crest_above_a_limit() -> None:
+    modal = histories(1)
+    largest = crest(modal)
+    assert largest is not None
+    assert crest(modal, above=0.999 * largest.value) == largest
+    assert crest(modal, above=largest.value) is None
+    reach = float(reachable(modal).max())
+    assert largest.value < 0.9 * reach, "the orders must not add up, or the next line shows nothing"
+    assert crest(modal, above=0.5 * (largest.value + reach)) is None
