@@ -10,6 +10,7 @@ import shutil
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from playwright.sync_api import sync_playwright
@@ -50,11 +51,11 @@ def main() -> None:
             if preset != shown:
                 shown = preset
                 _choose(page, preset)
-            _told(f"{preset}, {path}", [_timed(page, lambda place=place: page.evaluate(MOVE, [path, str(place)])) for place in places])
+            _told(f"{preset}, {path}", [_timed(page, partial(page.evaluate, MOVE, [path, str(place)])) for place in places])
         page.evaluate("for (const part of document.querySelectorAll('#form details')) part.open = true")
         for path, texts in ENTRIES:
             box = page.locator(f'input[type=text][data-path="{path}"]').first
-            _told(f"{shown}, {path}", [_timed(page, lambda text=text: (box.fill(text), box.press("Enter"))) for text in texts])
+            _told(f"{shown}, {path}", [_timed(page, partial(_type, box, text)) for text in texts])
         browser.close()
 
 
@@ -62,6 +63,11 @@ def _choose(page: Any, preset: str) -> None:
     _wait(page, "Boolean(window.coaxshell?.state?.runs?.current)")
     page.locator("#preset").select_option(label=preset)
     time.sleep(4)  # its full resolution comes by itself
+
+
+def _type(box: Any, text: str) -> None:
+    box.fill(text)
+    box.press("Enter")
 
 
 def _timed(page: Any, change: Callable[[], object]) -> float:

@@ -78,7 +78,7 @@ def test_crest_is_the_largest_of_the_whole_field(halves: int, seed: int) -> None
 def test_crest_is_found_where_few_instants_promise_it() -> None:
     """The instant that could reach most, by its orders, does not: they cancel each other."""
     modal = np.zeros((1, 12, SEVERAL))
-    modal[0, 1:, 100:100 + 2 * circle._FIRST] = 0.1 * np.array([1, 1, -1, -1] * 3)[:11, None]  # can reach 1.1
+    modal[0, 1:, 100 : 100 + 2 * circle._FIRST] = 0.1 * np.array([1, 1, -1, -1] * 3)[:11, None]  # can reach 1.1
     modal[0, 0, 300] = 0.9
     highest = np.abs(plain(modal))
     assert highest[:, 100].max() < 0.9
