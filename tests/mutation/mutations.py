@@ -200,6 +200,14 @@ MUTATIONS = (
         "solver/test_stability.py",
     ),
     Mutation(
+        "stability-whole-turns",
+        "solver/winding.py",
+        "2 * np.pi * np.bincount",
+        "np.pi * np.bincount",
+        "turns of the determinant around zero: a whole turn a crossing",
+        "solver/test_winding.py solver/test_stability.py",
+    ),
+    Mutation(
         "determinant-coupling",
         "solver/coupling.py",
         "entry * present - product * before",

@@ -20,6 +20,7 @@ from coaxshell.errors import InputError
 from coaxshell.solver.coupling import ModalSystem, determinant, pressure_fed_back
 from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import ControlGains, Problem
+from coaxshell.solver.winding import turning
 from coaxshell.solver.workshop import Workshop
 
 _MAX_NODES = 8192
@@ -131,7 +132,7 @@ def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: 
         else:
             open_loop = make()
         ratio = open_loop.closed(problem, block)
-        turned += np.angle(ratio[:, 1:] / ratio[:, :-1]).sum(axis=1)
+        turned += turning(ratio)
     turned += np.angle(1.0 / ratio[:, -1])  # beyond the last node the ratio tends to 1 without turning
     counts = np.rint(-turned / np.pi)
     found = counts > 0

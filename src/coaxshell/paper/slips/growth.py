@@ -18,6 +18,7 @@ from coaxshell.paper.slips.switches import slipped
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.stability import highest_frequency
+from coaxshell.solver.winding import turning
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -117,7 +118,7 @@ def _unstable(problem: Problem, reference: Problem, orders: FloatArray, shift: f
         nodes = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
         without = ModalSystem(reference, nodes, orders)
         ratio = ModalSystem(problem, nodes, orders, like=without).determinant() / without.determinant()
-        turned += np.angle(ratio[:, 1:] / ratio[:, :-1]).sum(axis=1)
+        turned += turning(ratio)
     turned += np.angle(1.0 / ratio[:, -1])
     unstable: np.ndarray = np.rint(-turned / np.pi) > 0
     return unstable
