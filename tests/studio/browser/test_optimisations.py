@@ -148,6 +148,61 @@ def test_a_running_one_tells_its_best_and_can_be_cancelled(studies):
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
 
 
+@pytest.mark.parametrize("each", ["mirror", "single"])
+def test_choices_absorbers_of_their_own_and_generations_are_the_library_s(studies, each):
+    page = studies()
+    fill(page, variables__0__path="shells[1].layers[1].thickness", variables__0__scale="list")
+    assert page.locator('[name="variables.0.values"]').input_value() != "", "the ends of the range are offered"
+    fill(page, variables__0__values="4 mm; 6 mm;8 mm")
+    page.get_by_role("button", name="Add a variable").click()
+    fill(
+        page,
+        variables__1__path="absorbers[*].mass",
+        variables__1__from="1",
+        variables__1__to="10 kg/m",
+        variables__1__each=each,
+        variables__1__scale="linear",
+    )
+    assert page.locator('[name="variables.1.scale"] option[value="list"]').count() == 0
+    fill(page, evaluations="12", population="6", seed="2")
+    assert violations(page) == []
+    start(page)
+    page.locator("#study-use").wait_for()
+    ours = cx.optimise(
+        cx.presets.load("absorbers"),
+        variables={"shells[1].layers[1].thickness": ["4 mm", "6 mm", "8 mm"], "absorbers[*].mass": cx.Range(1, "10 kg/m", each=each)},
+        objectives="inner.peak_stress",
+        evaluations=12,
+        population=6,
+        seed=2,
+        workers=1,
+        **SMALL,
+    )
+    curves = page.evaluate("Object.fromEntries(document.getElementById('study-plot').data.map(({name, y}) => [name, Array.from(y)]))")
+    assert_allclose([1e3 * value for value in curves["designs"]], [one.objectives[0] for one in ours.history], rtol=1e-12)
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize(
+    ("entries", "field", "words"),
+    [
+        ({"variables__0__scale": "list", "variables__0__values": "4 kg/m; heavy"}, "variables.0.values", "heavy"),
+        ({"variables__0__scale": "list", "variables__0__values": " ; "}, "variables.0.values", ""),
+        ({"population": "2"}, "population", "4 to"),
+    ],
+    ids=["choice", "no choice", "generation"],
+)
+def test_wrong_choices_and_generations_are_told_beside_them(studies, entries, field, words):
+    page = studies()
+    for name, value in entries.items():
+        fill(page, **{name: value})
+    start(page)
+    page.locator("#optimise-problem").wait_for()
+    until(page, "name => document.activeElement.name === name", field)
+    assert words in page.locator("#optimise-problem").inner_text()
+    assert violations(page) == []
+
+
 def test_what_is_wrong_is_told_beside_its_field(studies):
     page = studies()
     assert [page.locator(f'[name="variables.0.{end}"]').input_value() for end in ("from", "to")] == ["1 kg/m", "100 kg/m"]

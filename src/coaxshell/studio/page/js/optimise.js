@@ -10,9 +10,10 @@ export const show = showOptimum;
 const GOALS = [{ value: "min", label: "as small as possible" }, { value: "max", label: "as large as possible" }];
 const SIGNS = [{ value: "<=", label: "at most (≤)" }, { value: ">=", label: "at least (≥)" }];
 const METHODS = [["auto", "automatic"], ["cma-es", "CMA-ES"], ["differential-evolution", "differential evolution"], ["nsga2", "NSGA-II"]].map(([value, label]) => ({ value, label }));
+const EACH = [{ value: "mirror", label: "mirror images" }, { value: "single", label: "none" }];
 const FIRST = ["absorbers.mass", "absorbers.damping", "control.proportional"];
 let described, form;
-const study = { variables: [], objectives: [{ metric: "inner.peak_stress", goal: "min" }, { metric: "", goal: "min" }], constraints: [], evaluations: "100", method: "auto", seed: "0" };
+const study = { variables: [], objectives: [{ metric: "inner.peak_stress", goal: "min" }, { metric: "", goal: "min" }], constraints: [], evaluations: "100", method: "auto", population: "", seed: "0" };
 
 export function setUp(box, current) {
   [form, described] = [box, current];
@@ -26,7 +27,9 @@ export function offer() {
   draw();
 }
 
-const variable = (system, path) => ({ path, ...(path ? suggested(system, path) : {}) });
+const variable = (system, path) => ({ path, each: "mirror", values: "", ...(path ? suggested(system, path) : {}) });
+const ofEach = ({ path }) => path.includes("[*]");
+const isList = (one) => one.scale === "list" && !ofEach(one);
 
 // What a person typed or chose goes into the study under the input's own name, such as variables.0.from.
 function keep(input) {
@@ -34,8 +37,9 @@ function keep(input) {
   if (!(part in study)) return;
   if (number === undefined) { study[part] = input.value; return; }
   study[part][number][entry] = input.value;
-  if (entry === "path") { Object.assign(study.variables[number], suggested(described().system, input.value)); draw(input.name); }
-  if (entry === "metric") draw(input.name);
+  if (entry === "path") study.variables[number] = variable(described().system, input.value);
+  if (entry === "scale" && input.value === "list") study.variables[number].values ||= `${study.variables[number].from}; ${study.variables[number].to}`;
+  if (["path", "metric", "scale"].includes(entry)) draw(input.name);
 }
 
 // ---- the form
@@ -47,7 +51,7 @@ function draw(focused = document.activeElement?.name) {
     set("Make", "objectives", study.objectives.map((one, i) => objectiveRow(one, i, metrics))),
     set("Keep", "constraints", study.constraints.map((one, i) => constraintRow(one, i, metrics)), study.constraints.length < 12 && add("Add a limit", () => { study.constraints.push({ metric: metrics?.includes("absorbers.mass") ? "absorbers.mass" : metrics?.[0], sign: "<=", value: "" }); return "constraints"; })),
     set("Search", "search", [el("div", { class: "row" }, labelled("Designs to try", typed("evaluations", study.evaluations, { inputmode: "numeric", size: 6 })),
-      labelled("Method", choose("method", options(METHODS, study.method))), labelled("Seed", typed("seed", study.seed, { inputmode: "numeric", size: 6 })))]),
+      labelled("Method", choose("method", options(METHODS, study.method))), labelled("In a generation", typed("population", study.population, { inputmode: "numeric", placeholder: "automatic" })), labelled("Seed", typed("seed", study.seed, { inputmode: "numeric", size: 6 })))]),
     el("div", { class: "buttons" }, el("button", { class: "main" }, start)), el("p", { class: "problem", id: "optimise-problem", role: "alert", hidden: true }));
   if (focused) form.elements[focused]?.focus?.({ preventScroll: true });
 }
@@ -69,7 +73,10 @@ const unused = () => fields().map(({ path }) => path).find((path) => !study.vari
 function variableRow(one, i) {
   const unit = unitOf(one.path), name = (entry) => `variables.${i}.${entry}`;
   return el("div", { class: "row", role: "group", "aria-label": `Variable ${i + 1}` }, labelled("What", choose(name("path"), pathOptions(one.path, true))),
-    labelled(withUnit("From", unit), typed(name("from"), one.from)), labelled(withUnit("To", unit), typed(name("to"), one.to)), labelled("Spacing", choose(name("scale"), spacing(one.scale))),
+    ofEach(one) && labelled("Alike", choose(name("each"), options(EACH, one.each))),
+    ...(isList(one) ? [labelled(withUnit("Choices, with ; between", unit), typed(name("values"), one.values, { size: 24 }))]
+      : [labelled(withUnit("From", unit), typed(name("from"), one.from)), labelled(withUnit("To", unit), typed(name("to"), one.to))]),
+    labelled("Spacing", choose(name("scale"), spacing(one.scale, !ofEach(one)))),
     study.variables.length > 1 && remove("variables", i, spelt(one.path)));
 }
 
@@ -90,10 +97,12 @@ function constraintRow(one, i, metrics) {
 // ---- what is asked
 
 export function body() {
-  const variables = Object.fromEntries(study.variables.map(({ path, from, to, scale }) => [path, { from: numeral(from), to: numeral(to), ...(scale === "log" ? { scale } : {}), ...(path.includes("[*]") ? { each: "mirror" } : {}) }]));
+  const variables = Object.fromEntries(study.variables.map((one) => [one.path, isList(one) ? one.values.split(";").filter((text) => text.trim()).map(numeral)
+    : { from: numeral(one.from), to: numeral(one.to), ...(one.scale === "log" ? { scale: "log" } : {}), ...(ofEach(one) ? { each: one.each } : {}) }]));
   const objectives = study.objectives.filter(({ metric }) => metric).map(({ metric, goal }) => (goal === "max" ? { metric, maximise: true } : metric));
   const constraints = study.constraints.map(({ metric, sign, value }) => `${metric} ${sign} ${limit(value, metricUnit(described().world, metric))}`);
-  return { kind: "optimise", variables, objectives, constraints, evaluations: numeral(study.evaluations), method: study.method, seed: numeral(study.seed) };
+  const population = study.population.trim() ? { population: numeral(study.population) } : {};
+  return { kind: "optimise", variables, objectives, constraints, evaluations: numeral(study.evaluations), method: study.method, ...population, seed: numeral(study.seed) };
 }
 
 // What the library would tell in words of its text rather than of the form.
@@ -124,10 +133,10 @@ export function mark(_, problem) {
 }
 
 function place(where) {
-  const variable = study.variables.findIndex(({ path }) => where === `variables.${path}` || where.startsWith(`variables.${path}.`) || (path.includes("[*]") && where.replace(/\[\d+\]/, "[*]").startsWith(`variables.${path}`)));
-  if (variable >= 0) return form.elements[`variables.${variable}.${where.match(/\.(from|to|scale)$/)?.[1] ?? "from"}`];
+  const variable = study.variables.findIndex(({ path }) => [".", "["].some((next) => `${where}${next}`.startsWith(`variables.${path}${next}`)) || (path.includes("[*]") && where.replace(/\[\d+\]/, "[*]").startsWith(`variables.${path}`)));
+  if (variable >= 0) return form.elements[`variables.${variable}.${isList(study.variables[variable]) ? "values" : where.match(/\.(from|to|scale|each)$/)?.[1] ?? "from"}`];
   const [, part, number] = where.match(/^(objectives|constraints)\[(\d+)\]/) ?? [];
   if (part) return form.elements[`${part}.${number}.${part === "objectives" ? "metric" : "value"}`];
-  if (["evaluations", "method", "seed"].includes(where)) return form.elements[where];
+  if (["evaluations", "method", "population", "seed"].includes(where)) return form.elements[where];
   return form.querySelector(`[data-part="${where}"] > .row:last-of-type`);
 }

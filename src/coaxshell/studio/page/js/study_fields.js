@@ -4,12 +4,12 @@ import { read } from "./paths.js";
 import { rangeOf, span } from "./ranges.js";
 import { editable, pretty } from "./units.js";
 
-// Every number of the form, those with a slider first; with `each`, the absorbers one by one in mirror images too.
+// Every number of the form, those with a slider first; with `each`, the absorbers one by one too.
 export function fields(each = false) {
   const found = [...by("form").querySelectorAll("input[data-unit]")].map((input) => ({ path: input.dataset.path, unit: input.dataset.unit, label: spelt(input.dataset.path) }))
     .filter(({ path }) => !/\.(time|pressure)$|^resolution\./.test(path)).sort((a, b) => Boolean(rangeOf(b.path)) - Boolean(rangeOf(a.path)));
   const own = each ? found.filter(({ path }) => /^absorbers(\[0\])?\.(mass|damping|linear_stiffness|cubic_stiffness)$/.test(path))
-    .map(({ path, unit }) => { const name = path.split(".").at(-1); return { path: `absorbers[*].${name}`, unit, label: `each absorber’s ${spelt(name)}, in mirror images` }; }) : [];
+    .map(({ path, unit }) => { const name = path.split(".").at(-1); return { path: `absorbers[*].${name}`, unit, label: `each absorber’s ${spelt(name)}` }; }) : [];
   return [...found, ...own];
 }
 
@@ -31,7 +31,7 @@ export function options(items, chosen) {
 
 export const pathOptions = (chosen, each) => options(fields(each).map(({ path, label }) => ({ value: path, label })), chosen);
 export const metricOptions = (metrics, chosen) => options((metrics ?? []).map((name) => ({ value: name, label: spelt(name) })), chosen);
-export const spacing = (chosen) => options([{ value: "linear", label: "even" }, { value: "log", label: "logarithmic" }], chosen);
+export const spacing = (chosen, list = false) => options([{ value: "linear", label: "even" }, { value: "log", label: "logarithmic" }, ...(list ? [{ value: "list", label: "a list of choices" }] : [])], chosen);
 
 export const labelled = (text, input) => el("label", {}, el("span", {}, text), input);
 export const typed = (name, value, more = {}) => el("input", { type: "text", name, value, size: 10, spellcheck: "false", autocomplete: "off", ...more });
