@@ -129,6 +129,7 @@ def test_ctrl_c_leaves_nothing_behind(tmp_path):
         env={**os.environ, "PYTHONPATH": package},
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background job ignores it, and so would its children
     ) as process:
         first = process.stderr.readline()
         process.send_signal(signal.SIGINT)
