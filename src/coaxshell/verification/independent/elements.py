@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
+from scipy.special import roots_jacobi
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,7 +25,7 @@ class RadialMatrices(NamedTuple):
 
 def elements(r_min: float, r_max: float, longest: float) -> RadialMatrices:
     """Return nodes and matrices of [r_min, r_max], cut into equal elements no longer than ``longest``."""
-    inner = legendre.Legendre.basis(DEGREE).deriv().roots()
+    inner = roots_jacobi(DEGREE - 1, 1, 1)[0]  # the zeros of P_n'
     local = np.concatenate([[-1.0], inner, [1.0]])
     x, weight = legendre.leggauss(DEGREE + 2)
     to_modal = np.linalg.inv(legendre.legvander(local, DEGREE))
