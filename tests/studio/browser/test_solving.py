@@ -9,7 +9,7 @@ from page_reading import rest, run_of, shown_curves, solved, system_of, until
 
 import coaxshell as cx
 
-SINGLE = 2e-6
+SINGLE = 1.001 * 2.0**-24
 """Histories travel in single precision."""
 
 
