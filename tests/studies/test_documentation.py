@@ -15,8 +15,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 @pytest.fixture
 def studies(tmp_path):
-    """Return a function that reads all study files of a page, in a folder that has the user's function they name."""
-    (tmp_path / "mine.py").write_text("def ratio(response):\n    return 1.0\n")
+    """Return a function that reads all study files of a page."""
 
     def read(page, kind):
         blocks = re.findall(r"```toml\n(.*?)```", (DOCS / page).read_text(encoding="utf-8"), re.DOTALL)
@@ -30,8 +29,19 @@ def studies(tmp_path):
 def test_sweep(studies, tmp_path):
     (study,) = studies("studies.md", SweepStudy)
     _, design, metrics, _ = study.parts(tmp_path)
-    assert len(design.cases) == 11 * 7 * 3
-    assert [metric.name for metric in metrics] == ["inner.peak_stress", "interior.rms_pressure", "ratio"]
+    assert len(design.cases) == 11 * 7
+    assert [metric.name for metric in metrics] == ["inner.peak_stress", "outer.peak_stress"]
+
+
+def test_the_users_function_of_the_page(tmp_path):
+    (code,) = re.findall(r"```python\n(def ratio.*?)```", (DOCS / "studies.md").read_text(encoding="utf-8"), re.DOTALL)
+    (tmp_path / "mine.py").write_text(code)
+    resolution = {"duration": 1, "time_step": 1e-2, "modes": 8}
+    metrics = {"stress": "inner.peak_stress", "ratio": f"{tmp_path / 'mine.py'}:ratio"}
+    found = cx.sweep(cx.presets.load("bare"), over={"source.distance": ["5 m"]}, metrics=metrics, workers=1, **resolution)
+    inner, outer = (shell.stress.value for shell in cx.simulate(cx.presets.load("bare"), **resolution).summary().shells)
+    assert found["ratio"].item() == pytest.approx(inner / outer, rel=1e-12)
+    assert found["stress"].item() == pytest.approx(inner, rel=1e-12)
 
 
 def test_sensitivity(studies, tmp_path):
