@@ -46,16 +46,13 @@ def main() -> None:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1280, "height": 720})
         page.goto(address)
-        shown = ""
         for preset, path, places in SLIDERS:
-            if preset != shown:
-                shown = preset
-                _choose(page, preset)
+            _choose(page, preset)
             _told(f"{preset}, {path}", [_timed(page, partial(page.evaluate, MOVE, [path, str(place)])) for place in places])
         page.evaluate("for (const part of document.querySelectorAll('#form details')) part.open = true")
         for path, texts in ENTRIES:
             box = page.locator(f'input[type=text][data-path="{path}"]').first
-            _told(f"{shown}, {path}", [_timed(page, partial(_type, box, text)) for text in texts])
+            _told(f"{preset}, {path}", [_timed(page, partial(_type, box, text)) for text in texts])
         browser.close()
 
 
