@@ -23,7 +23,7 @@ from coaxshell.model import presets
 from coaxshell.studio.limits import settings_of
 from coaxshell.studio.worker import solve
 
-CLIENTS, SECONDS, ROUNDS = 50, 15.0, 8
+CLIENTS, SECONDS, ROUNDS = 50, 15.0, 16
 SYSTEMS = {name: presets.load(name).model_dump(mode="json") for name in ("absorbers", "hybrid")}
 SLIDERS = (("absorbers", "absorbers.mass", 5.0), ("hybrid", "absorbers.mass", 5.0), ("hybrid", "control.derivative", -150.0))
 PAUSE = 0.05

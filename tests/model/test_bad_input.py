@@ -141,6 +141,14 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
         lambda: BARE.replace(absorbers={"mass": 1, "offset": 7}),
         ("absorbers.count:", "is missing", "AbsorberRing needs it"),
     ),
+    "ring with an angle": (
+        lambda: BARE.replace(absorbers={"mass": 1, "count": 3, "angle": 7}),
+        ("absorbers.angle:", "single absorber", "give count and offset"),
+    ),
+    "angle and offset": (
+        lambda: BARE.replace(absorbers=[{"mass": 1, "angle": 7, "offset": 7}]),
+        ("absorbers[0].angle:", "single absorber", "leave both out"),
+    ),
     "absorber beyond": (lambda: BARE.replace(absorbers=ring(inner_shell=1)), ("absorbers.inner_shell:", "1", "at most 0")),
     "single absorber beyond": (
         lambda: BARE.replace(absorbers=[cx.Absorber(mass=1), cx.Absorber(mass=1, inner_shell=5)]),

@@ -37,6 +37,12 @@ def _as_absorber(value: Any) -> Absorber | AbsorberRing:
     if isinstance(value, Absorber | AbsorberRing):
         return value
     if isinstance(value, Mapping) and not {"count", "offset"}.isdisjoint(value):
+        if "angle" in value:
+            raise InputError(
+                "angle",
+                "belongs to a single absorber, but count or offset describe a ring",
+                "for a ring give count and offset, the angle of its first absorber; for one absorber leave both out",
+            )
         return AbsorberRing.model_validate(dict(value))
     if isinstance(value, Mapping):
         return Absorber.model_validate(dict(value))

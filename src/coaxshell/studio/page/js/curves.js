@@ -48,12 +48,12 @@ export function draw(runs, quantity, which) {
   layout.uirevision = `${quantity.name}${which}`;
   const traces = [];
   wanted.forEach((panel, i) => {
-    const n = i ? String(i + 1) : "", gapX = 0.07, gapY = 0.15;
+    const n = i ? String(i + 1) : "", gapX = 0.05, gapY = 0.15;
     const width = (1 - gapX * (columns - 1)) / columns, height = (1 - gapY * (rows - 1)) / rows;
     const left = panel.column * (width + gapX), bottom = 1 - panel.row * (height + gapY) - height;
     const span = current.arrays.time.values.at(-1);
     layout[`xaxis${n}`] = { ...axis, domain: [left, left + width], anchor: `y${n}`, range: [0, span], showticklabels: panel.row === rows - 1, zeroline: false, ...(i ? { matches: "x" } : {}), nticks: 6, ...(panel.row === rows - 1 ? { title: { text: "time (a/c)", font: style, standoff: 4 } } : {}) };
-    layout[`yaxis${n}`] = { ...axis, domain: [bottom, bottom + height], anchor: `x${n}`, nticks: 5, range: [(low - margin) / scale.factor, (high + margin) / scale.factor], ...(i ? { matches: "y" } : {}) };
+    layout[`yaxis${n}`] = { ...axis, domain: [bottom, bottom + height], anchor: `x${n}`, nticks: 5, showticklabels: panel.column === 0, range: [(low - margin) / scale.factor, (high + margin) / scale.factor], ...(i ? { matches: "y" } : {}) };
     layout.annotations.push({ text: panel.title, xref: "paper", yref: "paper", x: left, y: bottom + height, xanchor: "left", yanchor: "bottom", showarrow: false, font: { ...style, color: colour("text") } });
     for (const key of ORDER) {
       const values = history(runs[key], quantity.name, panel);
