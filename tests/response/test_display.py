@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ElementTree
 
 import coaxshell as cx
-from coaxshell.response.summary_text import engineering
+from coaxshell.model.prefixes import engineering
 
 
 def test_a_response_shows_its_peaks_errors_and_warnings():

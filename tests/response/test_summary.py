@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from coaxshell.errors import InputError
+from coaxshell.model.prefixes import engineering
 from coaxshell.response import Response, synthesis
 from coaxshell.response.peaks import folded
-from coaxshell.response.summary_text import engineering
 from coaxshell.solver.solution import ModalSolution
 
 FINE = np.arange(-180.0, 180.0, 0.025) + 0.025

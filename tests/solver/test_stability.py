@@ -86,5 +86,5 @@ def test_voltages_of_the_papers_gains() -> None:
     assert outer.actuator_voltage.value == pytest.approx(8.96e3, rel=0.01)
     assert inner.actuator_limit == outer.actuator_limit == pytest.approx(1770.0)
     text = " ".join(response.warnings)
-    assert "1770 V" in text
+    assert "1.770 kV" in text
     assert "saturation" in text

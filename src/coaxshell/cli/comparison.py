@@ -73,7 +73,8 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
 
 def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
     """Return (shell, quantity, first value, second value, reduction) for each shell and quantity that either run has."""
-    from coaxshell.response.summary_text import ROWS, engineering
+    from coaxshell.model.prefixes import engineering
+    from coaxshell.response.summary_text import ROWS
 
     ours, theirs = ({shell.name: shell for shell in summary.shells} for summary in (first, second))
     rows = []

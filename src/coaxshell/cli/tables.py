@@ -64,7 +64,7 @@ def summary_table(summary: Summary) -> Table:
 
 def _cells(value: Peak | float | None, unit: str) -> tuple[str, ...]:
     """Return value, time and angle as text; nothing at all for what a shell does not have."""
-    from coaxshell.response.summary_text import engineering
+    from coaxshell.model.prefixes import engineering
 
     if value is None:
         return ()

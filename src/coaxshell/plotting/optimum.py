@@ -9,6 +9,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.plotting.units import scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,14 +17,11 @@ if TYPE_CHECKING:
 
     from coaxshell.studies import Optimum
     from coaxshell.studies.optimisation.search import Candidate
-    from coaxshell.studies.optimisation.targets import Target
     from coaxshell.studies.optimisation.variables import Variable
 
 MOST_COORDINATES = 16
 """Variables that parallel coordinates show; of more, the first ones."""
 _GOOD = 0.1
-_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""))
-_PREFIXED = ("Pa", "V", "V/m", "J/m", "N/m")
 
 
 def figure_optimum(optimum: Optimum) -> Figure:
@@ -54,20 +52,20 @@ def figure_optimum(optimum: Optimum) -> Figure:
 def plot_convergence(optimum: Optimum, ax: Axes) -> Axes:
     """Draw the first objective of every feasible design, the best so far and the baseline, against the number of evaluations."""
     goal = optimum.targets.goals[0].target
-    factor, unit = _unit(goal, [one.targets[goal.name] for one in optimum.history if one.feasible])
+    factor, unit = scale([one.targets[goal.name] for one in optimum.history if one.feasible], goal.metric.units)
     numbers = np.array([one.number + 1 for one in optimum.history])
-    values = np.array([one.targets.get(goal.name, np.nan) if one.feasible else np.nan for one in optimum.history]) / factor
+    values = np.array([one.targets.get(goal.name, np.nan) if one.feasible else np.nan for one in optimum.history]) * factor
     sign = -1.0 if optimum.targets.goals[0].maximise else 1.0
     best = sign * np.fmin.accumulate(sign * values)
     ax.plot(numbers, values, ".", color=COLOURS["sky"], markersize=2.5, label="feasible design")
     ax.step(numbers, best, where="post", color=COLOURS["blue"], linewidth=1.6, label="best so far")
     before = optimum.baseline.targets.get(goal.name)
     if before is not None:
-        ax.axhline(before / factor, color=COLOURS["orange"], linestyle=(0, (4, 1.5)), label="baseline")
+        ax.axhline(before * factor, color=COLOURS["orange"], linestyle=(0, (4, 1.5)), label="baseline")
     shown = values[np.isfinite(values)]
     if len(shown):
         low, high = float(shown.min()), float(np.quantile(shown, 0.95))
-        extra = [before / factor] if before is not None else []
+        extra = [before * factor] if before is not None else []
         bottom, top = min([low, *extra]), max([high, *extra])
         ax.set_ylim(bottom - 0.06 * (top - bottom or 1), top + 0.08 * (top - bottom or 1))
     ax.set_xlim(0, len(numbers))
@@ -89,10 +87,10 @@ def plot_front(optimum: Optimum, ax: Axes) -> Axes:
         raise InputError("objectives", "there is only one", "a front needs two")
     across, up = (goal.target for goal in optimum.targets.goals[1::-1])
     feasible, front = [one for one in optimum.history if one.feasible], optimum.front
-    scales = [_unit(target, [one.targets[target.name] for one in front]) for target in (across, up)]
+    scales = [scale([one.targets[target.name] for one in front], target.metric.units) for target in (across, up)]
 
     def places(some: Sequence[Candidate]) -> np.ndarray[Any, Any]:
-        return np.array([[one.targets[t.name] / s[0] for t, s in zip((across, up), scales, strict=True)] for one in some]).reshape(-1, 2)
+        return np.array([[one.targets[t.name] * s[0] for t, s in zip((across, up), scales, strict=True)] for one in some]).reshape(-1, 2)
 
     designs, best = places(feasible), places(front)
     ax.plot(*designs.T, ".", color=COLOURS["sky"], markersize=2.5, label="feasible design")
@@ -148,13 +146,3 @@ def _interval(variable: Variable) -> str:
     place, _, name = variable.name.rpartition(".")
     lines = [f"{place}." if place else "", name, f"{ends[0]} to {ends[1]}", "" if variable.units == "1" else variable.units]
     return "\n".join(line for line in lines if line)
-
-
-def _unit(target: Target, values: Sequence[float]) -> tuple[float, str]:
-    """Return a factor and a unit in which the values are easy to read."""
-    unit = target.metric.units
-    if unit not in _PREFIXED or not len(values):
-        return 1.0, "" if unit == "1" else unit
-    largest = max(abs(min(values)), abs(max(values)))
-    factor, prefix = next(((f, p) for f, p in _PREFIXES if largest >= f), (1.0, ""))
-    return factor, prefix + unit

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
-from coaxshell.plotting.sweep import scale
+from coaxshell.plotting.units import scale
 
 if TYPE_CHECKING:
     import xarray as xr

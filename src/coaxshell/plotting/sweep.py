@@ -13,14 +13,13 @@ import numpy.typing as npt
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
-from coaxshell.response.summary_text import PREFIXES
+from coaxshell.plotting.units import pretty, scale
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_PREFIXED = ("Pa", "m", "V", "V/m", "N/m", "J/m", "s")
 _COLUMNS = 2
 _LARGEST = 6
 _TITLE = 42
@@ -120,7 +119,7 @@ def _edges(centres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 def _axis(axis: object, coordinate: xr.DataArray) -> npt.NDArray[np.float64]:
     """Label an axis with a field; return its values, those that are no numbers as 0, 1, ... with their names at the ticks."""
-    unit = _pretty(str(coordinate.attrs.get("units", "1")))
+    unit = pretty(str(coordinate.attrs.get("units", "1")))
     raw = coordinate.to_numpy()
     if raw.dtype.kind in "OUb":
         names = list(dict.fromkeys(str(value) for value in raw))
@@ -140,19 +139,3 @@ def _logarithmic(values: npt.NDArray[np.float64]) -> bool:
         return False
     steps = np.diff(np.unique(values))
     return bool(steps.size and steps.max() > 4 * steps.min())
-
-
-def _pretty(unit: str) -> str:
-    for plain, drawn in (("*", " "), ("^2", "²"), ("^3", "³"), ("^4", "⁴")):
-        unit = unit.replace(plain, drawn)
-    return unit
-
-
-def scale(values: npt.NDArray[np.float64], unit: str) -> tuple[float, str]:
-    """Return the factor and the unit with an SI prefix that suit the largest magnitude."""
-    finite = np.abs(values[np.isfinite(values)])
-    largest = float(finite.max()) if finite.size else 0.0
-    if unit not in _PREFIXED or not largest:
-        return 1.0, "" if unit == "1" else _pretty(unit)
-    exponent = next((e for e in PREFIXES if largest >= 10.0**e), 0)
-    return 10.0**-exponent, f"{PREFIXES[exponent]}{unit}"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from coaxshell.model.display import card
+from coaxshell.model.prefixes import engineering
 from coaxshell.response.summary import ShellSummary, Summary, summarise
-from coaxshell.response.summary_text import engineering
 from coaxshell.solver.solution import ModalSolution
 
 

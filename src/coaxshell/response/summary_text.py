@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
+from coaxshell.model.prefixes import engineering
 
 ROWS = (
     ("stress_head", "stress at head", "Pa"),
@@ -19,13 +19,6 @@ ROWS = (
     ("actuator_voltage", "actuator voltage asked", "V"),
 )
 """Fields of a shell's summary, with their labels and units, in the order of the tables."""
-
-
-def engineering(value: float, unit: str) -> str:
-    """Return a value with four digits and the SI prefix that fits: 181500 Pa is ``181.5 kPa``."""
-    exponent = next((e for e in PREFIXES if abs(value) >= 0.99995 * 10.0**e), 0)
-    digits = f"{value / 10.0**exponent:#.4g}".rstrip(".") if value else "0"
-    return f"{digits} {PREFIXES[exponent]}{unit}"
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:

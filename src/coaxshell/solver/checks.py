@@ -10,6 +10,7 @@ import numpy as np
 from coaxshell.acoustics.circle import crest
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
+from coaxshell.model.prefixes import engineering
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linked import LinkedSpectra
 from coaxshell.solver.prepared import PreparedStructure
@@ -95,11 +96,12 @@ def actuators(solution: ModalSolution) -> list[str]:
         if control is None or asked is None:
             continue
         label = shell_label(i, len(solution.problem.shells))
+        voltage, stands, factor = engineering(asked, "V"), engineering(limit, "V"), f"{asked / limit:.2g} times"
         if control.saturation:
-            outcome = f"the voltage was held at {limit:.4g} V, where the law asked for {asked:.4g} V ({asked / limit:.2g} times as much)"
+            outcome = f"the voltage was held at {stands}, where the law asked for {voltage} ({factor} as much)"
             remedy = "lower the gains to stay within what the actuator can do"
         else:
-            outcome = f"the control law asks for {asked:.4g} V, {asked / limit:.2g} times the {limit:.4g} V its actuator stands"
+            outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
             remedy = "set control.saturation = true to see what it can really do, or lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from coaxshell.errors import InputError
+from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
-from coaxshell.response.summary_text import engineering
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
 from coaxshell.studies.optimisation.methods import Setting, chosen, search
