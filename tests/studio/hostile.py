@@ -176,7 +176,7 @@ def requests(seed=1, count=1100):
     schema = System.model_json_schema()
     systems = [described(name) for name in presets.names()]
     for raw in RAW:
-        for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/link", "/api/link/open"):
+        for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open"):
             yield "POST", path, raw
     for number in range(count):
         base = random_.choice(systems)
@@ -186,7 +186,7 @@ def requests(seed=1, count=1100):
             yield "POST", "/api/validate", encoded(mutated(random_, {"system": base}, random_.randrange(1, 5)))
         else:
             kind = random_.choice(["solve", "field", "film", "sweep", "optimise", "optimise"])
-            path = random_.choice(["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/link", "/api/link/open"])
+            path = random_.choice(["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/studies", "/api/link", "/api/link/open"])
             body = {
                 "client": "tab",
                 "slot": "fuzz",
@@ -194,6 +194,7 @@ def requests(seed=1, count=1100):
                 "system": base,
                 "resolution": {**SMALL, "modes": 4},
                 "kind": kind,
+                "title": "fuzz",
                 **STUDY,
             }
             yield (

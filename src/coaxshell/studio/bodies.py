@@ -76,6 +76,14 @@ def is_name(value: str) -> bool:
     return 0 < len(value) <= NAME_LENGTH and value.isascii() and value.replace("-", "a").replace("_", "a").isalnum()
 
 
+def text_of(data: dict[str, Any], entry: str) -> str:
+    """Return a short text for people, "" when left out; RefusedError otherwise."""
+    value = data.get(entry, "")
+    if not isinstance(value, str) or len(value) > limits.TEXT:
+        raise bad(entry, value, f"give a text of at most {limits.TEXT} letters")
+    return value
+
+
 def whole_of(data: dict[str, Any], entry: str, least: int, most: int, default: int | None = None) -> int:
     """Return a whole number within bounds, also from a text of digits; RefusedError otherwise."""
     value = data.get(entry, default)

@@ -31,7 +31,7 @@ HEARTBEAT, THROTTLE = 15.0, 0.1
 async def start(request: Request) -> Response:
     """Start a job."""
     studio, data = studio_of(request), await bodies.read_table(request)
-    job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", KINDS))
+    job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", KINDS), bodies.text_of(data, "title"))
     try:
         await {"solve": _solve, "field": _field, "film": _film, "sweep": _sweep, "optimise": _optimise}[job.kind](studio, job, data)
     except InputError as error:

@@ -18,14 +18,16 @@ from coaxshell.studio.workers import Work, Workers
 WAITING, RUNNING, DONE, FAILED, CANCELLED = "waiting", "running", "done", "failed", "cancelled"
 ENDED = (DONE, FAILED, CANCELLED)
 STUDIES = ("sweep", "optimise")
+TOLD = ("id", "client", "kind", "title", "slot", "revision", "state", "fraction", "stage", "error")
 
 
 @dataclass(eq=False)
 class Job:
-    """One job; ``version`` counts its changes."""
+    """One job; ``version`` counts its changes, and ``left`` tells that its page has gone."""
 
     client: str
     kind: str
+    title: str = ""
     slot: str | None = None
     revision: int | None = None
     run: str | None = None
@@ -40,12 +42,13 @@ class Job:
     result: Any = None
     work: Work | None = None
     version: int = 0
+    left: bool = False
 
     def told(self) -> dict[str, Any]:
         """Return what the page is told."""
         seconds = 0.0 if self.began is None else (self.ended or time.monotonic()) - self.began
         left = seconds * (1 / self.fraction - 1) if self.state == RUNNING and self.fraction > 0.02 else None
-        plain = {name: getattr(self, name) for name in ("id", "client", "kind", "slot", "revision", "state", "fraction", "stage", "error")}
+        plain = {name: getattr(self, name) for name in TOLD}
         return {**plain, "run": self.run if self.state == DONE else None, "seconds": seconds, "seconds_left": left}
 
 
@@ -126,13 +129,33 @@ class Jobs:
             raise RefusedError(429, "busy", "events", "too many pages are open", "close some")
         event = asyncio.Event()
         self._watchers.setdefault(client, set()).add(event)
+        for job in self.of(client):
+            job.left = False
         return event
 
     def unwatch(self, client: str, event: asyncio.Event) -> None:
-        """Forget such an event."""
+        """Forget such an event; what is open when the last of a client's is gone may stop soon."""
         self._watchers.get(client, set()).discard(event)
-        if not self._watchers.get(client):
-            self._watchers.pop(client, None)
+        if self._watchers.get(client):
+            return
+        self._watchers.pop(client, None)
+        for job in self.of(client):
+            job.left = True
+        asyncio.get_running_loop().call_later(limits.GONE_SECONDS, self._gone, client)
+
+    def _gone(self, client: str) -> None:
+        """Stop what only a page that has not come back would have shown; its studies go on, for another page to take over."""
+        for job in self.of(client):
+            if job.left and job.kind not in STUDIES and job.state not in ENDED:
+                self.cancel(job)
+
+    def take_over(self, client: str) -> list[Job]:
+        """Give a client the studies that pages have left behind, running or done, and return them, the oldest first."""
+        found = [job for job in self._jobs.values() if job.left and job.kind in STUDIES and job.state not in (FAILED, CANCELLED)]
+        for job in found:
+            job.client, job.left = client, client not in self._watchers
+            self._changed(job)
+        return found
 
     def wake_all(self) -> None:
         """Set all events."""

@@ -29,10 +29,12 @@ VARIED, COORDINATES, CONSTRAINTS = 8, 64, 12
 """Variables of an optimisation as written, and one by one when each absorber has its own; limits on metrics."""
 EVALUATIONS, POPULATION = 2_000, 400
 TEXT = 200
-"""Letters of a value or a constraint."""
+"""Letters of a value, a constraint or a title."""
 RUNS, SLOTS = 4_000, 4_000
 SILENT_SECONDS, DROPPED_SECONDS = 180.0, 15.0
 """How long a task may go without reporting progress, and how long it may go on once nobody wants it."""
+GONE_SECONDS = 10.0
+"""How long a page may be without its stream of events before what only it would have shown is stopped."""
 
 
 def table() -> dict[str, int]:

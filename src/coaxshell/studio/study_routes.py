@@ -87,6 +87,12 @@ async def study(request: Request) -> Response:
     return JSONResponse({"ok": True, "toml": text})
 
 
+async def left(request: Request) -> Response:
+    """Give a page the studies of pages that have gone: after a reload, those it had started itself."""
+    data = await bodies.read_table(request)
+    return JSONResponse({"jobs": [job.told() for job in studio_of(request).jobs.take_over(bodies.name_of(data, "client"))]})
+
+
 def routes() -> list[BaseRoute]:
     """Return these routes."""
-    return [Route("/api/study", study, methods=["POST"])]
+    return [Route("/api/study", study, methods=["POST"]), Route("/api/studies", left, methods=["POST"])]

@@ -42,6 +42,21 @@ def test_a_sweep_can_be_cancelled(page):
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
 
 
+def test_a_sweep_outlives_its_page_being_loaded_anew(page):
+    start(page, path="absorbers.mass", from_=2, to=90, count=60, scale="linear", metric="outer.peak_stress")
+    mine = page.locator("#study-jobs .job").filter(has_text="outer.peak_stress over absorbers.mass").first
+    mine.wait_for()
+    page.reload()
+    page.locator("#tab-studies").click()
+    mine.wait_for()
+    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
+    assert mine.get_attribute("data-state") == "done"
+    page.reload()
+    page.locator("#tab-studies").click()
+    mine.get_by_role("button", name="Show").click()
+    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
+
+
 def test_an_impossible_sweep_is_told_in_words(page):
     start(page, path="absorbers.mass", from_=-5, to=10, count=3, scale="log", metric="inner.peak_stress")
     page.locator("#sweep-problem").wait_for()

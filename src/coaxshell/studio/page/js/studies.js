@@ -28,6 +28,7 @@ export function setUp(page, { preview, opened }) {
     for (const type of ["input", "change", "click"]) form.addEventListener(type, keepFile);
   }
   document.addEventListener("theme", () => redraw());
+  takeOver();
   onRestart(() => { for (const one of jobs.values()) one.row.remove(); jobs.clear(); });
 }
 
@@ -56,16 +57,28 @@ async function start() {
   mark(form, lack);
   if (lack) return;
   try {
-    const answer = await request("/api/jobs", { body: { client, ...body } });
+    const title = named(body), answer = await request("/api/jobs", { body: { client, title: title.slice(0, 200), ...body } });
     if (answer.ok === false) return mark(form, answer.problem);
-    const title = named(body), row = el("div", { class: "job" });
-    jobs.set(answer.job.id, { kind: body.kind, title, row, state: "" });
-    by("study-jobs").prepend(row);
-    return watch(answer.job, follow);
+    return list(answer.job, title);
   } catch (failure) { return mark(form, { where: "", problem: failure.message, remedy: "" }); }
 }
 
 // ---- jobs
+
+// What this page had started before it was loaded anew, or another one that has gone.
+export async function takeOver() {
+  try {
+    for (const job of (await request("/api/studies", { body: { client } })).jobs) list(job, job.title || KINDS[job.kind].title, { quiet: job.state === "done" });
+  } catch { /* the page says by itself that the server does not answer */ }
+}
+
+// `quiet`: it is not opened by itself.
+function list(job, title, { quiet = false } = {}) {
+  const row = el("div", { class: "job" });
+  jobs.set(job.id, { kind: job.kind, title, row, state: "", quiet });
+  by("study-jobs").prepend(row);
+  watch(job, follow);
+}
 
 function follow(job) {
   const one = jobs.get(job.id);
@@ -75,7 +88,7 @@ function follow(job) {
     one.row.dataset.state = job.state;
     one.row.replaceChildren(...parts(job, one));
     by("study-said").textContent = `${one.title}: ${job.state}`;
-    if (job.state === "done") open(job.id);
+    if (job.state === "done" && !one.quiet) open(job.id);
   }
   if (ended(job)) return;
   const [bar, note] = one.row.querySelectorAll("progress, .note");
