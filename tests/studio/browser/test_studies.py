@@ -44,7 +44,7 @@ def test_a_sweep_can_be_cancelled(page):
 
 def test_a_sweep_outlives_its_page_being_loaded_anew(page):
     start(page, path="absorbers.mass", from_=2, to=90, count=60, scale="linear", metric="outer.peak_stress")
-    mine = page.locator("#study-jobs .job").filter(has_text="outer.peak_stress over absorbers.mass").first
+    mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
     mine.wait_for()
     page.reload()
     page.locator("#tab-studies").click()
@@ -55,6 +55,15 @@ def test_a_sweep_outlives_its_page_being_loaded_anew(page):
     page.locator("#tab-studies").click()
     mine.get_by_role("button", name="Show").click()
     until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
+
+
+def test_a_plot_drawn_while_another_tab_is_shown_fits(page):
+    start(page, path="absorbers.mass", from_=2, to=60, count=8, scale="linear", metric="inner.rms_stress")
+    page.locator("#tab-peaks").click()
+    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 8")
+    page.locator("#tab-studies").click()
+    box, drawn = (f"document.querySelector('#study-plot{inner}').clientWidth" for inner in ("", " .main-svg"))
+    until(page, f"Math.abs({box} - {drawn}) <= 1")
 
 
 def test_an_impossible_sweep_is_told_in_words(page):

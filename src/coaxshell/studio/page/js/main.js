@@ -273,7 +273,7 @@ function wire() {
   by("refine").addEventListener("click", () => slots.current.refine());
   by("form").addEventListener("submit", (event) => event.preventDefault());
   document.addEventListener("theme", () => { energy.forget(); if (page.runs.current) drawRuns(); });
-  tabs.onTab((name) => { drawTab(name); if (page.system) keepLink(); });
+  tabs.onTab((name) => { drawTab(name); if (name === "studies") studies.fit(); if (page.system) keepLink(); });
   addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "/api/link/open"));
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });

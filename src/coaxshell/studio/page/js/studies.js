@@ -48,6 +48,11 @@ export function offer() {
   keepFile();
 }
 
+// A plot that was drawn while another tab was shown did not know how much room it has.
+export function fit() {
+  if (by("study-plot")?.data) window.Plotly.Plots.resize(by("study-plot"));
+}
+
 function asked() {
   return { resolution: world.preview(), ...KINDS[kind].body(by(kind)), system: world.page().system };
 }

@@ -1,7 +1,7 @@
 // Sweeps: a small form, and their results drawn.
 import { SETTINGS, frame } from "./curves.js";
 import { by, el } from "./dom.js";
-import { choose, labelled, metricOptions, pathOptions, spacing, suggested, told, typed } from "./study_fields.js";
+import { choose, labelled, metricOptions, pathOptions, spacing, spelt, suggested, told, typed } from "./study_fields.js";
 import { colour } from "./theme.js";
 import { numeral, prefixed, pretty } from "./units.js";
 
@@ -44,7 +44,7 @@ export function body(form) {
   return { kind: "sweep", over, metrics: [data.get("metric")], points: "grid" };
 }
 
-export const named = ({ over, metrics: [metric] }) => `${metric} over ${Object.keys(over).join(" and ")}`;
+export const named = ({ over, metrics: [metric] }) => `${spelt(metric)} over ${Object.keys(over).map(spelt).join(" and ")}`;
 
 // What is wrong, beside its field where it has one.
 export function mark(form, problem) {
