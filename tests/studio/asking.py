@@ -1,12 +1,16 @@
-"""Requests as the page makes them."""
+"""Requests as the page makes them, and workers without a server."""
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import time
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
 
 from coaxshell.model import presets
-from coaxshell.studio import worker
+from coaxshell.studio import limits, worker, workers
 from coaxshell.studio.arrays import decoded
 
 SMALL = {"duration": 2.0, "time_step": 0.02, "modes": 12}
@@ -54,3 +58,21 @@ def reporting(seconds):
         time.sleep(seconds / 10)
         worker.report(number / 10, "at it")
     return "done"
+
+
+def carried_out(story, **seconds):
+    """Return what a coroutine function finds with one worker that has started, under other limits than usual."""
+
+    async def told():
+        crew = workers.Workers(1)
+        try:
+            await crew.submit(worker.ready).future  # takes seconds, and reports nothing
+            with pytest.MonkeyPatch.context() as patch:
+                for name, value in seconds.items():
+                    patch.setattr(limits, name, value)
+                return await story(crew)
+        finally:
+            crew.close()
+
+    with ThreadPoolExecutor(1) as apart:  # the browser of other tests may have left a loop running in this thread
+        return apart.submit(lambda: asyncio.run(told())).result()

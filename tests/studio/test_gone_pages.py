@@ -5,8 +5,7 @@ from __future__ import annotations
 import asyncio
 
 import pytest
-from asking import SMALL, described, ended, reporting
-from test_workers import carried_out
+from asking import SMALL, carried_out, described, ended, reporting
 
 from coaxshell.studio.jobs import CANCELLED, DONE, ENDED, RUNNING, Job, Jobs
 
@@ -43,37 +42,39 @@ def test_what_only_a_page_that_has_gone_would_show_is_stopped(kind):
     assert carried_out(story, GONE_SECONDS=0.05) == DONE
 
 
-def test_a_page_that_comes_back_finds_its_jobs():
+def comes_back(jobs):
+    gone(jobs)
+    jobs.watch(PAGE)
+
+
+def closes_one_of_two_windows(jobs):
+    jobs.watch(PAGE)
+    gone(jobs)
+
+
+def is_another(jobs):
+    gone(jobs, OTHER)
+
+
+@pytest.mark.parametrize("page", [comes_back, closes_one_of_two_windows, is_another])
+def test_jobs_go_on_when_their_page(page):
     async def story(crew):
         jobs = Jobs(crew)
         job = busy(jobs, "field", seconds=1.0)
-        gone(jobs)
-        jobs.watch(PAGE)
+        page(jobs)
         await until(lambda: job.state in ENDED)
         return job.state
 
     assert carried_out(story, GONE_SECONDS=0.05) == DONE
 
 
-def test_another_open_window_of_the_page_keeps_its_jobs():
+def test_the_studies_of_a_program_that_never_watched_are_its_own():
     async def story(crew):
         jobs = Jobs(crew)
-        job = busy(jobs, "field", seconds=1.0)
-        jobs.watch(PAGE)
+        study = busy(jobs, "sweep", "program", 0.0)
         gone(jobs)
-        await until(lambda: job.state in ENDED)
-        return job.state
-
-    assert carried_out(story, GONE_SECONDS=0.05) == DONE
-
-
-def test_the_jobs_of_a_program_that_never_watched_go_on():
-    async def story(crew):
-        jobs = Jobs(crew)
-        job = busy(jobs, "field", "program", 1.0)
-        gone(jobs)
-        await until(lambda: job.state in ENDED)
-        return job.state, jobs.take_over(OTHER)
+        await until(lambda: study.state in ENDED)
+        return study.state, jobs.take_over(OTHER)
 
     assert carried_out(story, GONE_SECONDS=0.05) == (DONE, [])
 

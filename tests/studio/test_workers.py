@@ -5,36 +5,17 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from asking import reporting
+from asking import carried_out, reporting
 
 from coaxshell.errors import InputError
-from coaxshell.studio import limits, worker, workers
+from coaxshell.studio import limits, workers
 
 
 @pytest.fixture(autouse=True)
 def attentive(monkeypatch):
     monkeypatch.setattr(workers, "WATCHED_EVERY", 0.05)
-
-
-def carried_out(story, **seconds):
-    """Return what a coroutine function finds with one worker that has started, under other limits than usual."""
-
-    async def told():
-        crew = workers.Workers(1)
-        try:
-            await crew.submit(worker.ready).future  # takes seconds, and reports nothing
-            with pytest.MonkeyPatch.context() as patch:
-                for name, value in seconds.items():
-                    patch.setattr(limits, name, value)
-                return await story(crew)
-        finally:
-            crew.close()
-
-    with ThreadPoolExecutor(1) as apart:  # the browser of other tests may have left a loop running in this thread
-        return apart.submit(lambda: asyncio.run(told())).result()
 
 
 def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs():

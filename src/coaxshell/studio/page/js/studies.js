@@ -71,7 +71,7 @@ async function start() {
 // ---- jobs
 
 // What this page had started before it was loaded anew, or another one that has gone.
-export async function takeOver() {
+async function takeOver() {
   try {
     for (const job of (await request("/api/studies", { body: { client } })).jobs) list(job, job.title || KINDS[job.kind].title, { quiet: job.state === "done" });
   } catch { /* the page says by itself that the server does not answer */ }
