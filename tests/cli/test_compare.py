@@ -40,7 +40,7 @@ def test_warnings_tell_whose_they_are(run, small):
     assert outcome.code == 0
     lines = outcome.err.splitlines()
     assert all(line.startswith(("warning: active: ", "warning: bare: ")) for line in lines)
-    assert any("active: outer shell" in line and "1770 V" in line for line in lines)
+    assert any("active: outer shell" in line and "1.770 kV" in line for line in lines)
 
 
 def test_a_file_against_a_preset_and_saves_the_first(run, small, tmp_path):

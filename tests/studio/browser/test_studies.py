@@ -42,17 +42,22 @@ def test_a_sweep_can_be_cancelled(page):
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
 
 
+def again(page):
+    """Load the page anew; what its address holds, the tab too, is shown before another tab is chosen."""
+    page.reload()
+    until(page, "window.coaxshell?.state.runs.current")
+    page.locator("#tab-studies").click()
+
+
 def test_a_sweep_outlives_its_page_being_loaded_anew(page):
     start(page, path="absorbers.mass", from_=2, to=90, count=60, scale="linear", metric="outer.peak_stress")
     mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
     mine.wait_for()
-    page.reload()
-    page.locator("#tab-studies").click()
+    again(page)
     mine.wait_for()
     until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
     assert mine.get_attribute("data-state") == "done"
-    page.reload()
-    page.locator("#tab-studies").click()
+    again(page)
     mine.get_by_role("button", name="Show").click()
     until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
 
