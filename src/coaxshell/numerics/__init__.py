@@ -1,0 +1,1 @@
+"""What knows nothing of shells or fluids: files and arrays."""
