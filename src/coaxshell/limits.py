@@ -42,6 +42,8 @@ class Limit:
 
 
 QUANTITY = Limit(100, "characters", "a quantity with its unit")
+PATH = Limit(200, "characters", "a path of an entry")
+EXPRESSION = Limit(300, "characters", "a metric, objective or constraint")
 
-TABLE: tuple[Limit, ...] = (QUANTITY,)
+TABLE: tuple[Limit, ...] = (QUANTITY, PATH, EXPRESSION)
 """All bounds, in the order in which the documentation lists them."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -30,8 +31,12 @@ def within(outer: str, error: InputError) -> InputError:
 
 
 def shown(value: object) -> str:
-    """Show a value as the user wrote it, cut to a length that fits on one line."""
-    text = " ".join(repr(value).split())
+    """Show a value as the user wrote it, cut to a length that fits on one line; what is large is never written out as a whole."""
+    if isinstance(value, str | bytes):
+        value = value[:80]
+    elif isinstance(value, int) and not -(10**60) < value < 10**60:
+        return "a number of more than 60 digits"
+    text = " ".join((repr if isinstance(value, str | bytes | float) else reprlib.repr)(value).split())
     return text if len(text) <= 60 else text[:57] + "..."
 
 

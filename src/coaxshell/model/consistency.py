@@ -30,7 +30,7 @@ def index_of(shell: int | str, count: int) -> int:
         return 0
     if shell == "outer":
         return count - 1
-    number = int(shell) if isinstance(shell, str) and shell.isdigit() else shell
+    number = int(shell) if isinstance(shell, str) and len(shell) < 9 and shell.isdecimal() else shell
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < count:
         return number
     numbers = "0" if count == 1 else f"0 to {count - 1}"

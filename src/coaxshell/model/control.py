@@ -27,7 +27,7 @@ def _shells(value: Any) -> Any:
 
 
 def _shell(item: Any) -> int | str:
-    number = int(item) if isinstance(item, str) and item.isdigit() else item
+    number = int(item) if isinstance(item, str) and len(item) < 9 and item.isdecimal() else item
     if number in ("inner", "outer") or (isinstance(number, int) and not isinstance(number, bool) and number >= 0):
         return number
     raise InputError("", f"{item!r} is not allowed", "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer'")

@@ -10,6 +10,9 @@ from coaxshell.errors import InputError
 
 T = TypeVar("T")
 
+LONGEST = 100
+"""Letters of a name that are compared with those of a library."""
+
 
 def plain(name: str) -> str:
     """Reduce a name to lower-case letters and digits, so that ``PZT4``, ``pzt-4`` and ``PZT 4`` are one name."""
@@ -25,7 +28,7 @@ def slug(name: str) -> str:
 def suggestion(name: str, allowed: Iterable[str]) -> str:
     """Return ``did you mean 'x'? allowed: a, b, c`` (the question only when something is near)."""
     options = list(allowed)
-    wanted = plain(name)
+    wanted = plain(name[:LONGEST])
     near = get_close_matches(wanted, [plain(option) for option in options], n=1, cutoff=0.6)
     # A piece of a name ("peak" of "peak_pressure") is far from it letter by letter, yet plainly meant.
     holding = [plain(option) for option in options if len(wanted) > 2 and wanted in plain(option)]
@@ -36,8 +39,8 @@ def suggestion(name: str, allowed: Iterable[str]) -> str:
 
 def lookup(table: Mapping[str, T], name: str, kind: str, where: str = "") -> T:
     """Return the entry of *table* called *name* (case and punctuation ignored); InputError with the names otherwise."""
-    wanted = plain(name)
+    wanted = plain(name) if len(name) <= LONGEST else ""
     for key, value in table.items():
         if plain(key) == wanted:
             return value
-    raise InputError(where, f"{name!r} is not a known {kind}", suggestion(name, table))
+    raise InputError(where, f"{name[: LONGEST + 1]!r} is not a known {kind}", suggestion(name, table))

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import Described, joined, within
+from coaxshell.limits import PATH
+from coaxshell.model.base import Described, joined, shown, within
 from coaxshell.model.layers import Layer
 from coaxshell.model.naming import plain, slug, suggestion
 from coaxshell.model.shells import Shell
@@ -39,6 +40,9 @@ def apply(system: S, changes: Mapping[str, Any]) -> S:
 
 
 def _plant(tree: Tree, path: str, value: Any) -> None:
+    if not isinstance(path, str):
+        raise InputError("", f"{shown(path)} is not a path", "write it as source.peak_pressure or shells[0].radius")
+    PATH.check(len(path), "", "write it as source.peak_pressure or shells[0].radius")
     tokens = [token for token in re.split(r"[.\[\]]+", path.strip()) if token]
     if not tokens:
         raise InputError("", f"{path!r} is not a path", "write it as source.peak_pressure or shells[0].radius")
@@ -83,7 +87,7 @@ def _index(token: str, count: int, where: str) -> int:
     ends = {"inner": 0, "interior": 0, "outer": count - 1, "exterior": count - 1}
     if token in ends:
         return ends[token]
-    if token.isdigit() and int(token) < count:
+    if token.isdecimal() and int(token) < count:
         return int(token)
     listing = ", ".join(str(i) for i in range(count)) if count <= 10 else f"0 to {count - 1}"
     raise InputError(f"{where}[{token}]", f"{token!r} is not an item of {where}", f"allowed: {listing}, inner, outer")

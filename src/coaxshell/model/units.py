@@ -17,8 +17,8 @@ from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchema
 from pydantic_core import core_schema
 
 from coaxshell.errors import InputError
-
-NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+from coaxshell.model.base import shown
+from coaxshell.model.quantity_text import hint, parts, respelt
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def to_si(value: object, dimension: Dimension | str) -> float:
     """Convert a number (already SI) or a text such as ``"6 mm"`` to a finite SI float; InputError says what was expected."""
     kind = DIMENSIONS[dimension] if isinstance(dimension, str) else dimension
     if isinstance(value, bool):  # Python counts it among the numbers; a user does not
-        raise InputError("", f"{_shown(value)} is not {kind.name}", _remedy(kind))
+        raise InputError("", f"{shown(value)} is not {kind.name}", _remedy(kind))
     if isinstance(value, str):
         number = _from_text(value, kind)
     elif isinstance(value, Real):
@@ -114,9 +114,9 @@ def to_si(value: object, dimension: Dimension | str) -> float:
         except OverflowError:
             number = math.inf
     else:
-        raise InputError("", f"{_shown(value)} is not {kind.name}", _remedy(kind))
+        raise InputError("", f"{shown(value)} is not {kind.name}", _remedy(kind))
     if not math.isfinite(number):
-        raise InputError("", f"{_shown(value)} is not finite", _remedy(kind))
+        raise InputError("", f"{shown(value)} is not finite", _remedy(kind))
     return number
 
 
@@ -128,22 +128,26 @@ def whole(value: object) -> object:
 
 
 def _from_text(text: str, kind: Dimension) -> float:
-    match = NUMBER.fullmatch(text)
-    if match is None:
+    found = parts(text, kind.name)
+    if found is None:
         if text.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
             return math.nan
-        raise InputError("", f"{_shown(text)} is not {kind.name}", _remedy(kind))
-    number, unit = match.groups()
-    if not unit:
-        return float(number)
-    for target in (kind.unit, *kind.also):
-        factor = _factor(unit, target)
-        if factor is not None:
-            # In decimal, so that "9.3 mm" is exactly the float 0.0093; the range of float still rules.
-            return float(Decimal(number) * Decimal(repr(factor)))
-    known = _known(unit)
-    problem = f"{_shown(text)} is not {kind.name}" if known else f"{_shown(text)} has an unknown unit {unit!r}"
-    raise InputError("", problem, _remedy(kind))
+        raise InputError("", f"{shown(text)} is not {kind.name}", _remedy(kind))
+    number, unit = found
+    factor = next((factor for target in (kind.unit, *kind.also) if (factor := _factor(unit, target)) is not None), None) if unit else 1.0
+    if factor is None:
+        raise _unknown(text, unit, kind)
+    plain = float(number)
+    if not unit or plain == 0 or math.isinf(plain):
+        return plain
+    # In decimal, so that "9.3 mm" is exactly the float 0.0093; the range of float still rules.
+    return float(Decimal(number) * Decimal(repr(factor)))
+
+
+def _unknown(text: str, unit: str, kind: Dimension) -> InputError:
+    known = _parsed(unit) is not None
+    problem = f"{shown(text)} is not {kind.name}" if known else f"{shown(text)} has an unknown unit {shown(unit)}"
+    return InputError("", problem, hint(unit, known) + _remedy(kind))
 
 
 @lru_cache(maxsize=1)
@@ -172,18 +176,27 @@ def _parsed(unit: str) -> Any | None:
         return None
 
 
-def _known(unit: str) -> bool:
-    return _parsed(unit) is not None
-
-
 @lru_cache(maxsize=512)
 def _factor(unit: str, target: str) -> float | None:
-    found = _parsed(unit)
+    for spelling in dict.fromkeys((unit, respelt(unit))):
+        try:
+            factor = _factor_of(_parsed(spelling), target)
+        except (ArithmeticError, ValueError):  # powers beyond the range of float
+            factor = None
+        if factor is not None:
+            return factor
+    return None
+
+
+def _factor_of(found: Any | None, target: str) -> float | None:
     wanted = _registry().parse_units(target) if target else _registry().dimensionless
     # Radians are dimensionless to pint: without this "3 deg" would pass as a plain number, and "3 m/m" as an angle.
     if found is None or not found.is_compatible_with(wanted) or (target == "deg") != _is_angle(found):
         return None
-    factor = float(_registry().Quantity(1.0, found).to(wanted).magnitude)
+    one, two = (_registry().Quantity(size, found).to(wanted).magnitude for size in (1.0, 2.0))
+    if not two == 2 * one > 0:  # decibels and degrees of temperature are no multiples of anything
+        return None
+    factor = float(one)
     rounded = float(f"{factor:.12g}")  # pint makes g/cm^3 999.9999999999999 kg/m^3
     return rounded if abs(rounded - factor) <= 1e-15 * abs(factor) else factor
 
@@ -200,11 +213,6 @@ def _remedy(kind: Dimension) -> str:
     unit = f" in {kind.unit}" if kind.unit else ""
     example = f" or as text such as {kind.example!r}" if kind.unit else f" such as {kind.example}"
     return f"give {kind.name} as a finite number{unit}{example}"
-
-
-def _shown(value: object) -> str:
-    text = " ".join(repr(value).split())
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 Count = Annotated[int, Field(ge=0), BeforeValidator(whole)]

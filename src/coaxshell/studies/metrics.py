@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from coaxshell.errors import InputError
+from coaxshell.limits import EXPRESSION
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell
 from coaxshell.model.naming import suggestion
@@ -174,6 +175,7 @@ def _metric(item: Any, name: str | None, system: System, where: str, folder: str
         return _of_function(from_callable(item, where, name), name)
     if not isinstance(item, str):
         raise InputError(where, f"{item!r} is not a metric", "give a name such as inner.peak_stress, or a function of a Response")
+    EXPRESSION.check(len(item), where)
     text = item.strip()
     if ":" in text:
         return _of_function(from_text(text, where, folder), name)

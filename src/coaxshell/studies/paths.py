@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, get_args
 
 from coaxshell.errors import InputError
+from coaxshell.limits import PATH
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import PDControl
@@ -84,6 +85,7 @@ def field_of(system: System, path: str) -> Field:
     """Return the field at a path of a system; InputError, with the nearest that exists, if there is none."""
     if not isinstance(path, str) or not path.strip():
         raise InputError("over", f"{path!r} is not a path", "write it as source.peak_pressure or shells[0].radius")
+    PATH.check(len(path), "over", "write it as source.peak_pressure or shells[0].radius")
     path = path.strip()
     head, _, name = path.partition(".")
     if head == "control" and system.control is None and name in _GAINS:
@@ -121,7 +123,7 @@ def _child(node: Any, token: str) -> Any:
         return node.get(plain(token))
     if isinstance(node, tuple):
         ends = {"inner": 0, "interior": 0, "outer": len(node) - 1, "exterior": len(node) - 1}
-        number = ends.get(token, int(token) if token.isdigit() else -1)
+        number = ends.get(token, int(token) if token.isdecimal() else -1)
         return node[number] if 0 <= number < len(node) else None
     return getattr(node, token, None) if isinstance(node, Described) and token in type(node).model_fields else None
 

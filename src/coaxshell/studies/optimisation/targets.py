@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.limits import EXPRESSION
 from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, Dimension, to_si
@@ -188,6 +189,8 @@ def _goal(item: Any, where: str, system: System, folder: str | None) -> Goal:
 
 def _target(item: Any, where: str, system: System, folder: str | None) -> Target:
     statistic = ""
+    if isinstance(item, str):
+        EXPRESSION.check(len(item), where)
     if isinstance(item, str) and (match := _STATISTIC.fullmatch(item.strip())):
         statistic, item = match.groups()
     try:
@@ -197,6 +200,8 @@ def _target(item: Any, where: str, system: System, folder: str | None) -> Target
 
 
 def _limit(item: Any, where: str, system: System, folder: str | None) -> Limit:
+    if isinstance(item, str):
+        EXPRESSION.check(len(item), where)
     match = _LIMIT.fullmatch(item.strip()) if isinstance(item, str) else None
     if match is None:
         raise InputError(
