@@ -85,3 +85,25 @@ def test_importing_the_package_imports_nothing_heavy():
     code = f"import sys, coaxshell\nprint(sorted(set(sys.modules) & {set(HEAVY)!r}))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+# What a run does not use, seconds of imports: labels (xarray and pandas), units beyond the usual (pint, and dask through it), films,
+# files, and the rooms of scipy that only studies, energies, saturation and the direct engine enter.
+NOT_FOR_A_RUN = (
+    *("xarray", "pandas", "pint", "dask", "jinja2", "yaml", "psutil", "matplotlib", "PIL", "h5py", "h5netcdf", "rich"),
+    *(f"scipy.{room}" for room in ("signal", "stats", "optimize", "spatial", "interpolate", "integrate", "linalg", "ndimage")),
+)
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        "import coaxshell as cx; str(cx.simulate(cx.presets.load('hybrid'), modes=8, time_step=0.02).summary())",
+        "from coaxshell.cli import main; assert main(['run', 'bare', '--modes=8', '--time-step=0.02']) == 0",
+    ],
+    ids=["simulate", "command"],
+)
+def test_a_run_imports_only_what_it_uses(work):
+    code = f"import sys\n{work}\nprint(sorted(set(sys.modules) & {set(NOT_FOR_A_RUN)!r}))"
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 import coaxshell.model as cx
 from coaxshell.errors import InputError
-from coaxshell.model.units import DIMENSIONS, to_si
+from coaxshell.model.units import DIMENSIONS, by_pint, to_si
+from coaxshell.model.usual_units import USUAL
 
 
 @pytest.mark.parametrize(
@@ -50,6 +51,12 @@ from coaxshell.model.units import DIMENSIONS, to_si
 )
 def test_text_converts_exactly(text: str, dimension: str, expected: float) -> None:
     assert to_si(text, dimension) == expected
+
+
+def test_the_factors_of_usual_units_are_those_of_pint() -> None:
+    assert {target: {unit: by_pint(unit, target) for unit in factors} for target, factors in USUAL.items()} == USUAL
+    known = {unit for kind in DIMENSIONS.values() for unit in (kind.unit, *kind.also)}
+    assert set(USUAL) == known - {""}
 
 
 def test_radians_become_degrees() -> None:

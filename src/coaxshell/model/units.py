@@ -19,6 +19,7 @@ from pydantic_core import core_schema
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.quantity_text import hint, parts, respelt
+from coaxshell.model.usual_units import USUAL
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,7 @@ def _from_text(text: str, kind: Dimension) -> float:
             return math.nan
         raise InputError("", f"{shown(text)} is not {kind.name}", _remedy(kind))
     number, unit = found
-    factor = next((factor for target in (kind.unit, *kind.also) if (factor := _factor(unit, target)) is not None), None) if unit else 1.0
+    factor = _factor(unit, (kind.unit, *kind.also)) if unit else 1.0
     if factor is None:
         raise _unknown(text, unit, kind)
     plain = float(number)
@@ -177,7 +178,14 @@ def _parsed(unit: str) -> Any | None:
 
 
 @lru_cache(maxsize=512)
-def _factor(unit: str, target: str) -> float | None:
+def _factor(unit: str, targets: tuple[str, ...]) -> float | None:
+    """Return the factor from a unit to the first of some others of its kind; None if there is none."""
+    usual = next((USUAL[target][unit] for target in targets if unit in USUAL.get(target, ())), None)
+    return usual or next((factor for target in targets if (factor := by_pint(unit, target)) is not None), None)
+
+
+def by_pint(unit: str, target: str) -> float | None:
+    """Return the factor from one unit to another; None if they are of different kinds or the first is unknown."""
     for spelling in dict.fromkeys((unit, respelt(unit))):
         try:
             factor = _factor_of(_parsed(spelling), target)

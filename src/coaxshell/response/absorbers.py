@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import INWARD, angle_coordinate, time_coordinates
 from coaxshell.solver.solution import ModalSolution
 

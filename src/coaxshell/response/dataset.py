@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 import scipy
-import xarray as xr
 
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, shell_name, time_coordinates
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import INWARD, history, modal_array
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, elastic_section, stress_gain_of, voltage_gain

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.solver.solution import ModalSolution
 
 FloatArray = npt.NDArray[np.float64]

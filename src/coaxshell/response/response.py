@@ -9,9 +9,9 @@ from typing import Unpack
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from coaxshell.model.system import System
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import absorbers, fields, histories, storage, voltages
 from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy

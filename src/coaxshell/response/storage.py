@@ -10,9 +10,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 from coaxshell.errors import InputError
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.dataset import ARRAYS, OURS, format_problem, from_dataset, to_dataset
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution

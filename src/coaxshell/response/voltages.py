@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import history
 from coaxshell.response.modal import amplitudes, elastic_section, voltage_gain

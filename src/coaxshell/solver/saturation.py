@@ -13,9 +13,9 @@ system (1 + B) delta = clip - u_known, whose set is corrected until it reproduce
 from __future__ import annotations
 
 import numpy as np
-from scipy import linalg
 
 from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.numerics.late import linalg
 from coaxshell.solver.scaling import Problem
 
 _MAX_SETS = 50

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from coaxshell._version import __version__
 from coaxshell.model.system import System
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.studies.design import Design
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.metrics import Metric

@@ -8,10 +8,9 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, Literal
 
-import xarray as xr
-
 from coaxshell.errors import InputError, PhysicsWarning
 from coaxshell.model.system import System
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.studies.design import Design, Points, design_of
 from coaxshell.studies.labelled import failures_text, labelled
 from coaxshell.studies.metrics import Metric, Metrics, metrics_of

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
 from coaxshell.studies.labelled import FAILURE, WARNINGS
 

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import Response
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, design_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import cumulative_simpson
 
 from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.voltages import time_derivative
@@ -59,7 +59,7 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
             energies[1] += np.sum(0.5 * linear * stretch[:, kept] ** 2 + 0.25 * cubic * stretch[:, kept] ** 4, axis=0)
             powers[0] += np.sum(damping * rate**2, axis=0)
             powers[1] += np.sum(np.where(damping > 0.0, (force[here, side] - spring) * rate, 0.0), axis=0)
-    taken = cumulative_simpson(powers, dx=motion.grid.time_step, initial=0.0, axis=-1)[:, kept]
+    taken = integrate.cumulative_simpson(powers, dx=motion.grid.time_step, initial=0.0, axis=-1)[:, kept]
     return AbsorberEnergy(energies[0], energies[1], taken[0], taken[1] - taken[0])
 
 

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.evaluate import evaluate, settled
 from coaxshell.response.fields.grids import Grid, grid_of, labelled
 from coaxshell.response.fields.regions import FloatArray

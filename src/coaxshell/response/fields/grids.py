@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.regions import FloatArray
 from coaxshell.response.fields.request import Request, axis
 from coaxshell.response.labels import TRANSIT

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import scipy.fft
-import xarray as xr
 
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.band import band
 from coaxshell.response.fields.domain import Domain, default_instants, domain_of
 from coaxshell.response.fields.grids import instants_of

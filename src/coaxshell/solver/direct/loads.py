@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import signal
 
 from coaxshell.acoustics.incident import neumann
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions, all_orders
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.model.sources import Source
+from coaxshell.numerics.late import signal
 from coaxshell.solver.direct.weights import scattering_weights
 from coaxshell.solver.excitation import incident_wave, needs_sine_half, projection, source_spectrum
 from coaxshell.solver.scaling import Problem

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
 from coaxshell.studies.optimisation.confirmation import Confirmation
 from coaxshell.studies.optimisation.search import Candidate, non_dominated

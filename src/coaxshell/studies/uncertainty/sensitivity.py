@@ -11,10 +11,10 @@ from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from coaxshell.errors import PhysicsWarning
 from coaxshell.model.system import System
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.labelled import CASE, failures_text, labelled
 from coaxshell.studies.metrics import Metrics, metrics_of

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 
-import xarray as xr
-
+from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
 from coaxshell.studies.labelled import FAILURE, WARNINGS
 
