@@ -44,6 +44,22 @@ class Limit:
 QUANTITY = Limit(100, "characters", "a quantity with its unit")
 PATH = Limit(200, "characters", "a path of an entry")
 EXPRESSION = Limit(300, "characters", "a metric, objective or constraint")
+TOML_BYTES = Limit(16_000_000, "bytes", "a scenario or study file")
+TOML_NESTING = Limit(24, "levels", "the nesting of a TOML text")
+TOML_DOTS = Limit(12, "dots", "a key of a TOML text")
+TOML_ENTRIES = Limit(50_000, "entries", "a TOML text")
+TOML_VALUES = Limit(1_000_000, "values", "a TOML text")
+TOML_LISTS = Limit(50_000, "lists and tables", "a TOML text")
 
-TABLE: tuple[Limit, ...] = (QUANTITY, PATH, EXPRESSION)
+TABLE: tuple[Limit, ...] = (
+    QUANTITY,
+    PATH,
+    EXPRESSION,
+    TOML_BYTES,
+    TOML_NESTING,
+    TOML_DOTS,
+    TOML_ENTRIES,
+    TOML_VALUES,
+    TOML_LISTS,
+)
 """All bounds, in the order in which the documentation lists them."""

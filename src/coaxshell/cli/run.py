@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 @with_resolution
 def run(
     scenario: Annotated[
-        str, typer.Argument(metavar="SCENARIO", help="A .toml file (see coaxshell init) or a preset (see coaxshell presets).")
+        str,
+        typer.Argument(
+            metavar="SCENARIO", help="A .toml file (see coaxshell init), a preset (see coaxshell presets), or - for standard input."
+        ),
     ],
     changes: options.SetOption = None,
     *,

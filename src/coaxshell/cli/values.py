@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Literal
@@ -54,10 +53,13 @@ def overrides(texts: Sequence[str], option: str = "--set") -> dict[str, Any]:
 
 
 def _value(text: str) -> Any:
+    from coaxshell.model.toml_text import parsed
+
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        found = parsed(f"value = {text}")
+    except InputError:
         return text
+    return found["value"] if len(found) == 1 else text
 
 
 @contextmanager

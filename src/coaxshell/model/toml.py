@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
+from coaxshell.limits import TOML_BYTES
 from coaxshell.model.base import within
 from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
+from coaxshell.model.toml_text import parsed
+from coaxshell.numerics.reading import decoded, regular_bytes
 
 if TYPE_CHECKING:
     from coaxshell.model.system import System
@@ -18,25 +20,20 @@ if TYPE_CHECKING:
 
 def read(path: Path) -> str:
     """Return the text of a file; InputError when it cannot be read."""
+    return text_of(regular_bytes(path, TOML_BYTES, "give the path of a TOML file"), str(path))
+
+
+def text_of(content: bytes, name: str) -> str:
+    """Return the bytes of a TOML file as text, with or without a byte order mark; InputError naming *name* when they are none."""
     try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(
-            str(path), f"cannot be read ({(error.strerror or type(error).__name__).lower()})", "give the path of a TOML file"
-        ) from None
+        return decoded(content)
     except UnicodeError:
-        raise InputError(str(path), "is not text in UTF-8", "give the path of a TOML file") from None
+        raise InputError(name, "is not text in UTF-8", "give the path of a TOML file") from None
 
 
 def loads(text: str, folder: Path | None = None, name: str = "TOML") -> dict[str, Any]:
     """Parse TOML text into the fields of a system, with the names of materials and files resolved; errors of syntax name *name*."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(name, str(error), "the text must be valid TOML") from None
-    except (ValueError, RecursionError) as error:  # a number of thousands of digits, thousands of brackets
-        raise InputError(name, f"cannot be read ({str(error)[:60]})", "the text must be valid TOML of moderate depth") from None
-    return resolved(data, folder)
+    return resolved(parsed(text, name), folder)
 
 
 def resolved(data: dict[str, Any], folder: Path | None = None) -> dict[str, Any]:

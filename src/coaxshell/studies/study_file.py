@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
 from pathlib import Path
@@ -15,6 +14,7 @@ from coaxshell.model import presets, toml
 from coaxshell.model.base import Described, shown, within
 from coaxshell.model.naming import suggestion
 from coaxshell.model.system import System
+from coaxshell.model.toml_text import parsed
 from coaxshell.studies.design import Design, design_of
 from coaxshell.studies.metrics import Metric, metrics_of
 from coaxshell.studies.paths import varied
@@ -74,7 +74,7 @@ class Study(Described):
                 raise within("scenario", error) from None
         elif self.scenario in presets.names():
             base = presets.load(self.scenario)
-        elif Path(self.scenario).suffix.lower() == ".toml":
+        elif Path(self.scenario).suffix.lower() in (".toml", ".txt"):
             try:
                 base = System.from_toml(folder / self.scenario)
             except InputError as error:
@@ -122,11 +122,7 @@ def read_study(path: str | Path, kind: type[S]) -> S:
     InputError
         The file cannot be read, is not TOML, or has an entry that is missing, unknown or of the wrong kind.
     """
-    try:
-        data = tomllib.loads(toml.read(Path(path)))
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(str(path), str(error), "the text must be valid TOML") from None
-    return kind.model_validate(data)
+    return kind.model_validate(parsed(toml.read(Path(path)), str(path)))
 
 
 SPANS = frozenset({"from", "to", "type"})

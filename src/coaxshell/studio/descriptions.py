@@ -16,28 +16,11 @@ def system_of(data: dict[str, Any]) -> System:
     """Return the system of a request's ``system`` (table) or ``toml`` (text); InputError when it is not one or too large."""
     text = data.get("toml")
     if isinstance(text, str):
-        return _checked(_parsed(text))
+        return _checked(loads(text))
     table = data.get("system")
     if not isinstance(table, dict):
         raise InputError("system", "is missing" if table is None else f"{table!r:.60} is not a system", "give a table of its entries")
     return _checked(table)
-
-
-def _parsed(text: str) -> dict[str, Any]:
-    if max(text.count("["), text.count("{")) > 4_000 or _deepest(text) > limits.NESTING:
-        raise InputError("TOML", "is nested too deeply", f"at most {limits.NESTING} levels")
-    try:
-        return loads(text)
-    except RecursionError:
-        raise InputError("TOML", "is nested too deeply", f"at most {limits.NESTING} levels") from None
-
-
-def _deepest(text: str) -> int:
-    depth = most = 0
-    for letter in text:
-        depth += (letter in "[{") - (letter in "]}")
-        most = max(most, depth)
-    return max(most, max((line.count(".") for line in text.splitlines() if line.lstrip().startswith("[")), default=0))
 
 
 def _checked(table: dict[str, Any]) -> System:
