@@ -13,6 +13,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.linked import LinkedSpectra, solve_linked
@@ -83,8 +84,11 @@ class Prepared:
         self.problem = system if isinstance(system, Problem) else dimensionless(system)
         grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
         self._notes: list[str] = []
+        require_room(self.problem, settings, retunable=workshop is not None)
         order = self._order(grid, settings)
         self.settings = replace(settings, modes=order)
+        if settings.modes == "auto":
+            require_room(self.problem, self.settings, retunable=workshop is not None)
         forced = like.structure.forced if like is not None and like.answers_like(self.problem, order) else None
         if forced is None:
             require_stable(self.problem, order, settings.duration, workshop)
@@ -144,6 +148,8 @@ class Prepared:
         """
         system = self.problem.system if absorbers is None else self.problem.system.replace(absorbers=absorbers)
         problem, structure = replace(self.problem, system=system), self.structure
+        if absorbers is not None:
+            require_room(problem, self.settings)
         grid, stopwatch, progress = structure.grid, self._stopwatch, progress or self._progress
         linked: LinkedSpectra | None = None
         warnings = list(self._notes)

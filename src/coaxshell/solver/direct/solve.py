@@ -10,6 +10,7 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model.system import System
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.engine import march_directly
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.scaling import dimensionless
@@ -33,7 +34,10 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     stopwatch = Stopwatch()
     problem = dimensionless(system)
     grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+    require_room(problem, settings)
     order, warnings = estimates.resolve_modes(problem, grid, settings)
+    if settings.modes == "auto":
+        require_room(problem, replace(settings, modes=order))
     require_stable(problem, order, settings.duration)
     stopwatch.lap("stability of the feedback")
     links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)

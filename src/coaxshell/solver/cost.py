@@ -1,0 +1,296 @@
+"""What a run costs before it is begun: bytes of the arrays that stand side by side at its worst, seconds from counts of operations.
+
+The unit of memory is one complex number for each order and Laplace node (about one a step), a plane: spectra, compliance and kernels
+are multiples of it. Stages follow each other, so the largest of them counts. How many arrays a block of the solver works with, and
+how long an operation takes, was measured; seconds hold within a factor of 3, bytes within 1.5.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.model.pulses import Sampled
+from coaxshell.model.system import System
+from coaxshell.numerics.cost import Cost
+from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.estimates import crossing_order
+from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.linear_ring import is_ring
+from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.solver.workshop import ROOM
+
+_COMPLEX, _REAL = 16.0, 8.0
+_BLOCK_PAIRS = 64 * 1024
+"""Order-node pairs that a thread works on at a time."""
+_RECEPTANCE_BYTES = 32 * 1024 * 1024
+_BLOCK_UNKNOWNS, _LONGEST_BLOCK = 512, 32
+_MODES_OF_AUTO = 300
+"""Orders that "auto" is taken for until it is known how many it finds."""
+_SAMPLE_STRIDE = 8
+"""One node in so many is used for the estimate of what the orders left out would add."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """The numbers on which the cost of a run depends.
+
+    Attributes
+    ----------
+    shells, controlled : int
+        All, and those whose actuators have limits.
+    feedback : bool
+        Whether there is control at all.
+    points : int
+        Where absorbers touch shells, two each; mirror images are carried once where all is symmetric.
+    nonlinear, ring : bool
+        Whether absorbers have cubic springs, and whether linear ones are an even ring.
+    source_halves, halves : int
+        Of the Fourier series that the sources excite, and the absorbers.
+    orders, nodes, instants : int
+        M + 1; of the Laplace contour; of the march, refinement included.
+    sampled_top : float
+        The highest order that the estimate of what is left out looks at.
+    tabulated : int
+        Sources of a spherical wave, whose projections are made at all nodes at once.
+    samples : int
+        Of records.
+    """
+
+    shells: int
+    controlled: int
+    feedback: bool
+    points: int
+    nonlinear: bool
+    ring: bool
+    source_halves: int
+    halves: int
+    orders: int
+    nodes: int
+    instants: int
+    sampled_top: float
+    tabulated: int
+    samples: int
+
+    @property
+    def plane(self) -> float:
+        """Bytes of one complex number for each order and node."""
+        return _COMPLEX * self.orders * self.nodes
+
+    @property
+    def history(self) -> float:
+        """Bytes of one real number for each order and instant."""
+        return _REAL * self.orders * self.instants
+
+    @property
+    def linked(self) -> bool:
+        """Whether forces act on the structure beside those of the sources."""
+        return self.points > 0 or self.controlled > 0
+
+    @property
+    def marched(self) -> bool:
+        """Whether they are nonlinear."""
+        return self.nonlinear or self.controlled > 0
+
+
+def size_of(problem: Problem, settings: Settings) -> Size:
+    """Return the numbers of a run; "auto" counts as 300 orders."""
+    system, steps = problem.system, settings.steps * settings.refinement
+    grid = LaplaceGrid(settings.time_step / settings.refinement, steps)
+    source_halves = 2 if needs_sine_half(system.sources) else 1
+    links = absorber_set(problem, system.absorber_list, source_halves)
+    orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
+    feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
+    saturates = system.control is not None and system.control.saturation
+    return Size(
+        shells=len(problem.shells),
+        controlled=len(feedback) if saturates else 0,
+        feedback=bool(feedback),
+        points=2 * links.count,
+        nonlinear=not links.is_linear,
+        ring=links.count > 0 and is_ring(links),
+        source_halves=source_halves,
+        halves=links.halves if links.count else source_halves,
+        orders=orders,
+        nodes=grid.samples // 2 + 1,
+        instants=steps + 1,
+        sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
+        tabulated=sum(source.geometry == "spherical" for source in system.sources),
+        samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
+    )
+
+
+def run_cost(system: System | Problem, settings: Settings, *, retunable: bool = False) -> Cost:
+    """Return what a run of a system costs, its error estimates included.
+
+    Parameters
+    ----------
+    system : System or Problem
+    settings : Settings
+        "auto" counts as 300 orders.
+    retunable : bool
+        Whether it keeps what :meth:`coaxshell.response.PreparedSystem.retuned` shares.
+    """
+    size = size_of(dimensionless(system) if isinstance(system, System) else system, settings)
+    direct = settings.engine == "direct"
+    memory = _direct_bytes(size) if direct else _spectral_bytes(size)
+    if settings.modes == "auto":
+        memory = max(memory, _sampled_bytes(size, 2.0 * MAX_MODES))
+    kept = min(float(ROOM), (3.0 * size.shells + 2.0) * size.plane) if retunable else 0.0
+    seconds = _direct_seconds(size) if direct else _spectral_seconds(size)
+    return Cost(memory + kept + 200.0 * size.samples, seconds + 2e-5 * size.samples)
+
+
+def require_room(problem: Problem, settings: Settings, *, retunable: bool = False) -> None:
+    """Raise InputError if a run does not fit into the memory that is free; it says which orders or which step would.
+
+    As long as it is not known how many orders "auto" finds, the search for them is what has to fit.
+    """
+    cost = run_cost(problem, settings, retunable=retunable)
+    if settings.modes == "auto":
+        cost = Cost(_sampled_bytes(size_of(problem, settings), 2.0 * MAX_MODES))
+    if cost.fits:
+        return
+    shells, modes = len(problem.shells), settings.modes
+    orders = f"orders chosen by {modes!r}" if modes == "auto" else f"orders 0 to {modes:,}"
+    instants = f"{settings.steps * settings.refinement + 1:,} instants"
+    what = f"a run of {shells} shell{'s' * (shells > 1)}, {orders} and {instants}"
+    cost.require(what, _smaller(problem, settings))
+
+
+def _smaller(problem: Problem, settings: Settings) -> str:
+    """Return the number of orders and the time step that fit, if there are any, each for itself."""
+    remedies = []
+    if settings.modes != "auto":
+        fewer = _largest(4, int(settings.modes), lambda modes: run_cost(problem, replace(settings, modes=modes)).fits)
+        remedies += [f"modes={_rounded_down(fewer)}"] if fewer else []
+    steps = settings.steps
+
+    def fits(count: int) -> bool:
+        return run_cost(problem, replace(settings, time_step=settings.duration / count)).fits
+
+    coarser = _largest(100, steps, fits) if steps > 100 else 0
+    if coarser:
+        remedies += [f"time_step={settings.duration / _rounded_down(coarser):.2g}"]
+        remedies += [f"duration={float(f'{settings.time_step * _rounded_down(coarser):.2g}'):g}"]
+    return f"use {' or '.join(remedies)}" if remedies else "use fewer orders and a coarser step"
+
+
+def _rounded_down(number: int) -> int:
+    """Return a whole number of at most two digits followed by zeros."""
+    digits = int(10.0 ** max(0, len(str(number)) - 2))
+    return number // digits * digits
+
+
+def _largest(low: int, high: int, fits: Callable[[int], bool]) -> int:
+    """Return about the largest number between two ends that fits, 0 if even the smallest does not."""
+    if not fits(low):
+        return 0
+    while high - low > max(1, low // 50):
+        middle = (low + high) // 2
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return low
+
+
+def _block_bytes(size: Size, nodes: int) -> float:
+    """Return what all threads together work with when so many nodes are solved in blocks."""
+    pairs = size.orders * nodes
+    blocks = max(1, round(pairs / max(64 * size.orders, _BLOCK_PAIRS)))
+    return min(WORKERS, blocks) * (10.0 + 12.0 * size.shells) * _COMPLEX * pairs / blocks
+
+
+def _sampled_bytes(size: Size, top: float) -> float:
+    """Return what the estimate of left-out orders works with: ratios at every order up to *top*, at one node in eight."""
+    return (4.0 + 2.6 * size.shells) * _COMPLEX * (top + 1.0) * size.nodes / _SAMPLE_STRIDE
+
+
+def _spectral_bytes(size: Size) -> float:
+    """Return the largest of the stages of the spectral engine."""
+    n, plane = size.shells, size.plane
+    linear = 2.0 * n * size.source_halves * plane
+    structure = linear + ((n * n + n) * plane if size.linked else 0.0)
+    solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes)
+    tabulated = structure + size.tabulated * (9.0 * plane + 35.0 * size.orders * size.nodes)
+    stages = [solved, tabulated, structure + _COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
+    held = structure
+    if size.linked:
+        forced = 2.0 * n * size.halves * plane
+        forces = _REAL * 6.0 * size.points * size.instants
+        working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
+        stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.halves * plane]
+        held += left + forces + forced
+    amplitudes = n * max(size.halves, size.source_halves)
+    rates = 2.0 * amplitudes * size.history if size.feedback else 0.0
+    stages += [held + _sampled_bytes(size, size.sampled_top)]
+    stages += [held + amplitudes * (2.0 * size.history + 2.5 * plane) + rates + (amplitudes * plane if size.feedback else 0.0)]
+    return max(stages)
+
+
+def _marched_bytes(size: Size) -> tuple[float, float]:
+    """Return what the interface march works with, and what of it stays."""
+    n, outputs = size.shells, size.shells + size.controlled
+    pairs = outputs * n
+    unknowns = size.points + size.controlled * size.halves * size.orders
+    length = 1
+    while 2 * length <= _LONGEST_BLOCK and 2 * length * unknowns <= _BLOCK_UNKNOWNS:
+        length *= 2
+    longest = length * 2 ** int(math.log2(max(1, size.instants // length)))
+    kernels = pairs * size.history
+    left = kernels + 2.0 * n * size.source_halves * size.history + 3.0 * pairs * _COMPLEX * size.orders * longest
+    state = (n + outputs + n) * size.halves * size.history + 2.0 * size.controlled * size.halves * size.history
+    matrices = _REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))
+    circle = 128.0 * (size.halves * size.orders) ** 2 if size.controlled else 0.0
+    transforms = 1.5 * _COMPLEX * size.orders * longest * (pairs + n * size.halves)
+    making = 4.5 * size.plane  # one pair of shells at a time
+    return max(left + state + matrices + circle + transforms, kernels + making), left
+
+
+def _exact_bytes(size: Size) -> tuple[float, float]:
+    """Return what linear absorbers work with, and what of it stays."""
+    spectra = 3.0 * _COMPLEX * size.points * size.nodes
+    if size.ring:
+        return spectra + 14.0 * size.plane, 0.0
+    width = min(size.nodes, max(4, int(_RECEPTANCE_BYTES / (_COMPLEX * size.points**2))))
+    blocks = math.ceil(size.nodes / width)
+    each = _COMPLEX * width * (2.5 * size.points**2 + size.points * size.orders)
+    return spectra + min(WORKERS, blocks) * each, 0.0
+
+
+def _direct_bytes(size: Size) -> float:
+    """Return what the direct engine works with: weights, accelerations and motion at all instants, and their transforms."""
+    n, halves = size.shells, max(size.halves, size.source_halves)
+    motion = (4.0 if size.feedback else 2.0) * n * halves * size.history
+    marching = (2.0 * n * n + n * halves + halves) * size.history + motion
+    estimating = motion + 2.5 * n * halves * size.plane + _sampled_bytes(size, size.sampled_top)
+    return max(marching, estimating)
+
+
+def _shared_seconds(size: Size) -> float:
+    """Return the time that error estimates and the stability of a feedback take."""
+    estimate = 0.5e-6 * size.shells * (size.sampled_top + 1.0) * size.nodes / _SAMPLE_STRIDE
+    return 0.02 + estimate + (1.5e-6 * size.orders * 2000 * size.shells / 2.0 if size.feedback else 0.0)
+
+
+def _spectral_seconds(size: Size) -> float:
+    """Return the time of the spectral engine."""
+    pairs, halves = float(size.orders * size.nodes), max(size.halves, size.source_halves)
+    seconds = _shared_seconds(size) + 0.6e-6 * size.shells * pairs + 0.1e-6 * size.shells * halves * pairs
+    if not size.linked:
+        return seconds
+    seconds += 0.2e-6 * size.shells**2 * pairs
+    if not size.marched:
+        per_node = 2e-6 * size.points if size.ring else 4e-10 * size.points**2 * size.orders * size.halves + 6e-10 * size.points**3
+        return seconds + size.nodes * per_node
+    outputs = size.shells + size.controlled
+    sums = 2.5e-8 * outputs * size.shells * size.orders * size.halves * math.log2(size.instants + 2)
+    limits = 4.5e-8 * (size.controlled * size.halves * size.orders) ** 2
+    return seconds + size.instants * (1.2e-4 + sums + 1.5e-8 * size.points**2 + limits)
+
+
+def _direct_seconds(size: Size) -> float:
+    """Return the time of the direct engine, which grows with the square of the number of steps."""
+    halves, pairs = max(size.halves, size.source_halves), size.shells**2
+    return _shared_seconds(size) + 0.6e-9 * float(size.instants) ** 2 * size.orders * pairs * halves + 4e-4 * size.instants
