@@ -12,6 +12,7 @@ import numpy.typing as npt
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell
+from coaxshell.model.naming import shell_name
 from coaxshell.plotting.saving import known_suffix, replacing
 
 if TYPE_CHECKING:
@@ -126,8 +127,7 @@ def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
 def _elastic(response: Response) -> list[tuple[int, str]]:
     """Return number and name of each elastic shell."""
     shells = response.system.shells
-    names = {0: "inner", len(shells) - 1: "outer"} if len(shells) > 1 else {0: "shell"}
-    return [(i, names.get(i, f"shell {i}")) for i, shell in enumerate(shells) if not isinstance(shell, RigidShell)]
+    return [(i, shell_name(i, len(shells))) for i, shell in enumerate(shells) if not isinstance(shell, RigidShell)]
 
 
 def _quantities(response: Response, shell: int) -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
 from coaxshell.model.fluids import Vacuum
+from coaxshell.model.naming import shell_number, shell_places
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
 
@@ -25,16 +26,13 @@ def check(system: System) -> None:
 
 
 def index_of(shell: int | str, count: int) -> int:
-    """Return the number of a shell among *count*, from a number, digits, "inner" or "outer"; InputError otherwise."""
-    if shell == "inner":
-        return 0
-    if shell == "outer":
-        return count - 1
-    number = int(shell) if isinstance(shell, str) and len(shell) < 9 and shell.isdecimal() else shell
+    """Return the number of a shell among *count*, from a number, digits, "inner", "outer" or another of its names; InputError otherwise."""
+    number = shell_number(shell, count) if isinstance(shell, str) else shell
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < count:
         return number
     numbers = "0" if count == 1 else f"0 to {count - 1}"
-    raise InputError("shell", f"{shell!r} is not a shell of this system", f"must be {numbers} (from the inside), 'inner' or 'outer'")
+    words = " or ".join(repr(word) for word in shell_places(count))
+    raise InputError("shell", f"{shell!r} is not a shell of this system", f"must be {numbers} (from the inside), {words}")
 
 
 def _shells(system: System) -> None:

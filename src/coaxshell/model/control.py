@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import BeforeValidator, model_validator
 
@@ -10,7 +10,8 @@ from coaxshell.errors import InputError
 from coaxshell.model.base import Described
 from coaxshell.model.units import Number, quantity
 
-End = Literal["inner", "outer"]
+End = Literal["inner", "middle", "outer"]
+ALLOWED = "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer', 'middle' (of three)"
 
 
 def _shells(value: Any) -> Any:
@@ -22,15 +23,15 @@ def _shells(value: Any) -> Any:
     elif isinstance(value, int) and not isinstance(value, bool):
         value = [value]
     if not isinstance(value, list | tuple | range):
-        raise InputError("", f"{value!r} is not allowed", "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer'")
+        raise InputError("", f"{value!r} is not allowed", ALLOWED)
     return tuple(_shell(item) for item in value)
 
 
 def _shell(item: Any) -> int | str:
     number = int(item) if isinstance(item, str) and len(item) < 9 and item.isdecimal() else item
-    if number in ("inner", "outer") or (isinstance(number, int) and not isinstance(number, bool) and number >= 0):
+    if number in get_args(End) or (isinstance(number, int) and not isinstance(number, bool) and number >= 0):
         return number
-    raise InputError("", f"{item!r} is not allowed", "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer'")
+    raise InputError("", f"{item!r} is not allowed", ALLOWED)
 
 
 class PDControl(Described):
@@ -45,7 +46,7 @@ class PDControl(Described):
     derivative: Number
     """Derivative gain k_d (V/V, per unit of dimensionless time)."""
     shells: Annotated[tuple[int | End, ...] | Literal["all"], BeforeValidator(_shells)] = "all"
-    """Which shells: "all", or numbers from 0 inside, or "inner" and "outer"; ``System.controlled_shells`` gives the numbers."""
+    """Which shells: "all", or numbers from 0 inside, "inner", "outer", "middle"; ``System.controlled_shells`` gives the numbers."""
     saturation: bool = False
     """Whether the actuator's voltage stops at the field limit."""
     field_limit: Annotated[float, quantity("electric field", above=0)] | None = None

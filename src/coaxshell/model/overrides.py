@@ -10,7 +10,7 @@ from coaxshell.errors import InputError
 from coaxshell.limits import PATH
 from coaxshell.model.base import Described, joined, shown, within
 from coaxshell.model.layers import Layer
-from coaxshell.model.naming import plain, slug, suggestion
+from coaxshell.model.naming import item_places, plain, slug, suggestion
 from coaxshell.model.shells import Shell
 
 if TYPE_CHECKING:
@@ -84,9 +84,9 @@ def _grown(thing: Any, tree: Tree, where: str) -> Any:
 def _index(token: str, count: int, where: str) -> int:
     if count == 0:
         raise InputError(joined(where, token), f"this system has no {where}", f"describe {where} first")
-    ends = {"inner": 0, "interior": 0, "outer": count - 1, "exterior": count - 1}
-    if token in ends:
-        return ends[token]
+    places = item_places(count)
+    if token in places:
+        return places[token]
     if token.isdecimal() and int(token) < count:
         return int(token)
     listing = ", ".join(str(i) for i in range(count)) if count <= 10 else f"0 to {count - 1}"

@@ -21,13 +21,14 @@ _FIXED = {
     "interior fluid": COLOURS["sky"],
     "gap fluid": COLOURS["blue"],
     "inner shell": COLOURS["amber"],
+    "middle shell": "#B0A040",
     "outer shell": COLOURS["orange"],
     "shell": COLOURS["orange"],
     "absorbers": COLOURS["purple"],
     "dampers": "#8A4F73",
     "actuators": COLOURS["green"],
 }
-_SPARE = ("#3E7CB1", "#B0A040", "#7FB685", "#A0522D", "#9A9A9A", "#5D576B")
+_SPARE = ("#3E7CB1", "#7FB685", "#A0522D", "#9A9A9A", "#5D576B")
 _PER_JOULE = 1e3
 
 

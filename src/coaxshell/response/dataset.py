@@ -14,9 +14,10 @@ import scipy
 
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
+from coaxshell.model.naming import shell_name
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.response.labels import TRANSIT, shell_name, time_coordinates
+from coaxshell.response.labels import TRANSIT, time_coordinates
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.model.naming import shell_name
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.solver.solution import ModalSolution
 
@@ -14,13 +15,6 @@ TRANSIT = "a/c_e"
 """Unit of dimensionless time: one acoustic transit of the outermost radius in the exterior fluid."""
 
 INWARD = "positive inward"
-
-
-def shell_name(shell: int, count: int) -> str:
-    """Return "inner", "outer", "shell 1" and so on, or "shell" when there is only one."""
-    if count == 1:
-        return "shell"
-    return {0: "inner", count - 1: "outer"}.get(shell, f"shell {shell}")
 
 
 def time_coordinates(solution: ModalSolution) -> dict[str, xr.Variable]:

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from coaxshell.acoustics.circle import circle_angles
+from coaxshell.model.naming import shell_name
 from coaxshell.response import arguments
-from coaxshell.response.labels import shell_name
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.summary_text import summary_text
@@ -23,7 +23,7 @@ class ShellSummary:
     Attributes
     ----------
     name : str
-        "inner", "outer", "shell 1", ...
+        "inner", "outer", "middle", "shell 2 of 4", ...
     stress_head, stress_tail, stress : Peak
         Design stress of the core (Eq. 22) at the head, at the tail and anywhere, Pa.
     stress_rms : float

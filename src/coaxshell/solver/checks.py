@@ -10,6 +10,7 @@ import numpy as np
 from coaxshell.acoustics.circle import crest
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
+from coaxshell.model.naming import shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linked import LinkedSpectra
@@ -27,13 +28,6 @@ RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
 
-def shell_label(index: int, count: int) -> str:
-    """Return the name by which users call a shell: "inner shell", "outer shell", "shell 1"; "shell" if there is one only."""
-    if count == 1:
-        return "shell"
-    return {0: "inner shell", count - 1: "outer shell"}.get(index, f"shell {index}")
-
-
 def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     """Return the warnings that need no solution."""
     return _thin_shells(problem) + _resolved_membrane(problem, grid, max_order) + _linear_acoustics(problem)
@@ -46,7 +40,7 @@ def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
         if error > TRUNCATION_LIMIT:
             more = min(2 * max_order, MAX_MODES)
             warnings.append(
-                f"{shell_label(i, len(problem.shells))}: orders above {max_order} would change the stress by {error:.2g} (relative RMS), "
+                f"{shell_phrase(i, len(problem.shells))}: orders above {max_order} would change the stress by {error:.2g} (relative RMS), "
                 f'more than {TRUNCATION_LIMIT:g}; use modes={more} or modes="auto"'
             )
     if estimates.time_window > WINDOW_LIMIT:
@@ -95,7 +89,7 @@ def actuators(solution: ModalSolution) -> list[str]:
         control = solution.problem.system.control
         if control is None or asked is None:
             continue
-        label = shell_label(i, len(solution.problem.shells))
+        label = shell_phrase(i, len(solution.problem.shells))
         voltage, stands, factor = engineering(asked, "V"), engineering(limit, "V"), f"{asked / limit:.2g} times"
         if control.saturation:
             outcome = f"the voltage was held at {stands}, where the law asked for {voltage} ({factor} as much)"
@@ -137,7 +131,7 @@ def _thin_shells(problem: Problem) -> list[str]:
         ratio = (shell.section.layers[-1][1] - shell.section.layers[0][0]) / shell.section.radius
         if ratio > THIN_SHELL_LIMIT:
             warnings.append(
-                f"{shell_label(i, len(problem.shells))}: thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell "
+                f"{shell_phrase(i, len(problem.shells))}: thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell "
                 "theory loses accuracy; use a thinner shell or compare with a solid model"
             )
     return warnings
@@ -152,7 +146,7 @@ def _resolved_membrane(problem: Problem, grid: LaplaceGrid, max_order: int) -> l
         highest = float(np.sqrt(stiffness.vv[0] / shell.mass))
         if highest > grid.nyquist:
             warnings.append(
-                f"{shell_label(i, len(problem.shells))}: the membrane frequency of order {max_order} is {highest:.4g} per transit, above "
+                f"{shell_phrase(i, len(problem.shells))}: the membrane frequency of order {max_order} is {highest:.4g} per transit, above "
                 f"the {grid.nyquist:.4g} that time_step = {grid.time_step:g} resolves; use time_step = {np.pi / highest:.2g} or fewer modes"
             )
     return warnings

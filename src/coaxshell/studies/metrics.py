@@ -1,8 +1,8 @@
 """Named metrics: what a study asks of every case, as ``inner.peak_stress``, ``interior.rms_pressure`` or a function of the user's.
 
-A metric named in text is "PLACE.QUANTITY": a shell ("inner", "outer", "shells[1]"), a fluid ("interior", "gap", "exterior",
-"fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below. A function of the user's takes a Response and
-returns a number; in a study file it is written "file.py:function".
+A metric named in text is "PLACE.QUANTITY": a shell ("inner", "outer", "middle" of three, "shells[1]"; "shell" where there is one), a
+fluid ("interior", "gap", "exterior", "fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below. A function
+of the user's takes a Response and returns a number; in a study file it is written "file.py:function".
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from coaxshell.errors import InputError
 from coaxshell.limits import EXPRESSION
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell
-from coaxshell.model.naming import suggestion
+from coaxshell.model.naming import shell_phrase, shell_places, suggestion
 from coaxshell.model.system import System
 from coaxshell.response import Response
 from coaxshell.studies.reading import DesignReading, Reading
@@ -158,9 +158,10 @@ def metrics_of(asked: Metrics, system: System, folder: str | None = None) -> tup
 def metric_names(system: System) -> list[str]:
     """Return the names of all metrics that a system has."""
     count = len(system.shells)
+    named = {0: "shell"} if count == 1 else {number: place for place, number in shell_places(count).items()}
     names: list[str] = []
     for i, wall in enumerate(system.shells):
-        place = {0: "inner", count - 1: "outer"}.get(i, f"shells[{i}]")
+        place = named.get(i, f"shells[{i}]")
         names += [f"{place}.{key}" for key, entry in SHELL_QUANTITIES.items() if _lacks(wall, entry) is None]
     gaps = range(1, count)
     places = ["interior", *(["gap"] if len(gaps) == 1 else [f"fluids[{i}]" for i in gaps]), "exterior"]
@@ -194,14 +195,14 @@ def _metric(item: Any, name: str | None, system: System, where: str, folder: str
     lack = _lacks(system.shells[shell], entry)
     if lack is not None:
         raise InputError(where, f"{text!r} needs a shell that {lack}", suggestion(text, metric_names(system)))
-    return Metric(label, entry.units, f"{entry.long_name}, {_label(shell, system)}", shell, quantity)
+    return Metric(label, entry.units, f"{entry.long_name}, {shell_phrase(shell, len(system.shells))}", shell, quantity)
 
 
 def _split(text: str) -> tuple[str, str]:
     indexed = _INDEXED.fullmatch(text)
     if indexed:
         kind, index, quantity = indexed.groups()
-        return (index if index in ("inner", "outer") else f"{kind}[{index}]"), quantity
+        return (f"{kind}[{index}]" if index.isdigit() else index), quantity
     place, _, quantity = text.partition(".")
     return place, quantity
 
@@ -209,15 +210,10 @@ def _split(text: str) -> tuple[str, str]:
 def _shell(place: str, system: System) -> int | None:
     count = len(system.shells)
     match = re.fullmatch(r"shells\[(\d+)\]", place)
-    number = int(match.group(1)) if match else {"inner": 0, "outer": count - 1}.get(place)
+    number = int(match.group(1)) if match else shell_places(count).get(place)
     if number is None and place == "shell" and count == 1:
         number = 0
     return number if number is not None and number < count else None
-
-
-def _label(shell: int, system: System) -> str:
-    count = len(system.shells)
-    return "shell" if count == 1 else f"{({0: 'inner', count - 1: 'outer'}).get(shell, f'{shell}th')} shell"
 
 
 def _lacks(wall: object, entry: Quantity) -> str | None:

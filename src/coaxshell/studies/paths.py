@@ -12,7 +12,7 @@ from coaxshell.limits import PATH
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import PDControl
-from coaxshell.model.naming import plain, slug
+from coaxshell.model.naming import item_places, plain, slug
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
 from coaxshell.model.units import Quantity, whole
@@ -122,8 +122,7 @@ def _child(node: Any, token: str) -> Any:
     if isinstance(node, dict):
         return node.get(plain(token))
     if isinstance(node, tuple):
-        ends = {"inner": 0, "interior": 0, "outer": len(node) - 1, "exterior": len(node) - 1}
-        number = ends.get(token, int(token) if token.isdecimal() else -1)
+        number = item_places(len(node)).get(token, int(token) if token.isdecimal() else -1)
         return node[number] if 0 <= number < len(node) else None
     return getattr(node, token, None) if isinstance(node, Described) and token in type(node).model_fields else None
 

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import RigidShell, Shell
+from coaxshell.model.naming import shell_name
 from coaxshell.response import Response
 from coaxshell.response.histories import combined
-from coaxshell.response.labels import shell_name
 from coaxshell.response.modal import displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Peak
 from coaxshell.response.summary import Summary

@@ -7,6 +7,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell, Shell, System
+from coaxshell.model.naming import shell_phrase
 from coaxshell.model.toml import loads
 from coaxshell.studies.metrics import metric_names
 from coaxshell.studio import limits
@@ -51,10 +52,9 @@ def derived(system: System) -> list[dict[str, Any]]:
     transit = system.reference_radius / system.exterior.sound_speed
     rows = [("transit_time", "transit time a/c", transit, "s")]
     count = len(system.shells)
-    names = {0: "inner shell", count - 1: "outer shell"} if count > 1 else {0: "shell"}
     shell_mass = 0.0
     for index, shell in enumerate(system.shells):
-        name = names.get(index, f"shell {index}")
+        name = shell_phrase(index, count)
         if isinstance(shell, RigidShell):
             continue
         mass = _mass(shell)

@@ -11,6 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from coaxshell.errors import InputError, PhysicsWarning
+from coaxshell.model.naming import shell_name
 from coaxshell.model.system import System
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
@@ -144,7 +145,7 @@ def template(system: System, path: Path, *, time_step: float = 0.01, duration: f
     every = max(1, round(time_step / response.settings.time_step))
     columns: dict[str, FloatArray] = {"time [transits]": response.time[::every]}
     count = response.shells
-    names = ["outer"] if count == 1 else ["inner", *map(str, range(1, count - 1)), "outer"]
+    names = [shell_name(shell, count) for shell in range(count)] if count <= 3 else ["inner", *map(str, range(1, count - 1)), "outer"]
     for quantity, unit in UNIT.items():
         for shell in names:
             if quantity == "stress" and not hasattr(system.shells[system.shell_index(shell)], "layers"):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from coaxshell.model.absorbers import AbsorberRing
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
 from coaxshell.model.fluids import Fluid, Vacuum
+from coaxshell.model.naming import shell_phrase
 from coaxshell.model.shells import RigidShell, Shell
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def _parts(system: System) -> list[Cells]:
     if system.control is not None:
         control = system.control
         stop = ", stops at the field limit" if control.saturation else ""
-        shells = ", ".join(_shell_name(i, len(system.shells)) for i in system.controlled_shells)
+        shells = ", ".join(shell_phrase(i, len(system.shells)) for i in system.controlled_shells)
         rows.append(("", "control", f"k_p = {control.proportional:g}, k_d = {control.derivative:g} on {shells}{stop}"))
     return rows
 
@@ -83,14 +84,8 @@ def _fluid_name(number: int, shells: int) -> str:
     return "gap" if shells == 2 else f"gap {number}"
 
 
-def _shell_name(number: int, shells: int) -> str:
-    if shells == 1:
-        return "shell"
-    return {0: "inner shell", shells - 1: "outer shell"}.get(number, f"shell {number}")
-
-
 def _shell_rows(number: int, shells: int, shell: Shell | RigidShell) -> list[Cells]:
-    name = _shell_name(number, shells)
+    name = shell_phrase(number, shells)
     if isinstance(shell, RigidShell):
         return [("", name, f"rigid, radius {_length(shell.radius)}")]
     rows: list[Cells] = [("", name, f"radius {_length(shell.radius)}, {_length(shell.thickness)} thick")]

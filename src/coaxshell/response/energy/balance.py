@@ -9,6 +9,7 @@ import numpy as np
 
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.model.naming import shell_phrase
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
@@ -16,7 +17,7 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.shells import actuator_work, shell_energy
 from coaxshell.response.energy.surface import surface_pressures
 from coaxshell.response.energy.work import SurfaceWork
-from coaxshell.response.labels import shell_name, time_coordinates
+from coaxshell.response.labels import time_coordinates
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.solution import ModalSolution
 
@@ -104,8 +105,8 @@ def _shells(motion: Motion) -> dict[str, Entry]:
         found = shell_energy(motion, i)
         if found is None:
             continue
-        label = shell_name(i, count)
-        name, group = label.replace(" ", "_"), label if label.startswith("shell") else f"{label} shell"
+        name = "shell" if count == 1 else {0: "inner", count - 1: "outer"}.get(i, f"shell_{i}")
+        group = shell_phrase(i, count)
         for part, what in (("kinetic", "kinetic"), ("strain", "strain"), ("piezoelectric", "piezoelectric (open-circuit)")):
             entries[f"{name}_{part}"] = Entry(getattr(found, part), "store", group, f"{what} energy of the {group}")
     taken = actuator_work(motion)[motion.kept]
