@@ -40,12 +40,12 @@ $(STAMP_ALL): $(STAMP)
 demo: $(STAMP)
 	@mkdir -p $(DEMO)
 	@echo "hybrid against bare: two runs, their reductions, a sheet of fields and a film, about half a minute"
-	@$(BIN)/coaxshell run bare --quiet --output $(DEMO)/bare.nc > $(DEMO)/bare.txt
-	@$(BIN)/coaxshell run hybrid --compare bare --quiet --output $(DEMO)/hybrid.nc --figure $(DEMO)/stress.png
-	@$(BIN)/coaxshell figure 3 --quiet --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
-	@$(BIN)/coaxshell snapshots $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --times 0.5,1.2,2,3.1 --columns 2 --quiet \
+	@$(BIN)/coaxshell run bare --quiet --force --output $(DEMO)/bare.nc > $(DEMO)/bare.txt
+	@$(BIN)/coaxshell run hybrid --compare bare --quiet --force --output $(DEMO)/hybrid.nc --figure $(DEMO)/stress.png
+	@$(BIN)/coaxshell figure 3 --quiet --force --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
+	@$(BIN)/coaxshell snapshots $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --times 0.5,1.2,2,3.1 --columns 2 --quiet --force \
 	  --output $(DEMO)/fields.png 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
-	@$(BIN)/coaxshell animate $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --frames 100 --fps 20 --size 360 --quiet \
+	@$(BIN)/coaxshell animate $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --frames 100 --fps 20 --size 360 --quiet --force \
 	  --output $(DEMO)/film.mp4 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
 
 # The studio's page is tested in a real browser: Debian's, installed when it is missing and we may.

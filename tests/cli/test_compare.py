@@ -137,7 +137,8 @@ def test_bad_input(refused, monkeypatch, arguments, words):
 def test_a_failing_comparison_leaves_old_files_alone(refused, tmp_path):
     (tmp_path / "both.png").write_text("precious")
     arguments = ("active", "--compare", "bare", "-s", "control.derivative=150", "--modes", "20", "--figure", "both.png", "-q")
-    assert "control.derivative: 150" in refused("run", *arguments, left=["both.png"])
+    assert "'both.png' exists already; give another name, or --force" in refused("run", *arguments, left=["both.png"])
+    assert "control.derivative: 150" in refused("run", *arguments, "--force", left=["both.png"])
     assert (tmp_path / "both.png").read_text() == "precious"
 
 

@@ -68,7 +68,7 @@ def test_refuses_to_overwrite(refused, run, tmp_path):
         (["--preset", "bear"], ["error: --preset:", "bear", "bare"]),
         (["mine.yaml"], ["'mine.yaml'", ".toml"]),
         (["nowhere/mine.toml"], ["'nowhere'", "does not exist"]),
-        (["/proc/mine.toml"], ["'/proc'"]),
+        (["/proc/mine.toml"], ["'/proc/mine.toml'"]),
     ],
     ids=" ".join,
 )

@@ -41,7 +41,7 @@ def test_statistics_alone_and_failures(run, study):
     assert "12 runs" in outcome.out
     assert "alone" not in outcome.out
     failing = text.replace("[uncertain]", "[uncertain]\nshells.inner.radius = [0.5, 1.2]")
-    outcome = run("sensitivity", study(failing), "--workers", "1", "--figure", "g.svg", "--quiet")
+    outcome = run("sensitivity", study(failing), "--workers", "1", "--figure", "g.svg", "--quiet", "--force")
     assert outcome.code == 0
     assert "of them failed: no statistics" in outcome.out
     assert "cases failed" in outcome.err

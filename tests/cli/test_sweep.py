@@ -50,7 +50,8 @@ def test_a_study_file_is_the_python_call(run, study, tmp_path):
 def test_a_store_of_its_own_is_kept_and_resumed(run, study):
     arguments = ("sweep", study(), "--workers", "1", "--store", "kept", "--quiet")
     assert run(*arguments).code == 0
-    again = run(*arguments)
+    assert "--output: 'study.nc' exists already" in run(*arguments).err
+    again = run(*arguments, "--force")
     assert again.code == 2
     assert "already holds 6 cases of this study; use resume (--resume)" in again.err
     resumed = run(*arguments, "--resume")

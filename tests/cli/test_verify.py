@@ -51,7 +51,12 @@ def test_another_codes_histories(run):
     assert outcome.code == 0
     assert outcome.files == ["mine.csv", *REPORT]
     assert "16 rows: 16 noted" in outcome.out
-    strict = run("verify", "--against", "mine.csv", "--case", "iakovlev-double", "--modes", "4", "--tolerance", "1e-6", "--quiet")
+    again = run("verify", "--against", "mine.csv", "--case", "iakovlev-double", "--modes", "12", "--quiet")
+    assert again.code == 2
+    assert "exists already" in again.err
+    strict = run(
+        "verify", "--against", "mine.csv", "--case", "iakovlev-double", "--modes", "4", "--tolerance", "1e-6", "--quiet", "--force"
+    )
     assert strict.code == 1
 
 

@@ -92,9 +92,12 @@ def test_an_existing_folder_is_replaced_only_when_told_to(hybrid, tmp_path):
     target = tmp_path / "run"
     target.mkdir()
     (target / "mine.txt").write_text("mine")
-    with pytest.raises(InputError, match="exists already and is not empty"):
+    with pytest.raises(InputError, match="holds something else"):
         export_paraview(hybrid, target, times=[1.0], points=5)
     assert (target / "mine.txt").exists()
+    with pytest.raises(InputError, match=r"holds something else than a result \('mine.txt'\)"):
+        export_paraview(hybrid, target, times=[1.0], points=5, force=True)
+    (target / "mine.txt").rename(target / "field.pvd")
     export_paraview(hybrid, target, times=[1.0], points=5, force=True)
     assert sorted(path.name for path in target.iterdir()) == ["data", "field.pvd", "shells.pvd", "system.toml"]
     assert [path.name for path in tmp_path.iterdir()] == ["run"]

@@ -84,8 +84,8 @@ def refusals(folder: Path) -> dict[str, Path]:
     (folder / "round").symlink_to("round")
     (folder / "device").symlink_to("/dev/null")
     return {
-        "there is no folder": folder / "nowhere" / "a.txt",
-        "there is no folder ": folder / "file" / "a.txt",
+        "nowhere' does not exist; make it first": folder / "nowhere" / "a.txt",
+        "file' is a file; make it first": folder / "file" / "a.txt",
         "it is a folder": folder / "folder",
         "file name too long": folder / ("x" * 300),
         "is not the name of a file": folder / "a\0b",

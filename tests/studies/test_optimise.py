@@ -123,7 +123,9 @@ def test_the_command_writes_answer_and_figure(tmp_path, monkeypatch, capsys):
     assert "best inner.peak_stress" in told.err
     assert (tmp_path / "seen.png").stat().st_size > 10_000
     assert main(["run", "study.optimum/best.toml", "--quiet", "--modes", "6", "--time-step", "0.02", "--duration", "1"]) == 0
-    assert main(["optimise", "study.toml", "--workers", "1", "--quiet"]) == 0  # an earlier answer is replaced
+    assert main(["optimise", "study.toml", "--workers", "1", "--quiet"]) == 2
+    assert "'study.optimum' exists already" in capsys.readouterr().err
+    assert main(["optimise", "study.toml", "--workers", "1", "--quiet", "--force"]) == 0
 
 
 def test_two_objectives_from_a_file(tmp_path, monkeypatch, capsys):
@@ -236,7 +238,7 @@ def test_the_journal_of_another_study_is_refused(tmp_path, monkeypatch, capsys):
     short = STUDY.replace("evaluations = 24", "evaluations = 8")
     (tmp_path / "study.toml").write_text(short)
     assert main(["optimise", "study.toml", "--quiet", "--workers", "1", "--journal", "kept"]) == 0
-    assert main(["optimise", "study.toml", "--quiet", "--workers", "1", "--journal", "kept"]) == 2
+    assert main(["optimise", "study.toml", "--quiet", "--workers", "1", "--journal", "kept", "--force"]) == 2
     assert "use resume (--resume)" in capsys.readouterr().err
     (tmp_path / "study.toml").write_text(short.replace("200 kg/m", "199 kg/m"))
     assert main(["optimise", "study.toml", "--quiet", "--workers", "1", "--journal", "kept", "--resume"]) == 2

@@ -9,7 +9,7 @@ import typer
 
 from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 
@@ -35,6 +35,7 @@ def animate(
     changes: options.SetOption = None,
     *,
     request: Request,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Make a film of the pressure field.
@@ -43,7 +44,7 @@ def animate(
     """
     from coaxshell.plotting import FILM_SUFFIXES, FieldView, check_film, check_units, save_film
 
-    target = writable(output, "--output", FILM_SUFFIXES)
+    target = Outputs(force).file(output, "--output", FILM_SUFFIXES)
     last = None if until is None else values.number("--until", until)
     highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
     highest_stress = field_options.limit("--stress-limit", stress_limit)

@@ -9,7 +9,7 @@ import typer
 
 from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.times import times as read_times
@@ -36,7 +36,7 @@ def export(
         str,
         typer.Option("--displaced", metavar="FACTOR", help="ParaView: draw the shells displaced this many times."),
     ] = "0",
-    force: Annotated[bool, typer.Option("--force", help="Replace the folder or the file if it exists.")] = False,
+    force: options.ForceOption = False,
     changes: options.SetOption = None,
     *,
     request: Request,
@@ -68,10 +68,7 @@ def _target(source: str, to: str, output: Path | None, force: bool) -> Path:
     """Return where to write to, refused now if that cannot be."""
     stem = Path(source).stem
     if to == "paraview":
-        from coaxshell.export import new_folder
+        from coaxshell.export import PARAVIEW_PARTS
 
-        return new_folder(output or Path(f"{stem}-paraview"), force=force, name="--output")
-    target = writable(output or Path(f"{stem}.{to}"), "--output", (f".{to}",))
-    if output is None and target.exists() and not force:
-        raise InputError("--output", f"{str(target)!r} exists already", "give another name, or --force to overwrite it")
-    return target
+        return Outputs(force).folder(output or Path(f"{stem}-paraview"), "--output", PARAVIEW_PARTS)
+    return Outputs(force).file(output or Path(f"{stem}.{to}"), "--output", (f".{to}",))

@@ -10,7 +10,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.tables import tell_warnings
@@ -39,6 +39,7 @@ def figure(
     changes: options.SetOption = None,
     *,
     request: Request,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Draw a figure of the paper.
@@ -49,7 +50,7 @@ def figure(
     from coaxshell.plotting import FIGURE_SUFFIXES, save_figure
 
     recipe = figure_recipe(number)
-    target = writable(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
+    target = Outputs(force).file(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
     if source and (preset or changes):
         raise InputError("--from", "cannot be combined with --preset or --set", "a saved run has its own system: give one or the other")
     if source and isinstance(recipe, StudyRecipe):

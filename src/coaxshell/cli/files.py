@@ -1,59 +1,50 @@
-"""Files that a command is going to write: refused before the work starts, and never left half written."""
+"""What a command is going to write: refused before the work starts. One rule: nothing that exists is overwritten without --force."""
 
 from __future__ import annotations
 
 import os
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.files import free_file, free_folder
 
 
-def writable(path: Path, option: str, suffixes: Sequence[str]) -> Path:
-    """Return *path* if a file of one of the kinds can be written there; InputError otherwise."""
-    if path.suffix.lower() not in suffixes:
-        raise InputError(option, f"{str(path)!r} has no known ending", f"allowed: {', '.join(suffixes)}")
-    if path.is_dir():
-        raise InputError(option, f"{str(path)!r} is a folder", "give the name of a file")
-    folder = path.parent
-    if not folder.is_dir():
-        raise InputError(option, f"the folder {str(folder)!r} does not exist", "make it first, or give another one")
-    try:
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise InputError(option, f"cannot write into {str(folder)!r}: {_reason(error)}", "give a folder that you may write to") from None
-    return path
+class Outputs:
+    """The files and folders that one command is to write, each claimed before the computation.
 
+    Parameters
+    ----------
+    force : bool
+        Whether what exists may be replaced.
+    """
 
-def drawable(path: Path | None, option: str = "--figure") -> None:
-    """Refuse a figure that cannot be written; InputError names the option."""
-    if path is not None:
-        from coaxshell.plotting.saving import FIGURE_SUFFIXES
+    def __init__(self, force: bool) -> None:
+        self.force = force
+        self._claimed: dict[str, str] = {}
 
-        writable(path, option, FIGURE_SUFFIXES)
+    def file(self, path: Path, option: str, suffixes: Sequence[str]) -> Path:
+        """Claim a file of one of the kinds and return its path; InputError if it cannot be written, or is claimed already."""
+        if path.suffix.lower() not in suffixes:
+            raise InputError(option, f"{str(path)!r} has no known ending", f"allowed: {', '.join(suffixes)}")
+        free_file(path, option, force=self.force)
+        self._claim(path, option)
+        return path
 
+    def figure(self, path: Path | None, option: str = "--figure") -> None:
+        """Claim a figure, if there is to be one."""
+        if path is not None:
+            from coaxshell.plotting.saving import FIGURE_SUFFIXES
 
-def new_folder(path: Path, option: str, mark: str) -> Path:
-    """Return *path* if a result can be written there as a folder: new, empty, or an earlier result with a file *mark* in it."""
-    if path.exists() and not (path / mark).is_file() and (not path.is_dir() or any(path.iterdir())):
-        raise InputError(option, f"{str(path)!r} holds something else than a result", "give a new or an empty folder")
-    writable(path.with_name(f"{path.name}.toml"), option, (".toml",))
-    return path
+            self.file(path, option, FIGURE_SUFFIXES)
 
+    def folder(self, path: Path, option: str, parts: Collection[str]) -> Path:
+        """Claim a folder that will hold a result of some parts and return its path."""
+        free_folder(path, parts, option, force=self.force)
+        self._claim(path, option)
+        return path
 
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary name beside *path*; rename it to *path* at the end, or remove it when something goes wrong."""
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
-    try:
-        yield partial
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
-
-
-def _reason(error: OSError) -> str:
-    return (error.strerror or type(error).__name__).lower()
+    def _claim(self, path: Path, option: str) -> None:
+        other = self._claimed.setdefault(os.path.realpath(path), option)
+        if other != option:
+            raise InputError(option, f"{str(path)!r} is what {other} writes already", "give each its own name")

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import drawable, new_folder
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.studying import study_options
 
@@ -44,16 +44,18 @@ def optimise(
     resume: options.ResumeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Search for the best system within some ranges.
 
     Interrupted, by Ctrl-C or anything else, it goes on with --resume and ends as if it had not been.
     """
-    target = new_folder(output or Path(f"{study.stem}.optimum"), "--output", "optimum.json")
-    drawable(figure)
+    from coaxshell.studies import OPTIMUM_PARTS, OptimisationStudy, optimise_problem, read_study
 
-    from coaxshell.studies import OptimisationStudy, optimise_problem, read_study
+    outputs = Outputs(force or resume)  # what an interrupted search left is its own to replace
+    target = outputs.folder(output or Path(f"{study.stem}.optimum"), "--output", OPTIMUM_PARTS)
+    outputs.figure(figure)
 
     problem = read_study(study, OptimisationStudy).problem(study.parent)
     folder = journal or Path(f"{study.stem}.journal")

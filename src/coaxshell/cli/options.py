@@ -23,6 +23,7 @@ EngineOption = Annotated[str, typer.Option("--engine", metavar="NAME", help="How
 RefinementOption = Annotated[
     str, typer.Option("--refinement", metavar="N", help="Solve at time-step/N and keep every N-th instant: for stiff absorbers.")
 ]
+ForceOption = Annotated[bool, typer.Option("--force", help="Overwrite what exists already.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]
 WorkersOption = Annotated[str | None, typer.Option("--workers", metavar="N", help="Processes; one a core unless given.")]
 DaskOption = Annotated[

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from coaxshell.cli.files import replacing, writable
+from coaxshell.cli import options
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.values import named_as_options, number
 from coaxshell.errors import InputError
 
@@ -36,6 +37,7 @@ def response_function(
     slowness: Annotated[str, typer.Option("--slowness", metavar="ALPHA", help="c_e/c of the fluid inside or in the gap.")] = "1",
     duration: Annotated[str, typer.Option("--duration", metavar="TRANSITS", help="How long.")] = "5",
     time_step: Annotated[str, typer.Option("--time-step", metavar="TRANSITS", help="Time step.")] = "2.5e-3",
+    force: options.ForceOption = False,
 ) -> None:
     """Draw or tabulate the response function of a region.
 
@@ -47,7 +49,7 @@ def response_function(
         raise InputError("REGION", f"{region!r} is not a fluid region", f"allowed: {', '.join(REGIONS)}")
     table = output.suffix.lower() == ".csv"
     orders = _orders(modes, None if table else _MOST_CURVES)
-    target = writable(output, "--output", (*FIGURE_SUFFIXES, ".csv"))
+    target = Outputs(force).file(output, "--output", (*FIGURE_SUFFIXES, ".csv"))
     geometry = {"--inner-radius": inner_radius, "--outer-radius": outer_radius, "--slowness": slowness}
     sizes = {name: number(name, text) for name, text in geometry.items()}
     place = None if radius is None else number("--radius", radius)
@@ -123,5 +125,7 @@ def _write(target: Path, orders: list[int], found: list[ResponseFunction]) -> No
     prefixes = [""] if len(found) == 1 else ["inner_", "outer_"]
     names = ["time", *(f"{prefix}m{order}" for prefix in prefixes for order in orders)]
     columns = np.concatenate([found[0].time[None], *(each.values for each in found)]).T
-    with replacing(target) as partial:
-        np.savetxt(partial, columns, delimiter=",", header=",".join(names), comments="", fmt="%.12g")
+    from coaxshell.numerics.files import replacing
+
+    with replacing(target) as made:
+        np.savetxt(made, columns, delimiter=",", header=",".join(names), comments="", fmt="%.12g")

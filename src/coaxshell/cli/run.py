@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import drawable, writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.solving import Request, with_resolution
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ def run(
     energy: Annotated[
         Path | None, typer.Option("--energy", metavar="FILE", help="Draw where the energy of the first run goes; .png, .pdf or .svg.")
     ] = None,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Solve a system and print its peaks.
@@ -51,10 +52,11 @@ def run(
     from coaxshell.cli.scenario import load_system
     from coaxshell.cli.tables import print_summary
 
+    outputs = Outputs(force)
     if output is not None:
-        writable(output, "--output", (".nc",))
-    for option, path in (("--figure", figure), ("--energy", energy)):
-        drawable(path, option)
+        outputs.file(output, "--output", (".nc",))
+    outputs.figure(figure)
+    outputs.figure(energy, "--energy")
     systems = [load_system(scenario, changes or ())]
     if compare is not None:
         systems.append(load_reference(compare, changes or ()))

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import drawable, replacing, writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.studying import study_options
 
@@ -26,15 +26,18 @@ def sensitivity(
     resume: options.ResumeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Find which uncertain properties matter, and how much.
 
     Interrupted, by Ctrl-C or anything else, it goes on with --resume.
     """
-    target = writable(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
-    drawable(figure)
+    outputs = Outputs(force or resume)
+    target = outputs.file(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
+    outputs.figure(figure)
 
+    from coaxshell.numerics.netcdf import write_netcdf
     from coaxshell.studies import SensitivityStudy, read_study, uncertainty_of
     from coaxshell.studies.uncertainty.table import found_text, told
 
@@ -42,8 +45,7 @@ def sensitivity(
     folder = store or Path(f"{study.stem}.store")
     with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as how:
         found = uncertainty_of(plan, how)
-    with replacing(target) as partial:
-        found.to_netcdf(partial, engine="h5netcdf")
+    write_netcdf(found, target)
     if figure is not None and told(found):
         from coaxshell.plotting import figure_sensitivity, save_figure
 

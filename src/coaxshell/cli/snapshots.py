@@ -9,7 +9,7 @@ import typer
 
 from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.times import times as read_times
@@ -35,6 +35,7 @@ def snapshots(
     changes: options.SetOption = None,
     *,
     request: Request,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Draw the pressure field at several instants.
@@ -43,7 +44,7 @@ def snapshots(
     """
     from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots, save_figure
 
-    target = writable(output, "--output", FIGURE_SUFFIXES)
+    target = Outputs(force).file(output, "--output", FIGURE_SUFFIXES)
     if not 1 <= columns <= 20:
         raise InputError("--columns", f"{columns} is not allowed", "give a whole number from 1 to 20")
     chosen = None if times is None else read_times(times)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import drawable, replacing, writable
+from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.studying import study_options
 from coaxshell.errors import InputError
@@ -29,16 +29,18 @@ def sweep(
     resume: options.ResumeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Compute a system at many points of some of its fields.
 
     Interrupted, by Ctrl-C or anything else, it goes on with --resume.
     """
-    target = writable(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
+    outputs = Outputs(force or resume)
+    target = outputs.file(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
     if csv is not None:
-        writable(csv, "--csv", (".csv",))
-    drawable(figure)
+        outputs.file(csv, "--csv", (".csv",))
+    outputs.figure(figure)
 
     from coaxshell.studies import SweepStudy, read_study, sweep_design
 
@@ -55,13 +57,13 @@ def sweep(
 
 
 def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | None) -> None:
-    with replacing(target) as partial:
-        dataset.to_netcdf(partial, engine="h5netcdf")
+    from coaxshell.numerics.netcdf import write_netcdf
+
+    write_netcdf(dataset, target)
     if csv is not None:
         from coaxshell.studies.table import write_csv
 
-        with replacing(csv) as partial:
-            write_csv(dataset, partial)
+        write_csv(dataset, csv)
     if figure is not None:
         from coaxshell.plotting import figure_sweep, save_figure
 

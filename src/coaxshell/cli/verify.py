@@ -39,6 +39,7 @@ def verify(
     ] = None,
     time_step: options.TimeStepOption = "1e-3",
     modes: Annotated[str, typer.Option("--modes", metavar="N", help="With --against, --template: highest order.")] = "150",
+    force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Check the numbers and write a report.
@@ -51,15 +52,15 @@ def verify(
     if against is None and template is None:
         if case is not None:
             raise InputError("--case", "is for --against or --template", "give one of them, or leave --case out")
-        return _suite(only, quick, output, quiet)
+        return _suite(only, quick, output, force, quiet)
     if case is None:
         raise InputError("--case", "is missing", "name the preset or .toml file that the other code solved")
     resolution = values.number("--time-step", time_step), _modes(modes)
     if template is not None:
-        _template(case, template, resolution[1])
+        _template(case, template, resolution[1], force)
     if against is not None:
         limit = None if tolerance is None else values.number("--tolerance", tolerance)
-        _against(against, case, output, limit, resolution, quiet)
+        _against(against, case, _folder(output, force), limit, resolution, quiet)
     return None
 
 
@@ -72,13 +73,13 @@ def _list() -> None:
         typer.echo(f"{one.name:{width}}  {one.title}")
 
 
-def _suite(only: list[str] | None, quick: bool, output: Path, quiet: bool) -> None:
+def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet: bool) -> None:
     from coaxshell.cli.progress import progress
     from coaxshell.verification import chosen, run
     from coaxshell.verification.files import prepare
 
     wanted = chosen(only, quick)
-    prepare(output)
+    prepare(_folder(output, force))
     with progress(quiet) as report:
         found = run(wanted, quick=quick, progress=report)
     _tell(found, output)
@@ -95,15 +96,26 @@ def _against(path: Path, case: str, output: Path, limit: float | None, resolutio
     _tell(found, output)
 
 
-def _template(case: str, path: Path, modes: int) -> None:
-    from coaxshell.cli.files import writable
+def _template(case: str, path: Path, modes: int, force: bool) -> None:
+    from coaxshell.cli.files import Outputs
     from coaxshell.cli.scenario import load_system
     from coaxshell.verification.against import template
 
     system = load_system(case, where="--case")
-    writable(path, "--template", (".csv",))
+    Outputs(force).file(path, "--template", (".csv",))
     template(system, path, modes=modes)
     typer.echo(f"wrote {path}")
+
+
+def _folder(output: Path, force: bool) -> Path:
+    """Return the report's folder, found free."""
+    from coaxshell.cli.files import Outputs
+    from coaxshell.verification.files import NAMES
+
+    outputs = Outputs(force)
+    for name in NAMES if output.is_dir() else ():
+        outputs.file(output / name, "--output", (".md", ".html"))
+    return output
 
 
 def _modes(text: str) -> int:

@@ -11,15 +11,18 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
-from coaxshell.export.folders import replacing_folder
 from coaxshell.export.vtk_xml import write_collection, write_image, write_lines
 from coaxshell.model import RigidShell
+from coaxshell.numerics.files import replacing_folder
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
 FloatArray = npt.NDArray[np.float64]
 Report = Callable[[float, str], None]
+
+PARAVIEW_PARTS = ("data", "field.pvd", "shells.pvd", "system.toml")
+"""What an exported folder holds."""
 
 _STAGE = "ParaView"
 _BLOCK_BYTES = 0.4e9
@@ -56,7 +59,7 @@ def export_paraview(
     displaced : float
         The shells are drawn displaced by this many times their displacement; 0 draws them at rest.
     force : bool
-        Replace the folder if it exists.
+        Replace the folder if it holds an earlier export; what holds anything else is never replaced.
     progress : callable, optional
         Called with the fraction done and the name of the stage.
 
@@ -68,7 +71,7 @@ def export_paraview(
     check_grid(half_width, points, displaced)
     index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
     seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
-    with replacing_folder(Path(folder), force=force) as partial:
+    with replacing_folder(folder, PARAVIEW_PARTS, force=force) as partial:
         (partial / "data").mkdir()
         fields = _write_fields(response, partial, index, half_width, points, progress)
         shells = _write_shells(response, partial, index, displaced)

@@ -13,7 +13,8 @@ from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell
 from coaxshell.model.naming import shell_name
-from coaxshell.plotting.saving import known_suffix, replacing
+from coaxshell.numerics.files import replacing
+from coaxshell.plotting.saving import known_suffix
 
 if TYPE_CHECKING:
     from coaxshell.response import Response

@@ -16,6 +16,7 @@ from coaxshell.model.control import PDControl
 from coaxshell.model.fluids import AnyFluid, Fluid, Vacuum
 from coaxshell.model.shells import AnyShell, RigidShell, Shell
 from coaxshell.model.sources import Source, as_source, source_distance
+from coaxshell.numerics.files import write_text
 
 
 def _several(value: Any, build: Any) -> Any:
@@ -172,10 +173,9 @@ class System(Described):
         return toml.dumps(self)
 
     def to_toml(self, path: str | Path) -> Path:
-        """Write the system to a TOML file and return its path."""
-        target = Path(path)
-        target.write_text(self.to_toml_string(), encoding="utf-8")
-        return target
+        """Write the system to a TOML file, whole or not at all, and return its path; InputError if it cannot be written."""
+        write_text(path, self.to_toml_string())
+        return Path(path)
 
     @classmethod
     def from_toml_string(cls, text: str, folder: str | Path | None = None) -> Self:

@@ -176,8 +176,10 @@ def _real(path: str | Path, where: str) -> Path:
     if b"\0" in text or not text:
         raise InputError(where, f"{str(path)!r} is not the name of a file", "give another one")
     target = Path(os.path.realpath(path))
-    if not target.parent.is_dir():
-        raise InputError(where, f"cannot write {str(path)!r}: there is no folder {str(target.parent)!r}", "make it first")
+    for folder in (Path(path).parent, target.parent):  # named as the user did, if it is his own
+        if not folder.is_dir():
+            problem = "is a file" if folder.exists() else "does not exist"
+            raise InputError(where, f"cannot write {str(path)!r}: the folder {str(folder)!r} {problem}", "make it first")
     return target
 
 

@@ -6,12 +6,10 @@ place that is not his own knows that its writer is gone.
 
 from __future__ import annotations
 
-import ctypes
 import os
 import shutil
 import sys
 import time
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -49,7 +47,7 @@ def scratch(folder: Path, *, sweep: bool = True) -> Iterator[Path]:
 def _occupied(folder: Path) -> tuple[Path, int]:
     """Return a new place and its lock, held."""
     while True:
-        place = folder / f"{PREFIX}{uuid.uuid4().hex[:16]}"
+        place = folder / f"{PREFIX}{os.urandom(8).hex()}"
         place.mkdir(mode=0o700)
         try:
             lock = os.open(place / _LOCK, os.O_RDWR | os.O_CREAT, 0o600)
@@ -133,6 +131,8 @@ def put_folder(place: Path, made: Path, target: Path) -> None:
 
 def exchange(one: Path, other: Path) -> bool:
     """Exchange two files or folders in one step; False, and nothing done, where that is not possible."""
+    import ctypes
+
     names = os.fsencode(one), os.fsencode(other)
     try:
         library = ctypes.CDLL(None)

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 import coaxshell
-from coaxshell.plotting.saving import replacing
+from coaxshell.numerics.files import replacing
 
 Array = npt.NDArray[Any]
 

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
-from coaxshell.plotting.saving import known_suffix, replacing
+from coaxshell.numerics.files import replacing
+from coaxshell.plotting.saving import known_suffix
 
 Bytes = npt.NDArray[np.uint8]
 

@@ -1,14 +1,12 @@
-"""Figures and other files, never half written."""
+"""Figures as files, never half written."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.files import replacing
 from coaxshell.plotting.style import style
 
 if TYPE_CHECKING:
@@ -21,7 +19,7 @@ _NO_DATE = {".png": {"Software": None}, ".pdf": {"CreationDate": None}, ".svg": 
 
 
 def save_figure(figure: Figure, path: str | Path) -> Path:
-    """Save a figure; the same figure gives the same bytes. Written beside its final name first, then renamed.
+    """Save a figure; the same figure gives the same bytes. Written whole or not at all.
 
     Parameters
     ----------
@@ -47,22 +45,3 @@ def known_suffix(path: Path, suffixes: tuple[str, ...]) -> str:
     if suffix not in suffixes:
         raise InputError("path", f"{str(path)!r} has no known ending", f"allowed: {', '.join(suffixes)}")
     return suffix
-
-
-@contextmanager
-def replacing(target: Path) -> Iterator[Path]:
-    """Yield a hidden name beside *target* to write to; it is renamed at the end, or removed when something goes wrong.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written there.
-    """
-    partial = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix.lower()}")
-    try:
-        yield partial
-        partial.replace(target)
-    except OSError as error:
-        raise InputError("path", f"cannot write {str(target)!r}: {error.strerror or error}", "give a place that you may write to") from None
-    finally:
-        partial.unlink(missing_ok=True)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.netcdf import write_netcdf
 from coaxshell.response.dataset import ARRAYS, OURS, format_problem, from_dataset, to_dataset
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution
@@ -41,30 +40,11 @@ def save(solution: ModalSolution, path: str | Path, *, compression: bool = False
     """
     if solution.problem != dimensionless(solution.problem.system):
         raise InputError("response", "was made with other formulas than a file could repeat", "save its histories as tables instead")
-    target = Path(path)
-    if not target.parent.is_dir():
-        raise InputError(str(path), f"cannot be written: there is no folder {str(target.parent)!r}", "create it first")
-    if target.is_dir():
-        raise InputError(str(path), "cannot be written: it is a folder", "give the name of a file, such as run.nc")
     dataset = to_dataset(solution)
     packed = {"zlib": True, "complevel": 4, "shuffle": True} if compression else {}
     encoding = {name: {"_FillValue": None, **packed} for name in ARRAYS if name in dataset and dataset[name].size}
-    # In the same directory, so that the rename is one step of the file system; hidden, and unique to this writer.
-    temporary = target.with_name(f".{target.name}.{uuid.uuid4().hex}.tmp")
-    try:
-        dataset.to_netcdf(temporary, engine="h5netcdf", encoding=encoding)
-        os.replace(temporary, target)
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written ({_reason(error)})", "choose another place or make room") from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-    return target
-
-
-def _reason(error: OSError) -> str:
-    # h5py keeps the number of the cause but buries its text in a long report of its own.
-    return os.strerror(error.errno) if error.errno else str(error)
+    write_netcdf(dataset, path, encoding)
+    return Path(path)
 
 
 def _opened(path: str | Path) -> xr.Dataset:

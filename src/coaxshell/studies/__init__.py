@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coaxshell.studies.cluster import dask_executor
 from coaxshell.studies.optimisation.optimising import optimise, optimise_problem
-from coaxshell.studies.optimisation.optimum import Optimum
+from coaxshell.studies.optimisation.optimum import OPTIMUM_PARTS, Optimum
 from coaxshell.studies.optimisation.study import OptimisationStudy
 from coaxshell.studies.optimisation.targets import Objective
 from coaxshell.studies.optimisation.variables import Choice, Integer, Range
@@ -18,6 +18,7 @@ from coaxshell.studies.uncertainty.sensitivity import robustness, sensitivity, u
 from coaxshell.studies.uncertainty.study import SensitivityStudy
 
 __all__ = [
+    "OPTIMUM_PARTS",
     "Choice",
     "How",
     "Integer",

@@ -9,9 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import uuid
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -19,6 +17,8 @@ from typing import Any
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.files import reason, write_text
+from coaxshell.numerics.scratch import reclaim, scratch
 from coaxshell.solver.settings import NUMERICS_VERSION
 from coaxshell.studies.evaluation import Outcome, failure
 from coaxshell.studies.metrics import Metric
@@ -71,14 +71,16 @@ class Store:
         try:
             self._open({**manifest, "description": dict(study)}, resume=resume)
         except OSError as error:
-            reason = (error.strerror or type(error).__name__).lower()
-            raise InputError("store", f"{str(self.folder)!r} cannot be used ({reason})", "give a folder that you may write to") from None
+            raise InputError(
+                "store", f"{str(self.folder)!r} cannot be used ({reason(error)})", "give a folder that you may write to"
+            ) from None
 
     def _open(self, manifest: dict[str, Any], *, resume: bool) -> None:
         path = self.folder / MANIFEST
         if self.folder.is_dir() and not path.is_file() and any(not name.name.startswith(".") for name in self.folder.iterdir()):
             raise InputError("store", f"{str(self.folder)!r} holds something else than a study", "give an empty or a new folder")
         self.folder.mkdir(parents=True, exist_ok=True)
+        reclaim(self.folder)
         if path.is_file():
             self._same(_read(path), manifest)
             if not resume:
@@ -86,14 +88,13 @@ class Store:
                 remedy = "use resume (--resume) to go on with it, or remove it"
                 raise InputError("store", f"{str(self.folder)!r} already holds {kept} cases of this study", remedy)
             return
-        temporary = self.folder / f".{MANIFEST}.{uuid.uuid4().hex}.tmp"
-        try:
-            temporary.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
-            os.link(temporary, path)  # fails if another writer was first, where a rename would not
-        except FileExistsError:
-            self._same(_read(path), manifest)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with scratch(self.folder, sweep=False) as place:
+            made = place / MANIFEST
+            made.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
+            try:
+                os.link(made, path)  # fails if another writer was first, where a rename would not
+            except FileExistsError:
+                self._same(_read(path), manifest)
 
     def _same(self, found: dict[str, Any] | None, ours: dict[str, Any]) -> None:
         name, another = str(self.folder), "give another folder, or remove this one"
@@ -131,16 +132,7 @@ class Store:
             named = {metric.name: value for metric, value in zip(self.metrics, outcome.values, strict=True)}
             data |= {"values": named, "warnings": list(outcome.warnings)}
         path = self.folder / (f"{key}.failed.json" if outcome.failed else f"{key}.json")
-        temporary = self.folder / f".{key}.{uuid.uuid4().hex}.tmp"
-        try:
-            temporary.write_text(json.dumps(data), encoding="utf-8")
-            os.replace(temporary, path)
-        except OSError as error:
-            reason = (error.strerror or type(error).__name__).lower()
-            raise InputError("store", f"cannot write into {str(self.folder)!r}: {reason}", "make room; what is done is kept") from None
-        finally:
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
+        write_text(path, json.dumps(data), "store", durable=False)  # cut short by a power cut, it counts as not there
         if not outcome.failed:
             (self.folder / f"{key}.failed.json").unlink(missing_ok=True)  # an accident that has been made good
 

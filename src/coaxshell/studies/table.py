@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from coaxshell.numerics.files import write_text
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
 from coaxshell.studies.labelled import FAILURE, WARNINGS
@@ -19,7 +20,8 @@ def write_csv(dataset: xr.Dataset, path: Path) -> None:
     metrics = [str(name) for name in dataset.data_vars if name not in (FAILURE, WARNINGS)]
     frame = frame[[*fields, *metrics, FAILURE]]
     units = {name: str(dataset[name].attrs.get("units", "")) for name in [*fields, *metrics]}
-    frame.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit not in ("", "1")}).to_csv(path, index=False)
+    headed = frame.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit not in ("", "1")})
+    write_text(path, headed.to_csv(index=False))
 
 
 def best_cases(dataset: xr.Dataset) -> str:

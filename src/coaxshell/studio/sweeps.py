@@ -12,6 +12,7 @@ from coaxshell.model import System
 from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.netcdf import write_netcdf
 from coaxshell.response import Response
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, design_of
@@ -68,7 +69,7 @@ def sweep(system: System, settings: Settings, design: Design, metrics: tuple[Met
             outcomes.append(_case(system, settings, changes, metrics))
     resolution = worker.resolution_of(settings)
     dataset = labelled(system, design, metrics, resolution, outcomes)
-    dataset.to_netcdf(path, engine="h5netcdf")
+    write_netcdf(dataset, path)
     return told(dataset, metrics)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from coaxshell.errors import InputError, PhysicsWarning
 from coaxshell.model.naming import shell_name
 from coaxshell.model.system import System
+from coaxshell.numerics.files import write_text
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
 from coaxshell.verification.bench import FloatArray
@@ -137,8 +138,6 @@ def template(system: System, path: Path, *, time_step: float = 0.01, duration: f
     InputError
         The file cannot be written.
     """
-    from coaxshell.plotting.saving import replacing
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)
         response = simulate(system, duration=duration, time_step=min(time_step, 2e-3), modes=modes)
@@ -154,8 +153,7 @@ def template(system: System, path: Path, *, time_step: float = 0.01, duration: f
                 columns[f"{quantity}_{shell}_{side} [{unit}]"] = np.asarray(getattr(response, quantity)(shell, [angle]))[::every, 0]
     lines = [f"# {line}" for line in _explanation(system)] + [", ".join(columns)]
     lines += [", ".join(f"{number:.9g}" for number in row) for row in zip(*columns.values(), strict=True)]
-    with replacing(path) as partial:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_text(path, "\n".join(lines) + "\n")
     return path
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from coaxshell.errors import InputError
-from coaxshell.plotting.saving import replacing
+from coaxshell.numerics.files import reason, write_text
 from coaxshell.verification.markdown import markdown
 from coaxshell.verification.page import page
 from coaxshell.verification.suite import Report
@@ -18,8 +18,9 @@ def prepare(folder: Path, option: str = "--output") -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        reason = (error.strerror or type(error).__name__).lower()
-        raise InputError(option, f"cannot make the folder {str(folder)!r}: {reason}", "give a folder that you may write to") from None
+        raise InputError(
+            option, f"cannot make the folder {str(folder)!r}: {reason(error)}", "give a folder that you may write to"
+        ) from None
     return folder
 
 
@@ -34,6 +35,5 @@ def write_report(report: Report, folder: str | Path) -> tuple[Path, ...]:
     target = prepare(Path(folder))
     paths = tuple(target / name for name in NAMES)
     for path, text in zip(paths, (markdown(report), page(report)), strict=True):
-        with replacing(path) as partial:
-            partial.write_text(text, encoding="utf-8")
+        write_text(path, text)
     return paths

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
 
+from coaxshell.numerics.files import replacing
 from coaxshell.paper.claims import Judged
 from coaxshell.paper.reproduction import texts
 from coaxshell.paper.reproduction.plan import VARIANTS
 from coaxshell.paper.reproduction.results import Results
-from coaxshell.plotting.saving import replacing
 from coaxshell.verification.markdown import table
 from coaxshell.verification.page import document, inlined
 from coaxshell.verification.suite import circumstances

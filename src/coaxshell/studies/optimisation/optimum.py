@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,6 +13,7 @@ import numpy as np
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.files import replacing_folder
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
 from coaxshell.studies.optimisation.confirmation import Confirmation
@@ -23,6 +22,9 @@ from coaxshell.studies.optimisation.targets import Targets
 from coaxshell.studies.optimisation.variables import Space
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import numerics
+
+OPTIMUM_PARTS = ("best.toml", "optimum.json", "history.csv", "front")
+"""What a saved optimum holds."""
 
 
 @dataclass(frozen=True)
@@ -155,30 +157,16 @@ class Optimum:
     def save(self, folder: str | Path) -> Path:
         """Write ``best.toml``, ``optimum.json``, ``history.csv`` (and the front's systems as ``front/NN.toml``) to a folder.
 
-        The files appear together: written to a folder beside it, which then takes its place.
+        The files appear together; an earlier result is replaced.
 
         Raises
         ------
         InputError
             The folder holds something else than an earlier result, or cannot be written.
         """
-        target = Path(folder)
-        if target.exists() and not (target / "optimum.json").is_file() and (not target.is_dir() or any(target.iterdir())):
-            raise InputError("output", f"{str(target)!r} holds something else than a result", "give a new or an empty folder")
-        partial = target.with_name(f".{target.name}.{uuid.uuid4().hex}.part")
-        try:
-            partial.mkdir(parents=True)
-            self._write(partial)
-            if target.exists():
-                shutil.rmtree(target)
-            partial.rename(target)
-        except OSError as error:
-            raise InputError(
-                "output", f"cannot write {str(target)!r}: {error.strerror or error}", "give a folder that you may write to"
-            ) from None
-        finally:
-            shutil.rmtree(partial, ignore_errors=True)
-        return target
+        with replacing_folder(folder, OPTIMUM_PARTS, "output", force=True) as made:
+            self._write(made)
+        return Path(folder)
 
     def _write(self, folder: Path) -> None:
         self.system.to_toml(folder / "best.toml")
