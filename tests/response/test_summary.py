@@ -22,7 +22,7 @@ FINE = np.arange(-180.0, 180.0, 0.025) + 0.025
 @pytest.mark.parametrize("window", [None, (0.5, 1.2)])
 def test_peaks_and_rms(make: Callable[..., ModalSolution], halves: int, window: tuple[float, float] | None) -> None:
     response = Response(make(halves=halves))
-    summary = response.summary(window)
+    summary, means = response.summary(window, segment="point"), response.summary(window, segment="90 mm")
     for i, shell in enumerate(summary.shells):
         field = response.stress(i, FINE).sel(time=slice(*(-1, 9) if window is None else (window[0] - 1e-9, window[1] + 1e-9)))
         assert shell.stress.value == pytest.approx(float(abs(field).max()), rel=1e-9)
@@ -42,6 +42,12 @@ def test_peaks_and_rms(make: Callable[..., ModalSolution], halves: int, window: 
         assert shell.sensor_voltage.value == pytest.approx(float(voltage.max()), rel=1e-9)
         volts = abs(response.actuator_voltage(i, FINE).sel(time=field.time))
         assert shell.actuator_voltage.value == pytest.approx(float(volts.max()), rel=1e-9)
+        for name in ("sensor_voltage", "actuator_voltage"):
+            over = getattr(response, name)(i, FINE, segment=0.09).sel(time=field.time)
+            assert getattr(means.shells[i], name).value == pytest.approx(float(abs(over).max()), rel=1e-9)
+        assert (shell.segment, means.shells[i].segment) == (0.0, 0.09)
+        deformed = abs(response.displacement(i, FINE, relative=True).sel(time=field.time))
+        assert shell.relative_displacement.value == pytest.approx(float(deformed.max()), rel=1e-9)
 
 
 def test_blocks_do_not_change_the_answer(response: Response, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,6 +15,8 @@ from coaxshell.acoustics.operators import FloatArray
 _FIRST = 16
 """Instants summed before the others are judged by what they can reach."""
 _ROUNDING = 1e-9
+FINE = 40
+"""Steps into which a step of the circle is cut around the largest value found on it."""
 
 
 class Crest(NamedTuple):
@@ -102,3 +104,23 @@ def crest(modal: FloatArray, *, above: float = -1.0, finer: int = 1) -> Crest | 
     place, which = np.unravel_index(int(field.argmax()), field.shape)
     value = float(field[place, which])
     return Crest(value, int(place), int(instants[which])) if value > above else None
+
+
+def around(modal: FloatArray, place: int) -> tuple[FloatArray, FloatArray]:
+    """Return angles in degrees up to one step of :func:`circle_angles` around a place on it, FINE to a step, and the sum there.
+
+    Parameters
+    ----------
+    modal : ndarray, shape (halves, M + 1, T)
+    place : int
+
+    Returns
+    -------
+    tuple of ndarray, shapes (A,) and (T, A)
+    """
+    halves, orders, _ = modal.shape
+    grid = circle_angles(orders, halves)
+    angles = grid[place] + (grid[1] - grid[0]) / FINE * np.arange(-FINE, FINE + 1)
+    phase = np.radians(angles)[:, None] * np.arange(orders)
+    basis = [np.cos(phase), np.sin(phase)][:halves]
+    return angles, np.asarray(sum(part.T @ wave.T for part, wave in zip(modal, basis, strict=True)), dtype=np.float64)

@@ -72,18 +72,23 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
 
 
 def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
-    """Return (shell, quantity, first value, second value, reduction) for each shell and quantity that either run has."""
+    """Return (shell, quantity, first value, second value, reduction) for each shell and quantity that either run has.
+
+    Where a value still grows at the end of its run the reduction would be one of the run's length: it is not given.
+    """
     from coaxshell.model.prefixes import engineering
-    from coaxshell.response.summary_text import ROWS
+    from coaxshell.response.summary_text import GROWING, ROWS
 
     ours, theirs = ({shell.name: shell for shell in summary.shells} for summary in (first, second))
     rows = []
     for name in dict.fromkeys([*ours, *theirs]):
         for key, label, unit in ROWS:
-            pair = [_number(getattr(shells.get(name), key, None)) for shells in (ours, theirs)]
+            found = [getattr(shells.get(name), key, None) for shells in (ours, theirs)]
+            pair = [_number(value) for value in found]
             if any(value is not None for value in pair):
                 texts = [_NONE if value is None else engineering(value, unit) for value in pair]
-                rows.append((name, label, *texts, reduction(*pair)))
+                grows = any(getattr(value, "growing", False) for value in found)
+                rows.append((name, label, *texts, GROWING if grows else reduction(*pair)))
     for key, label, unit in (("absorber_displacement", "displacement of masses", "m"), ("absorber_force", "force on a shell", "N/m")):
         pair = [getattr(summary, key) for summary in (first, second)]
         if any(value is not None for value in pair):
@@ -95,7 +100,7 @@ def reduction(value: float | None, reference: float | None) -> str:
     """Return by how many per cent a value is less than the reference, negative if it is more; a dash if there is none."""
     if value is None or not reference:
         return _NONE
-    return f"{100.0 * (1.0 - value / reference):.1f} %"
+    return f"{round(100.0 * (1.0 - value / reference), 1) + 0.0:.1f} %"  # adding 0 makes -0.0 plain
 
 
 def _number(value: Peak | float | None) -> float | None:

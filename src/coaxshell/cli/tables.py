@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 import warnings
 from collections.abc import Iterable
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
 import typer
@@ -23,13 +23,15 @@ if TYPE_CHECKING:
 def print_summary(response: Response) -> None:
     """Print the summary of a run on stdout and its warnings on stderr."""
     whole = response.summary()
-    summary = dataclasses.replace(whole, warnings=())
+    summary = replace(whole, warnings=())
     if sys.stdout.isatty():
         from rich.console import Console
 
+        from coaxshell.response.summary_text import notes
+
         console = Console()
         console.print(summary_table(summary))
-        console.print(str(summary).splitlines()[-1], markup=False, highlight=False)
+        console.print("\n".join(notes(summary.to_dict())), markup=False, highlight=False)
     else:
         typer.echo(str(summary).rstrip())
     tell_warnings(whole.warnings)
@@ -65,9 +67,10 @@ def summary_table(summary: Summary) -> Table:
 def _cells(value: Peak | float | None, unit: str) -> tuple[str, ...]:
     """Return value, time and angle as text; nothing at all for what a shell does not have."""
     from coaxshell.model.prefixes import engineering
+    from coaxshell.response.summary_text import when
 
     if value is None:
         return ()
     if isinstance(value, int | float):
         return engineering(value, unit), "", ""
-    return engineering(value.value, unit), f"{value.time:.4g}", f"{value.angle:.4g}"
+    return engineering(value.value, unit), when(asdict(value)), f"{value.angle:.4g}"

@@ -75,7 +75,7 @@ class Observed:
 
 def observe(response: Response, *, peaks_only: bool = False) -> Observed:
     """Return what is kept of a response; with *peaks_only* no histories."""
-    summary = response.summary()
+    summary = response.summary(segment="point")  # the paper's voltages are those at points
     system = response.system
     names = {name: system.shell_index(name) for name in SHELLS if isinstance(system.shells[system.shell_index(name)], Shell)}
     elastic = [i for i, shell in enumerate(system.shells) if isinstance(shell, Shell)]

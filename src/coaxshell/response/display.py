@@ -11,7 +11,10 @@ from coaxshell.solver.solution import ModalSolution
 def response_card(solution: ModalSolution) -> str:
     """Return the drawing of the system that was solved beside its peaks, error estimates and warnings, as HTML."""
     found = summarise(solution)
-    rows = [("", *("stress: head", "tail", "anywhere", "RMS", "displacement: head", "tail")), *(_row(shell) for shell in found.shells)]
+    rows = [
+        ("", *("stress: head", "tail", "anywhere", "RMS", "relative displacement: head", "tail")),
+        *(_row(shell) for shell in found.shells),
+    ]
     return card(solution.problem.system, found.title or "unnamed system", rows, _notes(found))
 
 
@@ -20,7 +23,7 @@ def _row(shell: ShellSummary) -> tuple[str, ...]:
     return (
         shell.name,
         *(engineering(value, "Pa") for value in stresses),
-        *(engineering(peak.value, "m") for peak in (shell.displacement_head, shell.displacement_tail)),
+        *(engineering(peak.value, "m") for peak in (shell.relative_displacement_head, shell.relative_displacement_tail)),
     )
 
 

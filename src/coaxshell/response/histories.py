@@ -10,6 +10,7 @@ from coaxshell.response import arguments
 from coaxshell.response.labels import INWARD, history, modal_array
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, elastic_section, stress_gain_of, voltage_gain
 from coaxshell.response.synthesis import angle_basis, at_angles
+from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.stress import control_stress, place
@@ -21,7 +22,9 @@ COUNTERCLOCKWISE = "positive towards increasing angle"
 COSINE = ("cos", "sin")
 
 
-def displacement(solution: ModalSolution, shell: int, angle: npt.ArrayLike, component: str = "normal") -> xr.DataArray:
+def displacement(
+    solution: ModalSolution, shell: int, angle: npt.ArrayLike, component: str = "normal", *, relative: bool = False
+) -> xr.DataArray:
     """Return the displacement of the mid-surface at angles, m: w = sum W cos(m theta) + ..., v = sum V sin(m theta) - ...
 
     Parameters
@@ -32,6 +35,9 @@ def displacement(solution: ModalSolution, shell: int, angle: npt.ArrayLike, comp
         Degrees from the source direction.
     component : str
         "normal" (positive inward) or "tangential" (positive towards increasing angle).
+    relative : bool
+        Relative to the translation of the shell's section (its centre of mass), so that only what deforms the shell is left; see
+        :mod:`coaxshell.response.translation`.
 
     Returns
     -------
@@ -46,11 +52,16 @@ def displacement(solution: ModalSolution, shell: int, angle: npt.ArrayLike, comp
     theta = arguments.angles(angle)
     modal = solution.normal[shell] if component == "normal" else solution.tangential[shell]
     basis = angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0], component)
-    values = solution.problem.scales.length * at_angles(modal, basis)
+    if relative:
+        gain = relative_gain(solution) if component == "normal" else relative_tangential_gain(solution)
+        values = at_angles(solution.normal[shell], basis * gain.w) + at_angles(solution.tangential[shell], basis * gain.v)
+    else:
+        values = solution.problem.scales.length * at_angles(modal, basis)
     sign = INWARD if component == "normal" else COUNTERCLOCKWISE
-    return history(
-        solution, values, theta, shell, name=f"{component}_displacement", long_name=f"{component} displacement", units="m", sign=sign
-    )
+    name, long_name = f"{component}_displacement", f"{component} displacement"
+    if relative:
+        name, long_name = f"relative_{name}", f"{long_name} relative to the section's translation"
+    return history(solution, values, theta, shell, name=name, long_name=long_name, units="m", sign=sign)
 
 
 def combined(solution: ModalSolution, shell: int, gain: Gain, theta: FloatArray) -> FloatArray:

@@ -8,16 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.circle import circle_angles, crest
+from coaxshell.acoustics.circle import around, crest
 from coaxshell.response.synthesis import angle_basis, at_angles, mean_square, time_blocks
 
 FloatArray = npt.NDArray[np.float64]
 
 Amplitudes = Callable[[slice], FloatArray]
 """Gives the modal amplitudes (halves, M + 1, T) of a quantity at a slice of time indices."""
-
-FINE = 40
-"""Steps into which the search grid is cut around the largest value found on it."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +29,17 @@ class Peak:
         When, in transits.
     angle : float
         Where, degrees from the source direction, above -180 up to 180.
+    growing : bool
+        Whether it still grows at the end of the window: the run is too short to tell how large it becomes.
+    lower_half : float or None
+        What the orders up to M/2 give alone, for quantities that converge slowly with M; None where it is not asked for.
     """
 
     value: float
     time: float
     angle: float
+    growing: bool = False
+    lower_half: float | None = None
 
 
 def folded(angle: float) -> float:
@@ -49,14 +52,19 @@ def peak_at(amplitudes: Amplitudes, time: FloatArray, window: slice, angles: lis
     modal = amplitudes(window)
     values = np.abs(at_angles(modal, angle_basis(angles, modal.shape[1], modal.shape[0])))
     when = values.argmax(axis=0)
-    return [Peak(float(values[k, i]), float(time[window][k]), folded(angles[i])) for i, k in enumerate(when)]
+    return [Peak(float(values[k, i]), float(time[window][k]), folded(angles[i]), _at_the_end(k, values[:, i])) for i, k in enumerate(when)]
+
+
+def _at_the_end(instant: int, values: FloatArray) -> bool:
+    """Return whether the largest of some magnitudes is the last one, and more than the one before."""
+    return bool(instant == len(values) - 1 > 0 and values[-1] > values[-2])
 
 
 def peak_anywhere(amplitudes: Amplitudes, time: FloatArray, window: slice, width: int) -> Peak:
     """Return the largest magnitude over a window of time and the whole circle.
 
     The circle is searched in steps of 1 degree or finer at every instant (blocks of time keep the memory small), then in steps
-    FINE times finer around the largest value found, at its instant and the two beside it.
+    40 times finer around the largest value found, at its instant and the two beside it.
 
     Parameters
     ----------
@@ -78,12 +86,12 @@ def peak_anywhere(amplitudes: Amplitudes, time: FloatArray, window: slice, width
 def _refined(amplitudes: Amplitudes, time: FloatArray, window: slice, instant: int, place: int) -> Peak:
     near = slice(max(window.start, instant - 1), min(window.stop, instant + 2))
     modal = amplitudes(near)
-    grid = circle_angles(modal.shape[1], modal.shape[0])
-    angles = grid[place] + (grid[1] - grid[0]) / FINE * np.arange(-FINE, FINE + 1)
-    values = np.abs(at_angles(modal, angle_basis(angles, modal.shape[1], modal.shape[0])))
+    angles, sums = around(modal, place)
+    values = np.abs(sums)
     k, i = np.unravel_index(int(values.argmax()), values.shape)
     angle = folded(float(angles[i]))
-    return Peak(float(values[k, i]), float(time[near.start + k]), abs(angle) if modal.shape[0] == 1 else angle)
+    last = near.stop == window.stop and _at_the_end(int(k), values[:, i])
+    return Peak(float(values[k, i]), float(time[near.start + k]), abs(angle) if modal.shape[0] == 1 else angle, last)
 
 
 def root_mean_square(amplitudes: Amplitudes, time: FloatArray, window: slice, width: int) -> float:

@@ -16,6 +16,8 @@ from coaxshell.response import absorbers, fields, histories, storage, voltages
 from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
+from coaxshell.response.translation import translation
+from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
@@ -90,12 +92,22 @@ class Response:
         """Seconds by stage."""
         return self.solution.timings
 
-    def displacement(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal") -> xr.DataArray:
+    def displacement(
+        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, relative: bool = False
+    ) -> xr.DataArray:
         """Return the displacement of the mid-surface, m, dims (time, angle): "normal" (positive inward) or "tangential".
 
+        ``relative=True`` takes the translation of the shell's section off it, so that only what deforms the shell is left.
         See :func:`coaxshell.response.histories.displacement`.
         """
-        return histories.displacement(self.solution, self._index(shell), angle, component)
+        return histories.displacement(self.solution, self._index(shell), angle, component, relative=relative)
+
+    def translation(self, shell: int | str) -> xr.DataArray:
+        """Return the translation of a shell's section (its centre of mass), m, dims (time, direction): x towards the source direction.
+
+        See :func:`coaxshell.response.translation.translation`.
+        """
+        return translation(self.solution, self._index(shell))
 
     def stress(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, depth: float | str | None = None) -> xr.DataArray:
         """Return the hoop stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
@@ -111,19 +123,20 @@ class Response:
         """
         return histories.modal(self.solution, self._index(shell), quantity)
 
-    def sensor_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL) -> xr.DataArray:
-        """Return the open-circuit voltage of the sensor, V, dims (time, angle) (Eq. 20).
+    def sensor_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point") -> xr.DataArray:
+        """Return the open-circuit voltage of the sensor, V, dims (time, angle) (Eq. 20): at points, or as means over a *segment* around.
 
+        A segment is a length ("50 mm", m) or None for the one of the summary. Behind a sharp front only means converge with the orders.
         See :func:`coaxshell.response.voltages.sensor_voltage`.
         """
-        return voltages.sensor_voltage(self.solution, self._index(shell), angle)
+        return voltages.sensor_voltage(self.solution, self._index(shell), angle, segment)
 
-    def actuator_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL) -> xr.DataArray:
-        """Return the control voltage on the actuator, V, dims (time, angle) (Eq. 17).
+    def actuator_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point") -> xr.DataArray:
+        """Return the control voltage on the actuator, V, dims (time, angle) (Eq. 17): at points, or as means over a *segment* around.
 
         See :func:`coaxshell.response.voltages.actuator_voltage`.
         """
-        return voltages.actuator_voltage(self.solution, self._index(shell), angle)
+        return voltages.actuator_voltage(self.solution, self._index(shell), angle, segment)
 
     def pressure(
         self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PressureOptions]
@@ -180,12 +193,13 @@ class Response:
         """
         return energy(self.solution, every, progress, spectra=self._spectra)
 
-    def summary(self, window: Sequence[float] | None = None) -> Summary:
+    def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> Summary:
         """Return peaks, RMS, error estimates and warnings within a window (start, end) in transits; print it for a table.
 
+        Voltages are means over a *segment* of the wall: a length, None for what the pulse's band allows, or "point".
         See :func:`coaxshell.response.summary.summarise`.
         """
-        return summarise(self.solution, window)
+        return summarise(self.solution, window, segment)
 
     def save(self, path: str | Path, *, compression: bool = False) -> Path:
         """Write everything to one self-describing NetCDF file, whole or not at all, and return its path.

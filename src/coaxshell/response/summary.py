@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from coaxshell.acoustics.circle import circle_angles
 from coaxshell.model.naming import shell_name
 from coaxshell.response import arguments
-from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
+from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.summary_text import summary_text
-from coaxshell.response.voltages import actuator_limit, demanded_voltage
+from coaxshell.response.translation import relative_gain, still_grows
+from coaxshell.response.voltages import actuator_limit, largest_demanded_voltage, largest_sensor_voltage
+from coaxshell.solver.electrodes import Segment, segment_length
 from coaxshell.solver.solution import ModalSolution
 
 
@@ -28,12 +30,17 @@ class ShellSummary:
         Design stress of the core (Eq. 22) at the head, at the tail and anywhere, Pa.
     stress_rms : float
         Its root mean square over the surface and the window, Pa.
+    relative_displacement_head, relative_displacement_tail, relative_displacement : Peak
+        Normal displacement relative to the translation of the shell's section (:mod:`coaxshell.response.translation`) at the head, at
+        the tail and anywhere, m.
     displacement_head, displacement_tail : Peak
-        Normal displacement, m.
+        Normal displacement itself, m; *growing* while the section's translation still grows at the end of the window.
     sensor_voltage : Peak or None
-        Anywhere on the shell, V; None without a sensor.
+        Anywhere on the shell, as a mean over the segment, V, with what the lower half of the orders gives; None without a sensor.
     actuator_voltage : Peak or None
-        What the control law asks for (before any saturation), anywhere, V; None without control.
+        What the control law asks for (before any saturation), likewise; None without control.
+    segment : float or None
+        Length of the wall over which voltages are means (:mod:`coaxshell.solver.electrodes`), m; 0 for points, None without a sensor.
     actuator_limit : float or None
         Volts that the actuator stands.
     stress_truncation : float
@@ -45,10 +52,14 @@ class ShellSummary:
     stress_tail: Peak
     stress: Peak
     stress_rms: float
+    relative_displacement_head: Peak
+    relative_displacement_tail: Peak
+    relative_displacement: Peak
     displacement_head: Peak
     displacement_tail: Peak
     sensor_voltage: Peak | None
     actuator_voltage: Peak | None
+    segment: float | None
     actuator_limit: float | None
     stress_truncation: float
 
@@ -96,20 +107,23 @@ class Summary:
         return summary_text(self.to_dict())
 
 
-def summarise(solution: ModalSolution, window: Sequence[float] | None = None) -> Summary:
+def summarise(solution: ModalSolution, window: Sequence[float] | None = None, segment: Segment = None) -> Summary:
     """Return the summary of a solution within a window (start, end) in transits, by default the whole run.
 
-    The head is the point of the shell nearest to the first source, the tail the one opposite.
+    The head is the point of the shell nearest to the first source, the tail the one opposite. Voltages are means over a segment of
+    the wall: a length (m or text), None for what the pulse's band allows, or "point".
 
     Raises
     ------
     InputError
-        If the window holds no instant of the run.
+        If the window holds no instant of the run, or the segment is not allowed.
     """
     span = arguments.time_window(solution.time, window)
     time = solution.time[span]
     scales = solution.problem.scales
-    shells = tuple(_shell(solution, i, span) for i, shell in enumerate(solution.problem.shells) if shell.section is not None)
+    elastic = [i for i, shell in enumerate(solution.problem.shells) if shell.section is not None]
+    lengths = [segment_length(solution.problem, i, segment) for i in elastic]  # all checked before the first is computed
+    shells = tuple(_shell(solution, i, span, length) for i, length in zip(elastic, lengths, strict=True))
     q, f = solution.absorber_displacement, solution.absorber_force
     return Summary(
         title=solution.problem.system.name,
@@ -124,39 +138,42 @@ def summarise(solution: ModalSolution, window: Sequence[float] | None = None) ->
     )
 
 
-def _shell(solution: ModalSolution, shell: int, span: slice) -> ShellSummary:
+def _shell(solution: ModalSolution, shell: int, span: slice, length: float) -> ShellSummary:
     head = solution.problem.system.sources[0].angle
     ends = [head, head + 180.0]
-    width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
     time = solution.time
+    width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
     section = solution.problem.shells[shell].section
     assert section is not None  # the caller leaves rigid shells out
 
     def of(gain: Gain) -> Amplitudes:
         return lambda block: amplitudes(solution, shell, gain, block)
 
+    def everywhere(quantity: Amplitudes) -> tuple[Peak, Peak, Peak]:
+        at_head, at_tail = peak_at(quantity, time, span, ends)
+        anywhere = peak_anywhere(quantity, time, span, width)
+        return at_head, at_tail, max(anywhere, at_head, at_tail, key=lambda peak: peak.value)  # never below a point shown beside it
+
     stress = of(stress_gain_of(solution, shell))
-    stress_head, stress_tail = peak_at(stress, time, span, ends)
-    displacement_head, displacement_tail = peak_at(of(displacement_gain(solution)), time, span, ends)
-    sensor = of(voltage_gain(solution, shell)) if section.layer("sensor") else None
-    anywhere = peak_anywhere(stress, time, span, width)
+    stress_head, stress_tail, stress_anywhere = everywhere(stress)
+    relative_head, relative_tail, relative = everywhere(of(relative_gain(solution)))
+    drifting = still_grows(solution, shell, span)
+    displaced = peak_at(of(displacement_gain(solution)), time, span, ends)
+    displacement_head, displacement_tail = (replace(peak, growing=peak.growing or drifting) for peak in displaced)
     return ShellSummary(
         name=shell_name(shell, len(solution.problem.shells)),
         stress_head=stress_head,
         stress_tail=stress_tail,
-        stress=max(anywhere, stress_head, stress_tail, key=lambda peak: peak.value),  # never below a point shown beside it
+        stress=stress_anywhere,
         stress_rms=root_mean_square(stress, time, span, width),
+        relative_displacement_head=relative_head,
+        relative_displacement_tail=relative_tail,
+        relative_displacement=relative,
         displacement_head=displacement_head,
         displacement_tail=displacement_tail,
-        sensor_voltage=peak_anywhere(sensor, time, span, width) if sensor else None,
-        actuator_voltage=_actuator(solution, shell, span, width),
+        sensor_voltage=largest_sensor_voltage(solution, shell, span, length) if section.layer("sensor") else None,
+        actuator_voltage=largest_demanded_voltage(solution, shell, span, length) if solution.problem.shells[shell].gains else None,
+        segment=length if section.layer("sensor") else None,
         actuator_limit=actuator_limit(solution, shell).volts if section.layer("actuator") else None,
         stress_truncation=float(solution.estimates.modal_stress[shell]),
     )
-
-
-def _actuator(solution: ModalSolution, shell: int, span: slice, width: int) -> Peak | None:
-    if solution.problem.shells[shell].gains is None:
-        return None
-    voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant
-    return peak_anywhere(lambda block: voltage[:, :, block], solution.time, span, width)

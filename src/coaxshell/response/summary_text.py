@@ -13,12 +13,18 @@ ROWS = (
     ("stress_tail", "stress at tail", "Pa"),
     ("stress", "stress anywhere", "Pa"),
     ("stress_rms", "stress RMS", "Pa"),
-    ("displacement_head", "displacement at head", "m"),
-    ("displacement_tail", "displacement at tail", "m"),
+    ("relative_displacement_head", "relative displacement at head", "m"),
+    ("relative_displacement_tail", "relative displacement at tail", "m"),
+    ("relative_displacement", "relative displacement anywhere", "m"),
+    ("displacement_head", "absolute displacement at head", "m"),
+    ("displacement_tail", "absolute displacement at tail", "m"),
     ("sensor_voltage", "sensor voltage", "V"),
     ("actuator_voltage", "actuator voltage asked", "V"),
 )
 """Fields of a shell's summary, with their labels and units, in the order of the tables."""
+
+GROWING = "still growing"
+"""Said of a largest value beyond which the quantity goes on when the window ends."""
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
@@ -47,14 +53,43 @@ def summary_text(summary: Mapping[str, Any]) -> str:
     for shell in summary["shells"]:
         rows += _shell_rows(shell)
     lines += aligned(rows, left=2)
-    for key, label, unit in (
+    lines += ["", *notes(summary), *(f"warning: {text}" for text in summary["warnings"])]
+    return "\n".join(lines)
+
+
+def notes(summary: Mapping[str, Any]) -> list[str]:
+    """Return the lines below the table: absorbers, what the voltages are, estimated errors."""
+    return [*_absorbers(summary), *_voltages(summary), *_errors(summary)]
+
+
+def when(peak: Mapping[str, Any]) -> str:
+    """Return the time of a peak, and whether it still grows there."""
+    return f"{peak['time']:.4g}" + (f", {GROWING}" if peak["growing"] else "")
+
+
+def _absorbers(summary: Mapping[str, Any]) -> list[str]:
+    found = (
         ("absorber_displacement", "largest absorber displacement", "m"),
         ("absorber_force", "largest absorber force", "N/m"),
-    ):
-        if summary[key] is not None:
-            lines.append(f"{label}: {engineering(summary[key], unit)}")
-    lines += ["", *_errors(summary), *(f"warning: {text}" for text in summary["warnings"])]
-    return "\n".join(lines)
+    )
+    return [f"{label}: {engineering(summary[key], unit)}" for key, label, unit in found if summary[key] is not None]
+
+
+def _voltages(summary: Mapping[str, Any]) -> list[str]:
+    """Return the line that says over what the voltages are means, and how far half the orders are from them."""
+    sensed = [shell for shell in summary["shells"] if shell["segment"] is not None]
+    if not sensed:
+        return []
+    lengths = [engineering(shell["segment"], "m") for shell in sensed]
+    each = [f"{shell['name']} {length}" for shell, length in zip(sensed, lengths, strict=True)]
+    over = lengths[0] if len(set(lengths)) == 1 else ", ".join(each)
+    what = f"means over {over} of the wall" if sensed[0]["segment"] else "at points, where they grow with the orders"
+    changes = (f"{shell['name']} {_change(shell['actuator_voltage'] or shell['sensor_voltage']):.1e}" for shell in sensed)
+    return [f"voltages: {what}; half the orders change them by {', '.join(changes)}"]
+
+
+def _change(peak: Mapping[str, Any]) -> float:
+    return abs(peak["lower_half"] / peak["value"] - 1.0) if peak["value"] else 0.0
 
 
 def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
@@ -62,7 +97,7 @@ def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
     for key, label, unit in ROWS:
         value = shell[key]
         if isinstance(value, Mapping):
-            rows.append((shell["name"], label, engineering(value["value"], unit), f"{value['time']:.4g}", f"{value['angle']:.4g}"))
+            rows.append((shell["name"], label, engineering(value["value"], unit), when(value), f"{value['angle']:.4g}"))
         elif value is not None:
             rows.append((shell["name"], label, engineering(value, unit), "", ""))
     return rows

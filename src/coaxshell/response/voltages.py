@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.acoustics.circle import circle_angles
 from coaxshell.errors import InputError
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import history
-from coaxshell.response.modal import amplitudes, elastic_section, voltage_gain
+from coaxshell.response.modal import Gain, amplitudes, elastic_section, orders, voltage_gain
+from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
+from coaxshell.solver.electrodes import Segment, lower_half, segment_length, segment_mean
 from coaxshell.solver.scaling import ControlGains
 from coaxshell.solver.solution import ModalSolution
 
 FloatArray = npt.NDArray[np.float64]
+
+_PER_WAVE = 8
+_FEWEST = 64
+"""Points to the shortest wave, and to a segment at least, where the mean of a cut voltage is taken."""
 
 
 class ActuatorLimit(NamedTuple):
@@ -98,14 +106,29 @@ def applied(voltage: FloatArray, limit: ActuatorLimit) -> FloatArray:
     return np.clip(voltage, -limit.volts, limit.volts) if limit.saturates else voltage
 
 
-def actuator_values(solution: ModalSolution, shell: int, theta: FloatArray) -> FloatArray:
-    """Return the voltage on the actuator at angles, V, shape (T, A)."""
-    modal = demanded_voltage(solution, shell)
-    values = at_angles(modal, angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0]))
-    return applied(values, actuator_limit(solution, shell))
+def mean_shares(solution: ModalSolution, shell: int, length: float) -> FloatArray:
+    """Return by what each order counts in the mean over a segment of a length (m), shape (M + 1,); ones for a point."""
+    return segment_mean(orders(solution), length / solution.problem.system.shells[shell].radius)
 
 
-def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike) -> xr.DataArray:
+def actuator_values(solution: ModalSolution, shell: int, theta: FloatArray, length: float = 0.0) -> FloatArray:
+    """Return the voltage on the actuator at angles, V, shape (T, A), or its mean over a segment of a length (m) around each of them.
+
+    A saturating controller cuts at every point, so that its mean is that of what has been cut, by the midpoint rule.
+    """
+    modal, limit = demanded_voltage(solution, shell), actuator_limit(solution, shell)
+    centres = np.atleast_1d(theta)
+    if length and limit.saturates:
+        angle = np.degrees(length / solution.problem.system.shells[shell].radius)
+        count = max(_FEWEST, -(-int(_PER_WAVE * modal.shape[1] * angle) // 360))
+        around = (centres[:, None] + angle * ((np.arange(count) + 0.5) / count - 0.5)).ravel()
+        values = applied(at_angles(modal, angle_basis(around, modal.shape[1], modal.shape[0])), limit)
+        return np.asarray(values.reshape(len(values), len(centres), count).mean(axis=-1), dtype=np.float64)
+    basis = angle_basis(centres, modal.shape[1], modal.shape[0]) * mean_shares(solution, shell, length)
+    return applied(at_angles(modal, basis), limit)
+
+
+def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:
     """Return the open-circuit voltage of the sensor at angles, V: phi_s = E_s (m V - m^2 W)/(zeta33 R^2 + m^2 zeta22) (Eq. 20).
 
     Parameters
@@ -114,6 +137,8 @@ def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike) ->
     shell : int
     angle : array_like, shape () or (A,)
         Degrees from the source direction.
+    segment : float, str or None
+        Length of the segment of the wall around each angle over which the mean is taken (:mod:`coaxshell.solver.electrodes`).
 
     Returns
     -------
@@ -122,16 +147,19 @@ def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike) ->
     Raises
     ------
     InputError
-        If the shell has no sensor or the angle is not allowed.
+        If the shell has no sensor, or the angle or the segment is not allowed.
     """
     theta = arguments.angles(angle)
+    length = segment_length(solution.problem, shell, segment)
     modal = amplitudes(solution, shell, voltage_gain(solution, shell))
-    values = at_angles(modal, angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0]))
+    basis = angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0]) * mean_shares(solution, shell, length)
+    values = at_angles(modal, basis)
     long_name = "open-circuit voltage of the sensor"
-    return history(solution, values, theta, shell, name="sensor_voltage", long_name=long_name, units="V", sign="of phi_s in Eq. 20")
+    labelled = history(solution, values, theta, shell, name="sensor_voltage", long_name=long_name, units="V", sign="of phi_s in Eq. 20")
+    return _over(labelled, length)
 
 
-def actuator_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike) -> xr.DataArray:
+def actuator_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:
     """Return the control voltage on the actuator at angles, V: u = k_p phi_s + k_d dphi_s/dt, t in transits (Eq. 17).
 
     Cut at the field limit times the thickness if the controller saturates. Without velocities from the engine the derivative is a
@@ -143,6 +171,8 @@ def actuator_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike) 
     shell : int
     angle : array_like, shape () or (A,)
         Degrees from the source direction.
+    segment : float, str or None
+        Length of the segment of the wall around each angle over which the mean is taken (:mod:`coaxshell.solver.electrodes`).
 
     Returns
     -------
@@ -151,11 +181,43 @@ def actuator_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike) 
     Raises
     ------
     InputError
-        If the shell has no sensor, no actuator or no control, or the angle is not allowed.
+        If the shell has no sensor, no actuator or no control, or the angle or the segment is not allowed.
     """
     theta = arguments.angles(angle)
-    values = actuator_values(solution, shell, theta)
+    length = segment_length(solution.problem, shell, segment)
+    values = actuator_values(solution, shell, theta, length)
     long_name = "control voltage on the actuator"
     labelled = history(solution, values, theta, shell, name="actuator_voltage", long_name=long_name, units="V", sign="of u in Eq. 17")
     labelled.attrs["limit"] = actuator_limit(solution, shell).volts
+    return _over(labelled, length)
+
+
+def _over(labelled: xr.DataArray, length: float) -> xr.DataArray:
+    """Say over how long a segment the mean was taken."""
+    if length:
+        labelled.attrs["segment"] = length
+        labelled.attrs["long_name"] += ", mean over a segment"
     return labelled
+
+
+def largest_sensor_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
+    """Return the largest sensor voltage anywhere within a window, as a mean over a segment of a length (m; 0 a point)."""
+    gain, share = voltage_gain(solution, shell), mean_shares(solution, shell, length)
+    mean = Gain(gain.v * share, gain.w * share)
+    return _largest(solution, lambda block: amplitudes(solution, shell, mean, block), window)
+
+
+def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
+    """Return the largest voltage that the control law asks for, likewise."""
+    voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant
+    share = mean_shares(solution, shell, length)[:, None]
+    return _largest(solution, lambda block: voltage[:, :, block] * share, window)
+
+
+def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice) -> Peak:
+    """Return the largest magnitude of a quantity, and beside it what the lower half of the orders gives."""
+    halves, all_of_them = solution.normal.shape[1:3]
+    few = lower_half(all_of_them)
+    largest = peak_anywhere(quantity, solution.time, window, len(circle_angles(all_of_them, halves)))
+    fewer = peak_anywhere(lambda block: quantity(block)[:, :few], solution.time, window, len(circle_angles(few, halves)))
+    return replace(largest, lower_half=fewer.value)

@@ -5,32 +5,36 @@ Each is one sentence with both numbers and the remedy.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from coaxshell.acoustics.circle import crest
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.model.naming import shell_phrase
 from coaxshell.model.prefixes import engineering
+from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.linked import LinkedSpectra
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
 from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.solver.tension import AMBIENT, Tension
 
 THIN_SHELL_LIMIT = 0.1
 TRUNCATION_LIMIT = 1e-2
 WINDOW_LIMIT = 1e-4
 LINEAR_ACOUSTICS_LIMIT = 1e-2
+VOLTAGE_LIMIT = 0.05
 RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
 
 def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     """Return the warnings that need no solution."""
-    return _thin_shells(problem) + _resolved_membrane(problem, grid, max_order) + _linear_acoustics(problem)
+    return _thin_shells(problem) + _resolved_membrane(problem, grid, max_order) + _linear_acoustics(problem) + _similitude(problem)
 
 
 def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
@@ -79,18 +83,24 @@ def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSp
 
 
 def actuators(solution: ModalSolution) -> list[str]:
-    """Return the warnings about actuators asked for more than their field limit, with the factor."""
+    """Return the warnings about actuators asked for more than their field limit, with the factor.
+
+    The voltage is the mean over a segment (:mod:`coaxshell.solver.electrodes`), which converges with the orders.
+    """
     warnings = []
     for i, shell in enumerate(solution.problem.shells):
         if shell.gains is None or solution.normal_rate is None or solution.tangential_rate is None:
             continue
         limit = voltage_limit(solution.problem, i)
-        asked = voltage_above(solution, i, limit)
+        asked = largest_demand(solution, i, limit)
         control = solution.problem.system.control
         if control is None or asked is None:
             continue
         label = shell_phrase(i, len(solution.problem.shells))
-        voltage, stands, factor = engineering(asked, "V"), engineering(limit, "V"), f"{asked / limit:.2g} times"
+        fewer = abs(asked.lower_half / asked.value - 1.0) > VOLTAGE_LIMIT
+        half = f"; {engineering(asked.lower_half, 'V')} with half the orders: use more" if fewer else ""
+        voltage = f"{engineering(asked.value, 'V')} (mean over {engineering(asked.segment, 'm')} of the wall{half})"
+        stands, factor = engineering(limit, "V"), f"{asked.value / limit:.3g} times"
         if control.saturation:
             outcome = f"the voltage was held at {stands}, where the law asked for {voltage} ({factor} as much)"
             remedy = "lower the gains to stay within what the actuator can do"
@@ -99,20 +109,6 @@ def actuators(solution: ModalSolution) -> list[str]:
             remedy = "set control.saturation = true to see what it can really do, or lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
-
-
-def voltage_above(solution: ModalSolution, index: int, limit: float) -> float | None:
-    """Return the largest voltage that the control law of one shell asks for, anywhere and at any time (Eq. 17); None if within a limit."""
-    gains = solution.problem.shells[index].gains
-    assert gains is not None
-    assert solution.normal_rate is not None
-    assert solution.tangential_rate is not None
-    orders = all_orders(solution.normal.shape[2] - 1)[:, None]
-    sensor_v, sensor_w = solution.problem.sensor_gain(index, orders)
-    w = gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index]
-    v = gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index]
-    highest = crest(sensor_v * v + sensor_w * w, above=limit, finer=2)
-    return None if highest is None else highest.value
 
 
 def _stretch(force: float, linear: float, cubic: float) -> float:
@@ -161,4 +157,35 @@ def _linear_acoustics(problem: Problem) -> list[str]:
                 f"source: peak pressure/(density sound_speed^2) = {ratio:.2g} is above {LINEAR_ACOUSTICS_LIMIT:g}, where the pressure "
                 "wave is no longer linear; use a lower peak or a greater stand-off"
             )
+    return warnings
+
+
+def _similitude(problem: Problem) -> list[str]:
+    """Return a warning for each charge whose peak lies outside the range that its similitude was fitted to."""
+    warnings = []
+    for source in problem.system.sources:
+        if isinstance(source, UnderwaterExplosion) and not source.within_fit:
+            fit = source.constants
+            low, high, peak = (engineering(value, "Pa") for value in (fit.lowest, fit.highest, source.peak_pressure))
+            nearer = source.peak_pressure < fit.lowest
+            warnings.append(
+                f"source: the similitude of {fit.name} was fitted to peaks from {low} to {high}, but this charge gives {peak} at the head; "
+                f"{'lessen' if nearer else 'increase'} the stand-off, or give the pressure itself as a spherical-shock"
+            )
+    return warnings
+
+
+def tension(problem: Problem, found: Iterable[Tension]) -> list[str]:
+    """Return a warning for each wetted surface on which the water would be torn."""
+    count = len(problem.shells)
+    warnings = []
+    for low in found:
+        fluid = "the fluid outside" if low.region == count else "the fluid inside" if low.region == 0 else "the fluid in the gap"
+        when = f"t = {low.time:.3g} ({engineering(low.time * problem.scales.time, 's')}), {low.angle:.0f} degrees"
+        extent = f"over up to {low.width:.0f} degrees at once, for {engineering(low.lasting * problem.scales.time, 's')} in all"
+        warnings.append(
+            f"{shell_phrase(low.shell, count)}: the total pressure of {fluid} on it falls to {engineering(low.pressure, 'Pa')} at {when}, "
+            f"and below {engineering(-AMBIENT, 'Pa')} {extent}: water at the surface of the sea would cavitate there, and the pressure of "
+            "a depth, which would prevent it, is not part of the model; lower the source's pressure, or take what follows with care"
+        )
     return warnings

@@ -23,6 +23,7 @@ from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Progress, Stopwatch
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.tension import tensions
 from coaxshell.solver.workshop import Workshop
 
 
@@ -174,6 +175,8 @@ class Prepared:
             rates = [grid.invert(x * grid.nodes)[..., keep] for x in (normal, tangential)]
         stopwatch.lap("inverse transform")
         warnings += checks.before(problem, grid, order) + checks.after(problem, trust, order)
+        warnings += checks.tension(problem, tensions(problem, grid, normal))
+        stopwatch.lap("pressure on the walls")
         timings, self._stopwatch = stopwatch.seconds, Stopwatch()
         solution = ModalSolution(problem, self.settings, grid.time[keep], w, v, trust, (), timings, rates[0], rates[1])
         if linked is not None and system.absorber_list:

@@ -16,7 +16,9 @@ from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
-from coaxshell.response.voltages import actuator_limit, demanded_voltage
+from coaxshell.response.translation import relative_gain
+from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
+from coaxshell.solver.electrodes import segment_length
 
 
 class DesignReading:
@@ -121,6 +123,19 @@ class Reading(DesignReading):
         """Return the largest normal displacement at the tail, m."""
         return self._at(self._displacement(shell), 180.0)
 
+    def peak_relative_displacement(self, shell: int) -> float:
+        """Return the largest normal displacement relative to the section's translation anywhere, head and tail included, m."""
+        relative = self._of(shell, relative_gain(self.solution))
+        return max(self._anywhere(relative), self._at(relative, 0.0), self._at(relative, 180.0))
+
+    def peak_relative_displacement_head(self, shell: int) -> float:
+        """Return the same at the head, m."""
+        return self._at(self._of(shell, relative_gain(self.solution)), 0.0)
+
+    def peak_relative_displacement_tail(self, shell: int) -> float:
+        """Return the same at the tail, m."""
+        return self._at(self._of(shell, relative_gain(self.solution)), 180.0)
+
     def peak_sensor_voltage(self, shell: int) -> float:
         """Return the largest open-circuit voltage of the sensor anywhere, V."""
         return self._anywhere(self._of(shell, voltage_gain(self.solution, shell)))
@@ -139,6 +154,24 @@ class Reading(DesignReading):
     def actuator_field_ratio(self, shell: int) -> float:
         """Return the same over what the actuator stands (its material's or the controller's field limit)."""
         return self.peak_actuator_voltage(shell) / actuator_limit(self.solution, shell).volts
+
+    def segment_sensor_voltage(self, shell: int) -> float:
+        """Return the largest sensor voltage as a mean over the default segment (:mod:`coaxshell.solver.electrodes`), V."""
+        return largest_sensor_voltage(self.solution, shell, self._whole, segment_length(self.solution.problem, shell)).value
+
+    def segment_actuator_voltage(self, shell: int) -> float:
+        """Return the largest voltage asked for as a mean over the default segment, before any saturation, V; 0 without control."""
+        if self.solution.problem.shells[shell].gains is None:
+            return 0.0
+        return largest_demanded_voltage(self.solution, shell, self._whole, segment_length(self.solution.problem, shell)).value
+
+    def segment_actuator_field(self, shell: int) -> float:
+        """Return the same as a field across the actuator, V/m."""
+        return self.segment_actuator_voltage(shell) / self._wall(shell).actuator.thickness  # type: ignore[union-attr]
+
+    def segment_field_ratio(self, shell: int) -> float:
+        """Return the same over what the actuator stands (its material's or the controller's field limit)."""
+        return self.segment_actuator_voltage(shell) / actuator_limit(self.solution, shell).volts
 
     def stress_truncation(self, shell: int) -> float:
         """Return the estimate of what the orders above M would add to the stress, relative."""

@@ -35,10 +35,12 @@ BARS = {
     "stress_tail": ("peak stress at the tail", "Pa"),
     "stress": ("peak stress anywhere", "Pa"),
     "stress_rms": ("RMS stress", "Pa"),
-    "displacement_head": ("peak displacement at the head", "m"),
-    "displacement_tail": ("peak displacement at the tail", "m"),
-    "sensor_voltage": ("peak sensor voltage", "V"),
-    "actuator_voltage": ("peak actuator voltage asked for", "V"),
+    "relative_displacement_head": ("peak relative displacement at the head", "m"),
+    "relative_displacement_tail": ("peak relative displacement at the tail", "m"),
+    "displacement_head": ("peak absolute displacement at the head", "m"),
+    "displacement_tail": ("peak absolute displacement at the tail", "m"),
+    "sensor_voltage": ("peak sensor voltage, mean over a segment", "V"),
+    "actuator_voltage": ("peak actuator voltage asked for, mean over a segment", "V"),
 }
 
 
@@ -163,7 +165,7 @@ def _bars(response: Response, summary: Summary) -> list[dict[str, Any]]:
 
 
 def _peak(peak: Peak) -> dict[str, Any]:
-    return {"value": _finite(peak.value), "time": peak.time, "angle": peak.angle}
+    return {"value": _finite(peak.value), "time": peak.time, "angle": peak.angle, "growing": peak.growing}
 
 
 def _finite(value: float | npt.NDArray[np.float64]) -> float | None:

@@ -1,0 +1,130 @@
+"""Where the total pressure on a wetted surface falls so low that real water would cavitate.
+
+The model's pressures are those of the shock alone: water at rest has p = 0 here. At the surface of the sea it stands under 0.1 MPa, so
+p < -0.1 MPa is tension there; at a depth of h metres another 0.01 MPa h would have to be overcome, which the description does not know.
+
+On the walls the transforms of the pressure follow from those of W by the fluids' operators. A part of the band and of the orders tells
+"about 0.1 MPa" well enough, at a few hundredths of the run's cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy import fft
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.circle import circle_angles, on_circle
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus
+from coaxshell.solver.excitation import incident_on_surface
+from coaxshell.solver.scaling import Problem
+
+AMBIENT = 0.1e6
+"""Pressure at the surface of the sea, Pa."""
+HARMLESS = 0.25
+"""Largest sum of the sources' peaks, in ambient pressures, for which nothing is looked at: it would take tension four times as large."""
+_RESOLUTION = 0.01
+_MOST_ORDERS = 60
+
+
+class Tension(NamedTuple):
+    """The lowest total pressure on one wetted surface.
+
+    Attributes
+    ----------
+    region, shell : int
+        Fluid and shell that meet there, counted from the inside.
+    pressure : float
+        Pa, negative.
+    time, angle : float
+        When (transits) and where (degrees from theta = 0).
+    width, lasting : float
+        Degrees of the circumference that are below -AMBIENT at once at most, and transits during which any are.
+    """
+
+    region: int
+    shell: int
+    pressure: float
+    time: float
+    angle: float
+    width: float
+    lasting: float
+
+
+def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[Tension]:
+    """Return the wetted surfaces on which the total pressure falls below -AMBIENT within the run.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : LaplaceGrid
+    normal : ndarray, shape (shells, halves, M + 1, nodes)
+        Transforms of W.
+    """
+    if sum(abs(source.pulse.peak) for source in problem.system.sources) <= HARMLESS * AMBIENT:
+        return []
+    coarse = _first_nodes(grid)
+    within = coarse.time <= grid.time[-1] * (1 + 1e-12)
+    window = np.exp(-20.0 * np.linspace(0.0, 1.0, coarse.nodes.size) ** 4)
+    few = normal[:, :, : _MOST_ORDERS + 1, : coarse.nodes.size]
+    found = []
+    for region, shell, spectra in wall_pressures(problem, coarse, few):
+        modal = problem.scales.pressure * coarse.invert(spectra, window)[..., within]
+        lowest = _lowest(modal, coarse.time[within])
+        if lowest is not None:
+            found.append(Tension(region, shell, *lowest))
+    return found
+
+
+def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> Iterator[tuple[int, int, ComplexArray]]:
+    """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (halves, M + 1, nodes)."""
+    orders, s = all_orders(normal.shape[2] - 1), grid.nodes
+    acceleration = s**2 * normal
+    count = len(problem.shells)
+    for region, fluid in enumerate(problem.fluids):
+        if fluid is None:
+            continue
+        kappa = fluid.slowness * s
+        outer = RadialFunctions(kappa, problem.shells[region].radius, orders) if region < count else None
+        inner = RadialFunctions(kappa, problem.shells[region - 1].radius, orders) if region else None
+        if inner is None and outer is not None:
+            yield region, region, fluid.density * outer.disc * acceleration[region]
+        elif outer is None and inner is not None:
+            incident, slope = incident_on_surface(problem, grid, inner)
+            total = inner.exterior * acceleration[-1]
+            total[: len(incident)] += incident - inner.exterior * slope
+            yield region, region - 1, total
+        elif inner is not None and outer is not None:
+            walls = annulus(inner, outer)
+            below, above = fluid.density * acceleration[region - 1], fluid.density * acceleration[region]
+            yield region, region - 1, walls.aa * below + walls.ab * above
+            yield region, region, walls.ba * below + walls.bb * above
+
+
+def _first_nodes(grid: LaplaceGrid) -> LaplaceGrid:
+    """Return the grid of the first nodes, up to pi/_RESOLUTION: same contour, same period, coarser step."""
+    samples = 16 if grid.period < 16 * _RESOLUTION else int(np.ceil(grid.period / _RESOLUTION))
+    while samples < grid.samples:
+        samples = int(fft.next_fast_len(samples + samples % 2, real=True))
+        coarse = LaplaceGrid(grid.period / samples, samples // 2 - 1, grid.wrap_around, fewest=0)
+        if coarse.samples == samples and samples % 2 == 0:
+            return coarse
+        samples += 1
+    return grid
+
+
+def _lowest(modal: np.ndarray, time: np.ndarray) -> tuple[float, float, float, float, float] | None:
+    """Return (pressure, time, angle, width, lasting) where a surface is below -AMBIENT; None if it never is."""
+    field = on_circle(modal)
+    low = field < -AMBIENT
+    if not low.any():
+        return None
+    place, instant = np.unravel_index(int(field.argmin()), field.shape)
+    angles = circle_angles(modal.shape[1], modal.shape[0])
+    around = 360.0 / len(angles) if modal.shape[0] == 2 else 360.0 / (len(angles) - 1)
+    width = min(360.0, float(low.sum(axis=0).max()) * around)
+    lasting = float(low.any(axis=0).sum()) * float(time[1] - time[0])
+    return float(field[place, instant]), float(time[instant]), float(angles[place]), width, lasting
