@@ -50,6 +50,9 @@ TOML_DOTS = Limit(12, "dots", "a key of a TOML text")
 TOML_ENTRIES = Limit(50_000, "entries", "a TOML text")
 TOML_VALUES = Limit(1_000_000, "values", "a TOML text")
 TOML_LISTS = Limit(50_000, "lists and tables", "a TOML text")
+RECORD_BYTES = Limit(200_000_000, "bytes", "a pressure record")
+RECORD_SAMPLES = Limit(2_000_000, "samples", "a pressure record")
+RECORD_COLUMNS = Limit(256, "columns", "a pressure record")
 
 TABLE: tuple[Limit, ...] = (
     QUANTITY,
@@ -61,5 +64,8 @@ TABLE: tuple[Limit, ...] = (
     TOML_ENTRIES,
     TOML_VALUES,
     TOML_LISTS,
+    RECORD_BYTES,
+    RECORD_SAMPLES,
+    RECORD_COLUMNS,
 )
 """All bounds, in the order in which the documentation lists them."""

@@ -32,7 +32,7 @@ def pulse_history(pulse: Pulse, t: FloatArray, time_scale: float, pressure_scale
         case Gaussian():
             pressure = pulse.peak_pressure * np.exp(-0.5 * ((seconds - pulse.centre) / pulse.width) ** 2)
         case Sampled():
-            pressure = np.interp(seconds, pulse.time, pulse.pressure, left=0.0, right=0.0)
+            pressure = np.interp(seconds, *pulse.curve, left=0.0, right=0.0)
     return np.asarray(np.where(t >= 0, pressure, 0.0) / pressure_scale, dtype=np.float64)
 
 
@@ -50,7 +50,7 @@ def pulse_impulse(pulse: Pulse, t: FloatArray, time_scale: float, pressure_scale
             rise = erf((seconds - pulse.centre) / root) + math.erf(pulse.centre / root)
             impulse = pulse.peak_pressure * pulse.width * math.sqrt(math.pi / 2.0) * rise
         case Sampled():
-            impulse = _sampled_impulse(np.asarray(pulse.time), np.asarray(pulse.pressure), seconds)
+            impulse = _sampled_impulse(*pulse.curve, seconds)
     return np.asarray(impulse / (pressure_scale * time_scale), dtype=np.float64)
 
 

@@ -32,8 +32,8 @@ def pulse_transform(pulse: Pulse, s: ComplexArray, time_scale: float, pressure_s
             width, centre = pulse.width / time_scale, pulse.centre / time_scale
             return pulse.peak_pressure / pressure_scale * _gaussian(s, width, centre)
         case Sampled():
-            times = np.asarray(pulse.time) / time_scale
-            return _piecewise_linear(s, times, np.asarray(pulse.pressure) / pressure_scale)
+            times, values = pulse.curve
+            return _piecewise_linear(s, times / time_scale, values / pressure_scale)
     raise TypeError(f"no transform for a pulse of type {type(pulse).__name__}")
 
 

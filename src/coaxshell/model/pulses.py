@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import Described, shown
+from coaxshell.model.base import UNSTATED, Described, shown, stated
 from coaxshell.model.history import read_history
 from coaxshell.model.naming import lookup
-from coaxshell.model.units import AnyPressure, Delay, Pressure, Time
+from coaxshell.model.samples import Samples, Series, not_increasing
+from coaxshell.model.units import AnyPressure, AnyTime, Delay, Pressure, Time, quantity, to_si
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from coaxshell.model.samples import FloatArray
 
 
 class Exponential(Described):
@@ -80,19 +87,56 @@ class Gaussian(Described):
         return self
 
 
-def _listed(values: Any) -> Any:
-    """Turn an array or another iterable into a list, which pydantic can read; leave texts and scalars for it to refuse."""
-    return list(values) if hasattr(values, "__iter__") and not isinstance(values, str | bytes | Mapping) else values
+def _window(value: Any) -> Any:
+    """Return a window of time in s, greater than 0, or "pre-trigger"."""
+    if value is None or value == "pre-trigger":
+        return value
+    window = to_si(value, "time")
+    if window <= 0:
+        raise InputError("", f"{window!r} s is not allowed", 'must be greater than 0, or "pre-trigger"')
+    return window
 
 
 class Sampled(Described):
-    """Describe a sampled history: linear between the samples, zero before the first and after the last."""
+    """Describe a sampled history: linear between the samples, zero before the first and after the last.
+
+    A measured record is kept as it was read; the options say what is made of it, in this order: *scale*, *offset* and *baseline* on the
+    pressures, the part from *start* to *end*, *shift* of the times, *resample*, *taper*. Samples before t = 0 (before a trigger) are
+    then left out. :attr:`curve` is the history that results, and all that is solved.
+    """
 
     type: Literal["sampled"] = "sampled"
-    time: Annotated[tuple[Delay, ...], BeforeValidator(_listed)]
-    """Times (s), from 0 on, strictly increasing, at least two."""
-    pressure: Annotated[tuple[AnyPressure, ...], BeforeValidator(_listed)]
+    time: Annotated[Samples, Series("time")]
+    """Times (s), strictly increasing, at least two."""
+    pressure: Annotated[Samples, Series("pressure")]
     """Pressures at these times (Pa)."""
+    scale: Annotated[float, quantity("number", nonzero=True)] = 1.0
+    """Factor on the pressures, such as a calibration."""
+    offset: AnyPressure = 0.0
+    """Pressure of the baseline, subtracted after scaling (Pa)."""
+    baseline: Annotated[float | Literal["pre-trigger"] | None, BeforeValidator(_window)] = None
+    """Time from the first sample over which the mean is taken and subtracted (s), or "pre-trigger": all samples before t = 0."""
+    start: AnyTime | None = None
+    """Time of the record from which it is kept (s); it becomes t = 0 unless *shift* says otherwise."""
+    end: AnyTime | None = None
+    """Time of the record up to which it is kept (s)."""
+    shift: AnyTime | None = None
+    """Time added to those of the record (s)."""
+    resample: Time | None = None
+    """Interval of a new, even grid of samples (s)."""
+    taper: Delay = 0.0
+    """Length of the last part of the history, which is brought to zero by half a cosine (s)."""
+    reference: str = ""
+    """Where the samples come from."""
+
+    def __init__(
+        self,
+        *,
+        time: Sequence[float] | npt.ArrayLike = UNSTATED,
+        pressure: Sequence[float] | npt.ArrayLike = UNSTATED,
+        **options: Any,
+    ) -> None:
+        super().__init__(**stated({"time": time, "pressure": pressure}), **options)
 
     @model_validator(mode="after")
     def _regular(self) -> Self:
@@ -102,23 +146,71 @@ class Sampled(Described):
             raise InputError(
                 "pressure", f"{len(self.pressure)} pressures do not match {len(self.time)} times", "must be as many pressures as times"
             )
-        for i in range(1, len(self.time)):
-            if self.time[i] <= self.time[i - 1]:
-                raise InputError(
-                    f"time[{i}]", f"{self.time[i]!r} s does not follow {self.time[i - 1]!r} s", "times must be strictly increasing"
-                )
+        late = not_increasing(self.time)
+        if late is not None:
+            raise InputError(
+                f"time[{late}]", f"{self.time[late]!r} s does not follow {self.time[late - 1]!r} s", "times must be strictly increasing"
+            )
+        _ = self.curve  # what an option makes impossible is told now
         return self
+
+    @cached_property
+    def curve(self) -> tuple[FloatArray, FloatArray]:
+        """The history that the record stands for: times (s), from 0 on, and pressures (Pa), read-only arrays."""
+        from coaxshell.model.records.conditioning import conditioned
+
+        times, values = conditioned(self)
+        times.flags.writeable = values.flags.writeable = False
+        return times, values
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the history, its times and then its pressures as little-endian doubles."""
+        from coaxshell.model.records.binary_text import digest
+
+        return digest(*self.curve)
 
     @property
     def peak(self) -> float:
         """Largest magnitude of the pressure (Pa)."""
-        return max(abs(pressure) for pressure in self.pressure)
+        return float(abs(self.curve[1]).max())
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the record should know: where it is cut off, absurd magnitudes, a baseline that is left."""
+        from coaxshell.model.records.remarks import remarks
+
+        return remarks(self)
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and self._fields == other._fields
+
+    def __hash__(self) -> int:
+        return hash(self._fields)
+
+    @property
+    def _fields(self) -> tuple[Any, ...]:
+        """What the record is: its fields, without what is computed from them."""
+        return tuple(getattr(self, name) for name in type(self).model_fields)
+
+    def __getstate__(self) -> dict[Any, Any]:
+        """Travel between processes without what is computed from the fields."""
+        state = super().__getstate__()
+        return {**state, "__dict__": {k: v for k, v in state["__dict__"].items() if k in type(self).model_fields}}
+
+    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
+        return [(name, value) for name, value in super().__repr_args__() if name is None or value != self.default_of(name)]
+
+    @classmethod
+    def default_of(cls, name: str) -> Any:
+        """Return the default of a field."""
+        return cls.model_fields[name].default
 
     @classmethod
     def from_csv(cls, path: str | Path) -> Self:
         """Read two columns, time (s) and pressure (Pa), with or without a header line; InputError names the file and line."""
         time, pressure = read_history(Path(path))
-        return cls(time=tuple(time), pressure=tuple(pressure))
+        return cls(time=time, pressure=pressure)
 
 
 Pulse = Exponential | Step | Gaussian | Sampled

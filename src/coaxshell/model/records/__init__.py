@@ -1,0 +1,1 @@
+"""Measured pressure records: read from files as people have them, conditioned, measured, remarked upon and written without loss."""
