@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.solver.solution import ModalSolution
 
@@ -51,6 +52,7 @@ def history(
     -------
     DataArray, dims (time, angle) or (time,)
     """
+    require_finite(values, name, [("time", solution.time), ("angle", np.atleast_1d(angle))], "look for extreme layers or materials")
     dims = ("time", "angle") if angle.ndim else ("time",)
     label = shell_name(shell, len(solution.problem.shells))
     return xr.DataArray(

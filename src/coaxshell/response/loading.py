@@ -6,6 +6,7 @@ from pathlib import Path
 
 from coaxshell.response.response import Response
 from coaxshell.response.storage import load_solution
+from coaxshell.solver.finite import require_finite_solution
 
 
 def load_response(path: str | Path) -> Response:
@@ -14,6 +15,8 @@ def load_response(path: str | Path) -> Response:
     Raises
     ------
     InputError
-        If there is no such file, or it is not ours, cut short, damaged, or of a newer format.
+        If there is no such file, or it is not ours, cut short, damaged (NaN or infinity in an array too), or of a newer format.
     """
-    return Response(load_solution(path))
+    solution = load_solution(path)
+    require_finite_solution(solution, str(path), "write the file again")
+    return Response(solution)

@@ -18,6 +18,7 @@ from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.translation import translation
 from coaxshell.solver.electrodes import Segment
+from coaxshell.solver.finite import require_finite_solution
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
@@ -36,10 +37,16 @@ class Response:
     Parameters
     ----------
     solution : ModalSolution
-        What the solver returned.
+        What the solver returned, or a file held.
+
+    Raises
+    ------
+    InputError
+        If any of its numbers is NaN or infinite: with the array, the shell or absorber, the order and the first instant.
     """
 
     def __init__(self, solution: ModalSolution) -> None:
+        require_finite_solution(solution)
         self.solution = solution
 
     @property

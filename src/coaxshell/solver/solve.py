@@ -16,6 +16,7 @@ from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.linked import LinkedSpectra, solve_linked
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -151,7 +152,13 @@ class Prepared:
         problem, structure = replace(self.problem, system=system), self.structure
         if absorbers is not None:
             require_room(problem, self.settings)
-        grid, stopwatch, progress = structure.grid, self._stopwatch, progress or self._progress
+        with numerical_failures(structure.grid):
+            return self._solved(problem, progress or self._progress)
+
+    def _solved(self, problem: Problem, progress: Progress | None) -> ModalSolution:
+        """Return the modal histories of a problem that differs at most in its absorbers."""
+        system, structure, stopwatch = problem.system, self.structure, self._stopwatch
+        grid = structure.grid
         linked: LinkedSpectra | None = None
         warnings = list(self._notes)
         saturate = system.control is not None and system.control.saturation
@@ -162,10 +169,12 @@ class Prepared:
             linked = solve_linked(structure, links, progress, saturate=saturate)
             normal, tangential = linked.normal, linked.tangential
             stopwatch.lap("absorbers and saturation")
+            require_finite_stages(structure, linked)
             warnings += checks.absorbers(structure, links, linked, self.settings.refinement)
         else:
             normal, tangential = structure.linear.normal, structure.linear.tangential
             stopwatch.lap("modal system at all Laplace nodes")
+            require_finite_stages(structure, None)
         trust = self.trust
         stopwatch.lap("error estimates")
         order, keep = structure.max_order, slice(None, None, self.settings.refinement)

@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from starlette.responses import Response
 
+from coaxshell.numerics.finite import require_finite
+
 MEDIA_TYPE = "application/x-coaxshell-arrays"
 
 
@@ -33,7 +35,9 @@ def packed(header: Mapping[str, Any], items: Mapping[str, Item]) -> Packed:
     entries, parts, offset = [], [], 0
     for name, (values, unit, more) in items.items():
         kind = values.dtype if values.dtype in (np.dtype("uint8"), np.dtype("float16")) else np.dtype("float32")
-        array = np.ascontiguousarray(values, dtype=kind.newbyteorder("<"))
+        with np.errstate(over="ignore"):  # beyond single precision is infinity here, and refused on the next line
+            array = np.ascontiguousarray(values, dtype=kind.newbyteorder("<"))
+        require_finite(array, name, remedy="it is no number, or too large for the page: look for extreme entries")
         entries.append({"name": name, "dtype": kind.name, "shape": list(array.shape), "offset": offset, "unit": unit, **more})
         parts.append(array.tobytes() + bytes(-array.nbytes % 8))
         offset += len(parts[-1])

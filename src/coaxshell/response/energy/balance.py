@@ -10,6 +10,7 @@ import numpy as np
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
 from coaxshell.model.naming import shell_phrase
+from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
@@ -156,6 +157,9 @@ def _labelled(motion: Motion, entries: dict[str, Entry]) -> xr.Dataset:
     variables = {}
     for name, entry in entries.items():
         relative = name == "closure_relative"
+        require_finite(
+            entry.values, f"energy.{name}", [("time", motion.solution.time[motion.kept])], "look for extreme layers or absorbers"
+        )
         attributes = {"units": "1" if relative else "J/m", "long_name": entry.long_name, "role": entry.role, "group": entry.group}
         variables[name] = xr.Variable("time", entry.values * (1.0 if relative else unit), attributes)
     coordinates = {name: variable[motion.kept] for name, variable in time_coordinates(motion.solution).items()}

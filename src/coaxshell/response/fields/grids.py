@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.regions import FloatArray
 from coaxshell.response.fields.request import Request, axis
@@ -90,6 +91,11 @@ def labelled(
         "sign": sign,
         "time_resolution": asked.resolution,
     }
+    if first_bad(values) is not None:
+        along = [("time", np.atleast_1d(when)), *(("component", np.arange(2)) for _ in components), *zip(grid.dims, grid.axes, strict=True)]
+        require_finite(
+            values.reshape(np.atleast_1d(when).shape + components + shape), name, along, "look for extreme layers, fluids or sources"
+        )
     found = coordinates(spectra, grid, when)
     if components:
         found["component"] = xr.Variable("component", ["radius", "angle"] if grid.polar else ["x", "y"])

@@ -13,6 +13,7 @@ from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.engine import march_directly
 from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.finite import numerical_failures
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
@@ -42,7 +43,8 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     stopwatch.lap("stability of the feedback")
     links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
     saturate = system.control is not None and system.control.saturation
-    result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)
+    with numerical_failures(grid):
+        result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)
     stopwatch.lap("time steps")
     w, v = result.normal, result.tangential
     trust = Estimates(*estimates.truncation(problem, grid, order, grid.transform(w), grid.transform(v)), time_window=float("nan"))
