@@ -1,4 +1,4 @@
-"""The band of a pulse: the frequency below which nine tenths of its energy lie."""
+"""The band of a pulse: the frequency below which nine tenths of its energy lie; and how long it lasts."""
 
 from __future__ import annotations
 
@@ -37,3 +37,33 @@ def _sampled_band(times: np.ndarray, pressures: np.ndarray) -> float:
     if total[-1] <= 0.0:
         return 0.0
     return float(np.searchsorted(total, SHARE * total[-1]) + 1) / (4 * _POINTS * float(step))
+
+
+def pulse_end(pulse: Pulse) -> float:
+    """Return when the pulse is over, s: at its last sample, when it has fallen to a hundredth of its peak, or when a step is reached."""
+    match pulse:
+        case Exponential():
+            return math.log(100.0) * pulse.decay_time
+        case Gaussian():
+            return pulse.centre + math.sqrt(2.0 * math.log(100.0)) * pulse.width
+        case Sampled():
+            return float(pulse.time[-1])
+        case Step():
+            return pulse.rise_time
+
+
+def largest_after(pulse: Pulse, moment: float) -> float:
+    """Return the largest magnitude of the pressure after a moment (s), Pa; of a step what its rise has still to bring."""
+    match pulse:
+        case Exponential():
+            return pulse.peak * math.exp(-max(moment, 0.0) / pulse.decay_time)
+        case Gaussian():
+            return pulse.peak * math.exp(-0.5 * (max(moment - pulse.centre, 0.0) / pulse.width) ** 2)
+        case Step():
+            return pulse.peak * max(0.0, 1.0 - moment / pulse.rise_time) if pulse.rise_time > moment else 0.0
+        case Sampled():
+            times, values = np.asarray(pulse.time), np.abs(pulse.pressure)
+            later = values[times > moment]
+            if not later.size:
+                return 0.0
+            return float(max(later.max(), np.interp(moment, times, values)))

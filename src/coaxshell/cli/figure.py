@@ -81,6 +81,6 @@ def _draw_study(
 
     systems = [load_system(name, changes or (), "--preset") for name in sources]
     with named_as_options(), progress(quiet) as report:
-        drawn = recipe.draw(systems, Runs(Resolution(**request.settings()), workers=worker_count(None)), report)
+        drawn = recipe.draw(systems, Runs(Resolution(**request.settings(systems[0])), workers=worker_count(None)), report)
     save_figure(drawn.figure, target)
     return drawn.warnings

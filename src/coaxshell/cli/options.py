@@ -14,9 +14,9 @@ SetOption = Annotated[
     ),
 ]
 DurationOption = Annotated[
-    str, typer.Option("--duration", metavar="TRANSITS", help="How long, in acoustic transits a/c_e of the outermost radius.")
+    str, typer.Option("--duration", metavar="TIME", help='How long, in acoustic transits a/c_e of the outermost radius, or as in "3 ms".')
 ]
-TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TRANSITS", help="Time step, in transits too.")]
+TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TIME", help='Time step, likewise: transits, or as in "2 us".')]
 ModesOption = Annotated[str, typer.Option("--modes", metavar="N|auto", help="Highest circumferential order, or auto to meet --tolerance.")]
 ToleranceOption = Annotated[str, typer.Option("--tolerance", metavar="ERROR", help="Relative error that --modes auto aims at.")]
 EngineOption = Annotated[str, typer.Option("--engine", metavar="NAME", help="How to solve: spectral or direct.")]

@@ -26,20 +26,17 @@ def load_system(scenario: str, changes: Sequence[str] = (), where: str = "SCENAR
     InputError
         No such preset or file, something wrong in the file, or a change that is not allowed.
     """
-    from coaxshell.model import presets
-    from coaxshell.model.naming import suggestion
+    from coaxshell.model.loading import as_system
 
     wanted = overrides(changes)
-    if scenario in presets.names():
-        system = presets.load(scenario)
-    elif scenario in STANDARD_INPUT:
+    if scenario in STANDARD_INPUT:
         system = _of_input(where)
-    elif Path(scenario).suffix.lower() in (".toml", ".txt") or (Path(scenario).is_file() and Path(scenario).suffix.lower() != ".nc"):
-        system = _of_file(scenario, where)
-    elif Path(scenario).suffix.lower() == ".nc":
-        raise InputError(where, f"{scenario!r} is a saved run, solved already", "give a .toml file or a preset; see coaxshell info")
     else:
-        raise InputError(where, f"there is no preset {scenario!r}", f"{suggestion(scenario, presets.names())}, or a .toml file")
+        try:
+            system = as_system(scenario, where)
+        except InputError as error:  # another file may have been given beside it
+            option = where.startswith("-") and error.where != where
+            raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if option else error from None
     return system.with_overrides(wanted) if wanted else system
 
 
@@ -54,15 +51,5 @@ def _of_input(where: str) -> System:
     TOML_BYTES.check(len(content), "standard input")
     try:
         return System.model_validate(toml.loads(toml.text_of(content, "standard input"), Path(), "standard input"))
-    except InputError as error:
-        raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if where.startswith("-") else error from None
-
-
-def _of_file(path: str, where: str) -> System:
-    """Return the system of a TOML file; an error in it names the option too, since another file may have been given beside it."""
-    from coaxshell.model import System
-
-    try:
-        return System.from_toml(path)
     except InputError as error:
         raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if where.startswith("-") else error from None

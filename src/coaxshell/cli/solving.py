@@ -42,15 +42,17 @@ class Request:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
         from coaxshell.response import simulate
 
-        settings = self.settings()
+        settings = self.settings(system)
         with values.named_as_options(), progress(quiet) as report:
             return simulate(system, progress=report, **settings)
 
-    def settings(self) -> Settings:
-        """Return the settings of a run as numbers; InputError names the option that is wrong."""
+    def settings(self, system: System) -> Settings:
+        """Return the settings of a run of a system as numbers; InputError names the option that is wrong."""
+        from coaxshell.model.durations import transits
+
         return {
-            "duration": values.number("--duration", self.duration),
-            "time_step": values.number("--time-step", self.time_step),
+            "duration": transits(self.duration, system, "--duration"),
+            "time_step": transits(self.time_step, system, "--time-step"),
             "tolerance": values.number("--tolerance", self.tolerance),
             "modes": values.modes(self.modes),
             "engine": self.engine,

@@ -119,6 +119,11 @@ class System(Described):
         return self.shells[-1].radius
 
     @property
+    def transit_time(self) -> float:
+        """Seconds in an acoustic transit a/c_e of the outermost radius in the fluid outside, the unit of time of a run."""
+        return self.reference_radius / self.exterior.sound_speed
+
+    @property
     def exterior(self) -> Fluid:
         """The fluid outside, whose sound speed and density scale the problem."""
         fluid = self.fluids[-1]

@@ -7,6 +7,8 @@ from typing import Literal
 
 from coaxshell import solver
 from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.durations import transits
+from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.response.response import Response
 from coaxshell.solver.settings import Settings
@@ -14,10 +16,10 @@ from coaxshell.solver.workshop import Workshop
 
 
 def simulate(
-    system: System,
+    system: SystemLike,
     *,
-    duration: float = 5.0,
-    time_step: float = 1e-3,
+    duration: float | str = 5.0,
+    time_step: float | str = 1e-3,
     modes: int | Literal["auto"] = 150,
     engine: str = "spectral",
     tolerance: float = 1e-3,
@@ -28,9 +30,10 @@ def simulate(
 
     Parameters
     ----------
-    system : System
-    duration, time_step : float
-        In acoustic transit times a/c_e, a the outermost radius and c_e the sound speed outside.
+    system : System, str or Path
+        A description, the name of a preset ("bare") or the path of a scenario file ("my.toml").
+    duration, time_step : float or str
+        In acoustic transit times a/c_e, a the outermost radius and c_e the sound speed outside; or times as text, "3 ms".
     modes : int or "auto"
         Highest circumferential order M; "auto" chooses it by *tolerance*.
     engine : str
@@ -49,9 +52,11 @@ def simulate(
     Raises
     ------
     InputError
-        If a setting is not allowed.
+        If a setting is not allowed, or there is no such preset or file.
     """
-    settings = Settings(duration, time_step, modes, engine, tolerance, refinement)
+    system = as_system(system)
+    times = (transits(duration, system), transits(time_step, system, "time_step"))
+    settings = Settings(*times, modes, engine, tolerance, refinement)
     return Response(solver.solve(system, settings=settings, progress=progress))
 
 
@@ -88,7 +93,7 @@ class PreparedSystem:
         """
         return Response(self._prepared.solve(absorbers, progress))
 
-    def retuned(self, system: System) -> PreparedSystem:
+    def retuned(self, system: SystemLike) -> PreparedSystem:
         """Return the same, at the same settings, for a changed system; everything that the change leaves alone is shared.
 
         A change of absorbers shares all of it; of sources, the structure's answers to forces; of gains or layers, the fluids, the
@@ -106,14 +111,14 @@ class PreparedSystem:
         InputError
             If the feedback is unstable.
         """
-        return PreparedSystem(self._prepared.retuned(system))
+        return PreparedSystem(self._prepared.retuned(as_system(system)))
 
 
 def prepare(
-    system: System,
+    system: SystemLike,
     *,
-    duration: float = 5.0,
-    time_step: float = 1e-3,
+    duration: float | str = 5.0,
+    time_step: float | str = 1e-3,
     modes: int | Literal["auto"] = 150,
     tolerance: float = 1e-3,
     refinement: int = 1,
@@ -135,5 +140,7 @@ def prepare(
     InputError
         If a setting is not allowed or the feedback is unstable.
     """
-    settings = Settings(duration, time_step, modes, "spectral", tolerance, refinement)
+    system = as_system(system)
+    times = (transits(duration, system), transits(time_step, system, "time_step"))
+    settings = Settings(*times, modes, "spectral", tolerance, refinement)
     return PreparedSystem(solver.Prepared(system, settings, progress, workshop=Workshop() if retunable else None))

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.naming import shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.sources import UnderwaterExplosion
@@ -28,13 +29,21 @@ TRUNCATION_LIMIT = 1e-2
 WINDOW_LIMIT = 1e-4
 LINEAR_ACOUSTICS_LIMIT = 1e-2
 VOLTAGE_LIMIT = 0.05
+CUT_LIMIT = 0.1
+"""Share of a pulse's peak that may come after the run."""
 RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
 
 def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     """Return the warnings that need no solution."""
-    return _thin_shells(problem) + _resolved_membrane(problem, grid, max_order) + _linear_acoustics(problem) + _similitude(problem)
+    return (
+        cut(problem, float(grid.time[-1]))
+        + _thin_shells(problem)
+        + _resolved_membrane(problem, grid, max_order)
+        + _linear_acoustics(problem)
+        + _similitude(problem)
+    )
 
 
 def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
@@ -158,6 +167,29 @@ def _linear_acoustics(problem: Problem) -> list[str]:
                 "wave is no longer linear; use a lower peak or a greater stand-off"
             )
     return warnings
+
+
+def cut(problem: Problem, duration: float) -> list[str]:
+    """Return a warning for each source whose pulse goes on at the head when the run of *duration* transits ends."""
+    warnings, transit = [], problem.scales.time
+    for source in problem.system.sources:
+        left = (duration * transit) - source.delay
+        end, going_on = pulse_end(source.pulse), largest_after(source.pulse, left)
+        if going_on <= CUT_LIMIT * abs(source.pulse.peak):
+            continue
+        whole = end + source.delay
+        warnings.append(
+            f"source: the run ends after {duration:.4g} transits ({engineering(duration * transit, 's')}), but the pressure goes on until "
+            f"{whole / transit:.4g} ({engineering(whole, 's')}), with up to {going_on / abs(source.pulse.peak):.2g} of its peak still to "
+            f"come; use duration={_above(whole / transit)} or cut the pulse"
+        )
+    return warnings
+
+
+def _above(value: float) -> str:
+    """Return a number of two digits that is not below a value."""
+    step = 10.0 ** (np.floor(np.log10(value)) - 1)
+    return f"{np.ceil(value / step * (1 - 1e-12)) * step:.12g}"
 
 
 def _similitude(problem: Problem) -> list[str]:

@@ -28,10 +28,10 @@ class ResolutionEntry(Described):
 
     called = "a resolution"
 
-    duration: float = 5.0
-    """How long, in transits a/c_e."""
-    time_step: float = 1e-3
-    """Time step, in the same unit."""
+    duration: float | str = 5.0
+    """How long, in transits a/c_e, or as text such as "3 ms" (of the base system)."""
+    time_step: float | str = 1e-3
+    """Time step, likewise."""
     modes: int | Literal["auto"] = 150
     """Highest circumferential order."""
     tolerance: float = 1e-3
@@ -41,10 +41,10 @@ class ResolutionEntry(Described):
     refinement: int = 1
     """Each run is made at time_step/refinement."""
 
-    def checked(self) -> Resolution:
-        """Return it as the resolution of runs; InputError if no run accepts it."""
+    def checked(self, system: System) -> Resolution:
+        """Return it as the resolution of runs of a base system; InputError if no run accepts it."""
         try:
-            return Resolution(**self.model_dump()).checked()
+            return Resolution.of(system, **self.model_dump())
         except InputError as error:
             raise within("resolution", error) from None
 
@@ -108,7 +108,7 @@ class SweepStudy(Study):
         """Return system, design, metrics and resolution, all checked; InputError names what is wrong."""
         system = self.system(folder)
         design = design_of(system, flat(self.over), self.points, self.samples, self.seed)
-        return system, design, metrics_of(self.metrics, system, str(folder)), self.resolution.checked()
+        return system, design, metrics_of(self.metrics, system, str(folder)), self.resolution.checked(system)
 
 
 S = TypeVar("S", bound=Study)

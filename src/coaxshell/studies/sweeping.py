@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from coaxshell.errors import InputError, PhysicsWarning
+from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.studies.design import Design, Points, design_of
@@ -20,15 +21,15 @@ from coaxshell.studies.running import How, run_study
 
 
 def sweep(
-    system: System,
+    system: SystemLike,
     over: Mapping[str, Any],
     metrics: Metrics = ("inner.peak_stress", "outer.peak_stress"),
     *,
     points: Points = "grid",
     samples: int | None = None,
     seed: int = 0,
-    duration: float = 5.0,
-    time_step: float = 1e-3,
+    duration: float | str = 5.0,
+    time_step: float | str = 1e-3,
     modes: int | Literal["auto"] = 150,
     tolerance: float = 1e-3,
     refinement: int = 1,
@@ -79,7 +80,8 @@ def sweep(
     InputError
         Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``, ``Store``.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
+    system = as_system(system)
+    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
     design = design_of(system, over, points, samples, seed)
     return sweep_design(system, design, metrics_of(metrics, system), resolution, How(executor, workers, store, resume, progress))
 

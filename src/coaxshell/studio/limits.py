@@ -8,6 +8,7 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model import Sampled, Shell, System
 from coaxshell.model.base import shown
+from coaxshell.model.durations import transits
 from coaxshell.solver.settings import Settings
 
 BODY_BYTES = 1_000_000
@@ -119,8 +120,11 @@ def check_counts(where: str, largest: float) -> None:
         raise InputError(where, f"{largest:,.15g} is too many here", f"at most {ABSORBERS}")
 
 
-def settings_of(given: object, *, live: bool) -> Settings:
-    """Return the settings of a resolution, ``"preview"``, ``"full"`` or a table; InputError if it is not allowed or too fine."""
+def settings_of(given: object, *, live: bool, system: System | None = None) -> Settings:
+    """Return the settings of a resolution, ``"preview"``, ``"full"`` or a table; InputError if it is not allowed or too fine.
+
+    Times may be texts such as "3 ms" where the *system* is given, whose transits they become.
+    """
     if given in ("preview", "full"):
         given = PREVIEW if given == "preview" else FULL
     if not isinstance(given, dict):
@@ -130,6 +134,8 @@ def settings_of(given: object, *, live: bool) -> Settings:
             raise InputError(f"resolution.{name}", "is not an entry of the resolution", f"allowed: {', '.join(PREVIEW)}")
     wanted = {**PREVIEW, **given}
     for name in ("duration", "time_step"):
+        if isinstance(wanted[name], str) and system is not None:
+            wanted[name] = transits(wanted[name], system, f"resolution.{name}")
         if isinstance(wanted[name], int) and not isinstance(wanted[name], bool) and abs(wanted[name]) < 1e15:
             wanted[name] = float(wanted[name])
         if not isinstance(wanted[name], float):

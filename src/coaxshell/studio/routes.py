@@ -59,8 +59,8 @@ async def conversation(data: dict[str, Any], **more: Any) -> Response:
 
 def wanted(data: dict[str, Any], *, live: bool) -> tuple[System, Settings]:
     """Return system and settings of a request; InputError when they are not allowed."""
-    settings = limits.settings_of(data.get("resolution", "preview"), live=live)
-    return descriptions.system_of(data), settings
+    system = descriptions.system_of(data)
+    return system, limits.settings_of(data.get("resolution", "preview"), live=live, system=system)
 
 
 async def solve(request: Request) -> Response:

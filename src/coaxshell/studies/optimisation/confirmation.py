@@ -31,7 +31,7 @@ class Confirmation:
         return {"resolution": self.resolution.arguments(), "baseline": self.baseline, "best": self.best}
 
 
-def finer(resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Resolution, ...]:
+def finer(system: System, resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Resolution, ...]:
     """Return the resolutions of a confirmation: that of the search with some settings changed, and the same at half the time step.
 
     Raises
@@ -46,7 +46,7 @@ def finer(resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Re
         if name not in allowed:
             raise InputError(f"confirm.{name}", "is not a setting of a run", f"allowed: {', '.join(allowed)}")
     try:
-        fine = replace(resolution, **confirm).checked()
+        fine = Resolution.of(system, **{**allowed, **confirm})
     except InputError as error:
         raise within("confirm", error) from None
     return fine, replace(fine, time_step=fine.time_step / 2)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from coaxshell.errors import InputError
+from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
@@ -65,7 +66,7 @@ class Problem:
 
 
 def optimise(
-    system: System,
+    system: SystemLike,
     *,
     variables: Mapping[str, VariableLike],
     objectives: Any,
@@ -77,8 +78,8 @@ def optimise(
     population: int | None = None,
     start: Literal["auto", "system"] = "auto",
     seed: int = 0,
-    duration: float = 5.0,
-    time_step: float = 1e-3,
+    duration: float | str = 5.0,
+    time_step: float | str = 1e-3,
     modes: int | Literal["auto"] = 150,
     tolerance: float = 1e-3,
     refinement: int = 1,
@@ -138,7 +139,8 @@ def optimise(
     InputError
         Anything wrong with the study, before its first run.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
+    system = as_system(system)
+    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
     chance = (uncertain, samples)
     search_by = (method, evaluations, population, start, seed)
     problem = problem_of(system, variables, objectives, constraints, resolution, chance, search_by, confirm)
@@ -176,7 +178,9 @@ def problem_of(
     properties = uncertain_of(space.base, uncertain or {}, samples, seed)
     setting = Setting(tuple(len(v.levels) for v in space.variables), space.start(), population, seed, len(targets.goals))
     require_possible(space, targets, insist=start == "system")
-    return Problem(space, targets, resolution, properties, chosen(method, setting), setting, evaluations, finer(resolution, confirm))
+    return Problem(
+        space, targets, resolution, properties, chosen(method, setting), setting, evaluations, finer(system, resolution, confirm)
+    )
 
 
 def optimise_problem(problem: Problem, how: How) -> Optimum:

@@ -44,12 +44,13 @@ class OptimisationStudy(Study):
 
     def problem(self, folder: Path) -> Problem:
         """Return it with all parts checked; InputError names what is wrong. Files are relative to *folder*."""
+        system = self.system(folder)
         return problem_of(
-            self.system(folder),
+            system,
             flat(self.variables, _ENTRIES),
             self.objectives,
             self.constraints,
-            self.resolution.checked(),
+            self.resolution.checked(system),
             (flat(self.uncertain, LAWS), self.samples),
             (self.method, self.evaluations, self.population, self.start, self.seed),
             self.confirm,

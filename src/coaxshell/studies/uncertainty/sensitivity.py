@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import PhysicsWarning
-from coaxshell.model.system import System
+from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.labelled import CASE, failures_text, labelled
@@ -31,15 +31,15 @@ ESTIMATES = ("value", "low", "high")
 
 
 def sensitivity(
-    system: System,
+    system: SystemLike,
     over: Mapping[str, Any],
     metrics: Metrics = ("inner.peak_stress", "outer.peak_stress"),
     *,
     samples: int = 256,
     seed: int = 0,
     confidence: float = 0.95,
-    duration: float = 5.0,
-    time_step: float = 1e-3,
+    duration: float | str = 5.0,
+    time_step: float | str = 1e-3,
     modes: int | Literal["auto"] = 150,
     tolerance: float = 1e-3,
     refinement: int = 1,
@@ -87,21 +87,22 @@ def sensitivity(
     InputError
         Anything wrong with the study, before its first run; see :func:`coaxshell.studies.uncertainty.plan.plan_of`.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
+    system = as_system(system)
+    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
     plan = plan_of(system, over, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=True, where="over")
     return uncertainty_of(plan, How(executor, workers, store, resume, progress))
 
 
 def robustness(
-    system: System,
+    system: SystemLike,
     uncertain: Mapping[str, Any],
     metrics: Metrics = ("inner.peak_stress", "outer.peak_stress"),
     *,
     samples: int = 128,
     seed: int = 0,
     confidence: float = 0.95,
-    duration: float = 5.0,
-    time_step: float = 1e-3,
+    duration: float | str = 5.0,
+    time_step: float | str = 1e-3,
     modes: int | Literal["auto"] = 150,
     tolerance: float = 1e-3,
     refinement: int = 1,
@@ -138,7 +139,8 @@ def robustness(
     InputError
         Anything wrong with the study, before its first run.
     """
-    resolution = Resolution(duration, time_step, modes, tolerance, engine, refinement).checked()
+    system = as_system(system)
+    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
     plan = plan_of(system, uncertain, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=False)
     return uncertainty_of(plan, How(executor, workers, store, resume, progress))
 

@@ -34,4 +34,4 @@ class SensitivityStudy(Study):
         system = self.system(folder)
         sampling = (self.samples, self.seed, self.confidence)
         metrics = metrics_of(self.metrics, system, str(folder))
-        return plan_of(system, flat(self.uncertain, LAWS), metrics, self.resolution.checked(), sampling, indices=self.indices)
+        return plan_of(system, flat(self.uncertain, LAWS), metrics, self.resolution.checked(system), sampling, indices=self.indices)
