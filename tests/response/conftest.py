@@ -75,7 +75,7 @@ def make() -> Callable[..., ModalSolution]:
             time=time,
             normal=parts["normal"],
             tangential=parts["tangential"],
-            estimates=Estimates(random.random(shape[0]), random.random(shape[0]), float(random.random())),
+            estimates=Estimates(*random.random((3, shape[0], 2))),
             warnings=("the drive is hot (3 > 2); rest",),
             timings={"solve": 0.1, "load": 1 / 3},
             absorber_displacement=random.random((count, steps + 1)) if count else None,

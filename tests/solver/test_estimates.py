@@ -32,7 +32,7 @@ def test_truncation_is_estimated_within_a_factor(case: tuple[cx.System, cx.Respo
     response = cx.simulate(system, **STEP, modes=modes)
     for shell in range(response.shells):
         true = stress_error(response, many, shell)
-        assert 1 / 3 < response.estimates.modal_stress[shell] / true < 3
+        assert 0.5 < response.estimates.modal_stress[shell] / true < 6  # it aims at twice the true one
 
 
 @pytest.mark.parametrize("tolerance", [3e-2, 3e-3])
@@ -52,10 +52,121 @@ def test_modes_are_independent_of_how_many_there_are(case: tuple[cx.System, cx.R
     np.testing.assert_allclose(few, expected, rtol=0, atol=1e-9 * abs(expected).max())
 
 
-def test_time_window_estimate_bounds_the_error_of_the_step() -> None:
-    bare = cx.presets.load("bare")
-    coarse, fine = (cx.simulate(bare, duration=2.0, time_step=step, modes=40) for step in (1e-2, 1e-3))
-    head = np.asarray(fine.displacement("outer", [0]))[::10, 0]
-    error = abs(np.asarray(coarse.displacement("outer", [0]))[:, 0] - head).max() / abs(head).max()
-    assert error < 3 * coarse.estimates.time_window
-    assert coarse.estimates.time_window < 3 * error
+SETTINGS = {"duration": 2.0, "time_step": 1e-2, "modes": 16}
+GAP = cx.System(
+    shells=[cx.Shell(radius=radius, layers=[cx.Layer("aluminium", 6e-3)]) for radius in (0.5, 1.0)],
+    fluids=["vacuum", "vacuum", "water-1400"],
+    source=cx.PlaneWave(pulse=cx.Gaussian(peak_pressure=2.5e4, width=2e-5)),
+    absorbers=cx.absorber_ring(5, mass=10, damping=1e4, linear_stiffness=1e9),
+)
+
+
+def motions(response: cx.Response, every: int = 1) -> np.ndarray:
+    """Return displacement and strain, shape (shells, 2, halves, M + 1, T)."""
+    w, v = (x[..., ::every] for x in (response.solution.normal, response.solution.tangential))
+    return np.stack([w, np.arange(w.shape[2])[:, None] * v - w], axis=1)
+
+
+def true_error(found: cx.Response, fine: cx.Response, every: int = 1) -> np.ndarray:
+    """Return |found - fine|/|fine| over surface and time, shape (shells, 2)."""
+    expected = motions(fine, every)
+    actual = np.zeros_like(expected)
+    actual[..., : found.modes + 1, :] = motions(found)
+    weight = np.where(np.arange(expected.shape[3]) == 0, 1.0, 0.5)[:, None]
+    squares = [(weight * x**2).sum(axis=(2, 3, 4)) for x in (actual - expected, expected)]
+    return np.sqrt(squares[0] / squares[1])
+
+
+def within(printed: np.ndarray, true: np.ndarray, least: float, most: float) -> None:
+    assert np.all(printed > least * true)
+    assert np.all(printed < most * true)
+
+
+def test_what_absorbers_excite_counts() -> None:
+    # Behind a vacuum nothing else moves the inner shell: its orders above M, and the softness of both walls that they make.
+    coarse, many = (cx.simulate(GAP, **{**SETTINGS, "modes": modes}) for modes in (40, 200))
+    within(coarse.estimates.orders, true_error(coarse, many), 0.5, 20)
+    assert coarse.estimates.orders.min() > 1e-3
+
+
+def test_auto_modes_count_absorbers() -> None:
+    chosen, bare = (
+        cx.prepare(system, **{**SETTINGS, "modes": "auto"}, tolerance=2e-2).settings.modes for system in (GAP, GAP.replace(absorbers=()))
+    )
+    assert chosen > 2 * bare
+    found = cx.simulate(GAP, **{**SETTINGS, "modes": chosen})
+    assert true_error(found, cx.simulate(GAP, **{**SETTINGS, "modes": 400}))[:, 1].max() < 2e-2
+
+
+@pytest.mark.parametrize("preset", ["bare", "iakovlev-double"])
+def test_the_band_limit_is_estimated_within_a_factor(preset: str) -> None:
+    system = cx.presets.load(preset)
+    coarse, fine = (cx.simulate(system, **{**SETTINGS, "time_step": step}) for step in (1e-2, 1e-3))
+    within(coarse.estimates.time_step, true_error(coarse, fine, 10), 0.5, 20)
+    assert np.all(coarse.estimates.march == 0)
+
+
+def test_the_march_is_estimated_within_a_factor() -> None:
+    ring = cx.absorber_ring(3, mass=10, damping=1e5, linear_stiffness=1e9, cubic_stiffness=1e20)
+    system = cx.presets.load("bare").replace(absorbers=ring)
+    coarse, fine = (cx.simulate(system, **{**SETTINGS, "time_step": step}) for step in (1e-2, 1e-3))
+    within(coarse.estimates.march, true_error(coarse, fine, 10), 0.5, 20)
+
+
+@pytest.mark.parametrize("angle", [45.0, 90.0, -163.0])
+def test_turned_sources_print_the_same_errors(angle: float) -> None:
+    cubic = GAP.absorbers.replace(cubic_stiffness=1e20)
+    turned = [
+        GAP.replace(source=GAP.source.replace(angle=by), absorbers=cubic.replace(offset=by), fluids=["vacuum", "water-1400", "water-1400"])
+        for by in (0.0, angle)
+    ]
+    straight, other = (cx.simulate(system, **SETTINGS).estimates.by_cause() for system in turned)
+    np.testing.assert_allclose(other, straight, rtol=0.02)  # the phases of what is left out are drawn for each absorber carried
+    alone = [cx.simulate(system.replace(absorbers=()), **SETTINGS).estimates.by_cause() for system in turned]
+    np.testing.assert_allclose(alone[1], alone[0], rtol=1e-6)
+
+
+def test_a_shell_not_yet_reached_is_at_rest() -> None:
+    system = cx.presets.load("bare")
+    errors = cx.simulate(system, duration=0.3, time_step=1e-2, modes=16).estimates.by_cause()
+    assert errors[0, :, 0].max() < 2 * errors[1, :, 0].max()
+    assert errors[0].max() < 1
+
+
+def test_errors_are_one_labelled_array() -> None:
+    response = cx.simulate(GAP, **SETTINGS)
+    errors = response.errors()
+    assert errors.dims == ("shell", "quantity", "cause")
+    assert list(errors["cause"].values) == ["orders", "time step", "march", "combined"]
+    np.testing.assert_array_equal(errors.sel(cause="combined"), errors.sel(cause=["orders", "time step", "march"]).sum("cause"))
+    shown = response.summary().shells[0].errors
+    assert shown["stress"]["orders"] == float(errors.sel(shell="inner", quantity="stress", cause="orders"))
+    assert f"{shown['stress']['combined']:.1e}" in str(response.summary())
+
+
+def test_a_rigid_shell_has_no_errors() -> None:
+    core = GAP.replace(shells=[cx.RigidShell(radius=0.5), GAP.shells[1]], absorbers=())
+    errors = cx.simulate(core, **SETTINGS).errors()
+    assert np.isnan(errors[0]).all()
+    assert np.isfinite(errors[1]).all()
+
+
+def test_each_cause_warns_with_both_numbers_and_the_remedy() -> None:
+    ring = GAP.absorbers.replace(cubic_stiffness=1e20)
+    system = GAP.replace(absorbers=ring, source=cx.PlaneWave(pulse=cx.Step(pressure=1e6)))
+    response = cx.simulate(system, duration=2.0, time_step=4e-2, modes=8)
+    warnings = " ".join(response.warnings)
+    errors = response.errors()
+    for cause, remedy in (("orders", "modes=16"), ("time step", "time_step = 0.02"), ("march", "refinement = 2")):
+        worst = float(errors.sel(cause=cause).max())
+        assert f"by {worst:.2g}" in warnings
+        assert remedy in warnings
+
+
+def test_the_direct_engine_says_what_it_does_not_know() -> None:
+    response = cx.simulate(GAP, duration=1.0, time_step=5e-3, modes=12, engine="direct", refinement=4)
+    errors = response.errors()
+    assert np.isfinite(errors.sel(cause="orders")).all()
+    assert np.isnan(errors.sel(cause="combined")).all()
+    assert response.summary().shells[0].errors["stress"]["time step"] is None
+    assert "unknown" in str(response.summary())

@@ -20,11 +20,13 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, time_coordinates
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.solver.solution import CAUSES, QUANTITIES, Estimates, ModalSolution
 
 FORMAT_VERSION = 1
 
 MODAL = ("shell", "half", "mode", "time")
+ERROR = ("shell", "quantity", "cause")
+ERRORS = "estimated error relative to the answer, L2 over the shell's surface and the whole time"
 
 ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "normal": (MODAL, "a", "modal normal displacement W, positive inward: w = sum W[0] cos(m theta) + W[1] sin(m theta)"),
@@ -46,8 +48,7 @@ def to_dataset(solution: ModalSolution) -> xr.Dataset:
     """Return the solution, its scenario and its circumstances as a dataset; arrays stay dimensionless, as the solver left them."""
     variables: dict[str, xr.Variable] = {
         "scenario": xr.Variable((), solution.problem.system.to_toml_string(), {"long_name": "the whole system as TOML, in SI"}),
-        "modal_displacement_estimate": xr.Variable("shell", solution.estimates.modal_displacement, {"units": "1"}),
-        "modal_stress_estimate": xr.Variable("shell", solution.estimates.modal_stress, {"units": "1"}),
+        "error_estimate": xr.Variable(ERROR, solution.estimates.by_cause(), {"units": "1", "long_name": ERRORS}),
     }
     for name, (dims, units, long_name) in ARRAYS.items():
         values = getattr(solution, name, None)
@@ -57,6 +58,8 @@ def to_dataset(solution: ModalSolution) -> xr.Dataset:
     coordinates: dict[str, xr.Variable] = {
         **time_coordinates(solution),
         "shell": xr.Variable("shell", np.arange(count), {"long_name": ", ".join(shell_name(i, count) for i in range(count))}),
+        "quantity": xr.Variable("quantity", list(QUANTITIES)),
+        "cause": xr.Variable("cause", list(CAUSES)),
         "mode": xr.Variable("mode", np.arange(solution.normal.shape[2]), {"long_name": "circumferential order m"}),
     }
     return xr.Dataset(variables, coordinates, _attributes(solution))
@@ -79,7 +82,6 @@ def _attributes(solution: ModalSolution) -> dict[str, Any]:
         "units_note": f"arrays are dimensionless: lengths in a = length_scale (m), times in {TRANSIT} = time_scale (s), pressures in "
         "rho_e c_e^2 = pressure_scale (Pa)",
         "settings": json.dumps(asdict(solution.settings)),
-        "time_window_estimate": float(solution.estimates.time_window),
         "warnings": json.dumps(list(solution.warnings)),
         "timings": json.dumps(solution.timings),
     }
@@ -98,6 +100,18 @@ def format_problem(attributes: Mapping[Any, Any]) -> InputError | None:
         by = attributes.get("coaxshell_version", "of a newer version")
         return InputError("", f"has format {int(version)} of coaxshell {by}, beyond {FORMAT_VERSION} of this version", "update coaxshell")
     return None
+
+
+def _estimates(dataset: xr.Dataset) -> Estimates:
+    if "error_estimate" in dataset:
+        found = dataset["error_estimate"]
+        if found.dims != ERROR or found.sizes["quantity"] != len(QUANTITIES):
+            raise ValueError(f"error_estimate has the dimensions {found.dims} and the shape {found.shape}")
+        return Estimates(*(found.sel(cause=cause).to_numpy() for cause in CAUSES))
+    # Files of earlier versions: one number for the time step of all shells, nothing of the march.
+    orders = np.stack([dataset[f"modal_{quantity}_estimate"].to_numpy() for quantity in QUANTITIES], axis=1)
+    step = np.full(orders.shape, float(dataset.attrs["time_window_estimate"]))
+    return Estimates(orders, step, np.full(orders.shape, np.nan))
 
 
 def from_dataset(dataset: xr.Dataset) -> ModalSolution:
@@ -125,11 +139,7 @@ def from_dataset(dataset: xr.Dataset) -> ModalSolution:
         problem=dimensionless(system),
         settings=Settings(**json.loads(dataset.attrs["settings"])),
         time=dataset["time"].to_numpy(),
-        estimates=Estimates(
-            modal_displacement=dataset["modal_displacement_estimate"].to_numpy(),
-            modal_stress=dataset["modal_stress_estimate"].to_numpy(),
-            time_window=float(dataset.attrs["time_window_estimate"]),
-        ),
+        estimates=_estimates(dataset),
         warnings=tuple(json.loads(dataset.attrs["warnings"])),
         timings=json.loads(dataset.attrs["timings"]),
         **arrays,

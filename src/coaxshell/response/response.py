@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.response import absorbers, fields, histories, storage, voltages
+from coaxshell.response import absorbers, errors, fields, histories, storage, voltages
 from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
@@ -88,6 +88,13 @@ class Response:
     def estimates(self) -> Estimates:
         """Relative errors estimated by the engine."""
         return self.solution.estimates
+
+    def errors(self) -> xr.DataArray:
+        """Return the relative errors estimated by the engine, dims (shell, quantity, cause): orders left out, time step, march, combined.
+
+        See :func:`coaxshell.response.errors.errors`.
+        """
+        return errors.errors(self.solution)
 
     @property
     def warnings(self) -> tuple[str, ...]:

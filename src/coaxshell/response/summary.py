@@ -9,6 +9,7 @@ from typing import Any
 from coaxshell.acoustics.circle import circle_angles
 from coaxshell.model.naming import shell_name
 from coaxshell.response import arguments
+from coaxshell.response.errors import error_table
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.summary_text import summary_text
@@ -45,6 +46,9 @@ class ShellSummary:
         Volts that the actuator stands.
     stress_truncation : float
         Estimate of what the orders above M would add to the stress, relative (L2 over surface and time).
+    errors : dict
+        Estimated relative errors by quantity ("displacement", "stress") and cause ("orders", "time step", "march", "combined"), None where
+        the engine does not estimate one; see :func:`coaxshell.response.errors.errors`.
     """
 
     name: str
@@ -62,6 +66,7 @@ class ShellSummary:
     segment: float | None
     actuator_limit: float | None
     stress_truncation: float
+    errors: dict[str, dict[str, float | None]]
 
 
 @dataclass(frozen=True)
@@ -81,7 +86,7 @@ class Summary:
     absorber_displacement, absorber_force : float or None
         Largest magnitude over all absorbers (and both sides), m and N/m; None without absorbers.
     time_window_error : float
-        Estimate of the error of the inverse transform, relative.
+        Largest estimate of the error by the time step of any displacement, relative.
     settings : dict
         Resolution of the run.
     warnings : tuple of str
@@ -176,4 +181,5 @@ def _shell(solution: ModalSolution, shell: int, span: slice, length: float) -> S
         segment=length if section.layer("sensor") else None,
         actuator_limit=actuator_limit(solution, shell).volts if section.layer("actuator") else None,
         stress_truncation=float(solution.estimates.modal_stress[shell]),
+        errors=error_table(solution, shell),
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -104,8 +103,11 @@ def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
 
 
 def _errors(summary: Mapping[str, Any]) -> list[str]:
-    parts = [f"{shell['name']} {shell['stress_truncation']:.1e}" for shell in summary["shells"]]
-    modes = f"orders left out of the stress: {', '.join(parts)}; " if parts else ""
-    error = summary["time_window_error"]
-    step = f"time window {error:.1e}" if math.isfinite(error) else "time step not estimated by this engine"
-    return [f"estimated relative errors: {modes}{step}"]
+    """Return the table of the estimated errors, one line a shell and quantity."""
+    rows: list[tuple[str, ...]] = []
+    for shell in summary["shells"]:
+        for quantity, causes in shell["errors"].items():
+            if not rows:
+                rows.append(("estimated relative errors", "", *causes))
+            rows.append((shell["name"], quantity, *("unknown" if one is None else f"{one:.1e}" for one in causes.values())))
+    return aligned(rows, left=2) if rows else []

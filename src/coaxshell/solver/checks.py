@@ -20,13 +20,14 @@ from coaxshell.solver.linked import LinkedSpectra
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.settings import MAX_MODES
-from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
 from coaxshell.solver.tension import AMBIENT, Tension
 
 THIN_SHELL_LIMIT = 0.1
 TRUNCATION_LIMIT = 1e-2
-WINDOW_LIMIT = 1e-4
+STEP_LIMIT = 1e-3
+MARCH_LIMIT = 1e-2
 LINEAR_ACOUSTICS_LIMIT = 1e-2
 VOLTAGE_LIMIT = 0.05
 CUT_LIMIT = 0.1
@@ -46,22 +47,30 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     )
 
 
-def after(problem: Problem, estimates: Estimates, max_order: int) -> list[str]:
-    """Return the warnings about the error estimates."""
+def after(problem: Problem, estimates: Estimates, settings: Settings) -> list[str]:
+    """Return the warnings about the error estimates, one a cause and shell: of displacement or stress, whichever is worse."""
+    order = settings.modes
+    assert isinstance(order, int)
+    step, more = settings.time_step, f'modes={min(2 * order, MAX_MODES)} or modes="auto"'
+    causes = (
+        (f"orders above {order} would change", estimates.orders, TRUNCATION_LIMIT, more),
+        (f"the band limit of time_step = {step:g} changes", estimates.time_step, STEP_LIMIT, f"time_step = {step / 2:g}"),
+        (f"steps of {step / settings.refinement:g} of the interface's march change", estimates.march, MARCH_LIMIT, _finer(settings)),
+    )
     warnings = []
-    for i, error in enumerate(estimates.modal_stress):
-        if error > TRUNCATION_LIMIT:
-            more = min(2 * max_order, MAX_MODES)
-            warnings.append(
-                f"{shell_phrase(i, len(problem.shells))}: orders above {max_order} would change the stress by {error:.2g} (relative RMS), "
-                f'more than {TRUNCATION_LIMIT:g}; use modes={more} or modes="auto"'
-            )
-    if estimates.time_window > WINDOW_LIMIT:
-        warnings.append(
-            f"the time step leaves an error of {estimates.time_window:.2g} of the largest displacement at the fronts, more than "
-            f"{WINDOW_LIMIT:g}; halve time_step"
-        )
+    for what, errors, limit, remedy in causes:
+        for i, pair in enumerate(errors):
+            worst = int(np.nan_to_num(pair).argmax())
+            if pair[worst] > limit:
+                warnings.append(
+                    f"{shell_phrase(i, len(problem.shells))}: {what} the {QUANTITIES[worst]} by {pair[worst]:.2g} (relative RMS), "
+                    f"more than {limit:g}; use {remedy}"
+                )
     return warnings
+
+
+def _finer(settings: Settings) -> str:
+    return f"time_step = {settings.time_step / 2:g} or refinement = {2 * settings.refinement}"
 
 
 def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSpectra, refinement: int) -> list[str]:

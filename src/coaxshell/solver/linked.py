@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import FloatArray
@@ -13,6 +14,7 @@ from coaxshell.solver.ingredients import point_force_shares
 from coaxshell.solver.linear_absorbers import solve_linear
 from coaxshell.solver.linear_ring import is_ring, solve_ring
 from coaxshell.solver.march import march
+from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.spectral import Progress
 
@@ -74,8 +76,25 @@ def solve_linked(
     return LinkedSpectra(normal, tangential, sides[absorbers.member], displacement[absorbers.member], correction, iterations)
 
 
+def interface_of(structure: PreparedStructure, absorbers: AbsorberSet, linked: LinkedSpectra) -> Interface:
+    """Return what absorbers and actuators did, for the error estimates."""
+    first = _representatives(absorbers)
+    force = linked.force[first].swapaxes(0, 1)
+    stretch = np.zeros_like(force)
+    if absorbers.count and not absorbers.is_linear:
+        points = InterfacePoints(structure.problem, absorbers, structure.max_order)
+        stretch = linked.displacement[first] - structure.grid.invert(points.evaluate(linked.normal)).reshape(force.shape)
+    return Interface(
+        absorbers, force.reshape(2 * absorbers.count, structure.grid.time.size), stretch, linked.correction, linked.iterations > 0
+    )
+
+
+def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:
+    """Return the number in the description of the first absorber that each one carried stands for."""
+    return np.array([int(np.flatnonzero(absorbers.member == i)[0]) for i in range(absorbers.count)], dtype=np.int64)
+
+
 def modal_pressure_of(structure: PreparedStructure, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:
     """Return the modal pressures (shells, halves, M + 1, T) of stored absorber forces (N, 2, T)."""
     points = InterfacePoints(structure.problem, absorbers, structure.max_order)
-    representative = np.array([int(np.flatnonzero(absorbers.member == i)[0]) for i in range(absorbers.count)])
-    return points.project(force[representative].swapaxes(0, 1).reshape(2 * absorbers.count, -1))
+    return points.project(force[_representatives(absorbers)].swapaxes(0, 1).reshape(2 * absorbers.count, -1))

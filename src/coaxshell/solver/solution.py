@@ -13,21 +13,54 @@ from coaxshell.solver.settings import Settings
 FloatArray = npt.NDArray[np.float64]
 
 
+QUANTITIES = ("displacement", "stress")
+CAUSES = ("orders", "time step", "march")
+"""Where errors come from, in the order of :meth:`Estimates.by_cause`."""
+
+
 @dataclass(frozen=True)
 class Estimates:
-    """Relative errors estimated by the engine itself, each relative to the L2 norm over the surface and the whole time.
+    """Relative errors estimated by the engine itself, of displacement [:, 0] and mid-surface stress [:, 1] of each shell.
+
+    Each is relative to the answer, both in the L2 norm over the surface and the whole time; NaN where an engine does not estimate it.
 
     Attributes
     ----------
-    modal_displacement, modal_stress : ndarray, shape (shells,)
-        What the orders above M would add to the displacement and to the mid-surface stress of each shell.
-    time_window : float
-        Wrap-around and band limit of the inverse Laplace transform, relative to the largest displacement.
+    orders : ndarray, shape (shells, 2)
+        What the orders above M would add and, through absorbers, change.
+    time_step : ndarray, shape (shells, 2)
+        Band limit of the inverse Laplace transform.
+    march : ndarray, shape (shells, 2)
+        Steps of nonlinear absorbers and saturating actuators; 0 without them.
     """
 
-    modal_displacement: FloatArray
-    modal_stress: FloatArray
-    time_window: float
+    orders: FloatArray
+    time_step: FloatArray
+    march: FloatArray
+
+    @property
+    def combined(self) -> FloatArray:
+        """Their sum, shape (shells, 2)."""
+        return self.orders + self.time_step + self.march
+
+    def by_cause(self) -> FloatArray:
+        """Return all of them, shape (shells, 2, causes)."""
+        return np.stack([self.orders, self.time_step, self.march], axis=-1)
+
+    @property
+    def modal_displacement(self) -> FloatArray:
+        """What the orders left out change in the displacement of each shell."""
+        return self.orders[:, 0]
+
+    @property
+    def modal_stress(self) -> FloatArray:
+        """What the orders left out change in the stress of each shell."""
+        return self.orders[:, 1]
+
+    @property
+    def time_window(self) -> float:
+        """The largest error by the time step, march included, of any displacement."""
+        return float((self.time_step + self.march)[:, 0].max(initial=0.0))
 
 
 @dataclass(frozen=True)

@@ -17,11 +17,13 @@ from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
-from coaxshell.solver.linked import LinkedSpectra, solve_linked
+from coaxshell.solver.linked import LinkedSpectra, interface_of, solve_linked
+from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.spectral import Progress, Stopwatch
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.tension import tensions
@@ -96,7 +98,7 @@ class Prepared:
             require_stable(self.problem, order, settings.duration, workshop)
             self._stopwatch.lap("stability of the feedback")
         self.structure: PreparedStructure = PreparedStructure(self.problem, grid, order, progress, workshop=workshop, forced=forced)
-        self._trust: Estimates | None = None
+        self._orders_above: SampledOrders | None = None
 
     def answers_like(self, problem: Problem, max_order: int) -> bool:
         """Return whether a problem differs at most in its sources, absorbers and field limits."""
@@ -123,22 +125,19 @@ class Prepared:
         return Prepared(problem, self._asked, self._progress, workshop=self._workshop, like=self)
 
     def _order(self, grid: LaplaceGrid, settings: Settings) -> int:
-        order, notes = estimates.resolve_modes(self.problem, grid, settings, self._workshop)
+        order, notes = resolve_modes(self.problem, grid, settings, self._workshop)
         self._notes += notes
         self._stopwatch.lap("choosing the number of modes")
         return order
 
     @property
-    def trust(self) -> Estimates:
-        """Error estimates of the structure without absorbers."""
-        if self._trust is None:
-            linear = self.structure.linear
-            structure = self.structure
-            displacement, stress = estimates.truncation(
-                self.problem, structure.grid, structure.max_order, linear.normal, linear.tangential, self._workshop
+    def _above(self) -> SampledOrders:
+        """The orders above M, whatever the absorbers."""
+        if self._orders_above is None:
+            self._orders_above = SampledOrders.of(
+                self.problem, self.structure.grid, orders_above(self.problem, self.structure.max_order + 1), self._workshop
             )
-            self._trust = Estimates(displacement, stress, estimates.window_error(structure.grid, linear.normal))
-        return self._trust
+        return self._orders_above
 
     def solve(self, absorbers: Iterable[Absorber] | AbsorberRing | None = None, progress: Progress | None = None) -> ModalSolution:
         """Return the modal histories with the given absorbers; with the system's own if None.
@@ -175,15 +174,16 @@ class Prepared:
             normal, tangential = structure.linear.normal, structure.linear.tangential
             stopwatch.lap("modal system at all Laplace nodes")
             require_finite_stages(structure, None)
-        trust = self.trust
-        stopwatch.lap("error estimates")
         order, keep = structure.max_order, slice(None, None, self.settings.refinement)
         w, v = grid.invert(normal)[..., keep], grid.invert(tangential)[..., keep]
         rates: list[FloatArray | None] = [None, None]
         if any(shell.gains is not None for shell in problem.shells):
             rates = [grid.invert(x * grid.nodes)[..., keep] for x in (normal, tangential)]
         stopwatch.lap("inverse transform")
-        warnings += checks.before(problem, grid, order) + checks.after(problem, trust, order)
+        interface = None if linked is None else interface_of(structure, links, linked)
+        trust = estimates.estimated_errors(structure, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
+        stopwatch.lap("error estimates")
+        warnings += checks.before(problem, grid, order) + checks.after(problem, trust, self.settings)
         warnings += checks.tension(problem, tensions(problem, grid, normal))
         stopwatch.lap("pressure on the walls")
         timings, self._stopwatch = stopwatch.seconds, Stopwatch()

@@ -81,6 +81,7 @@ def curves(response: Response, seconds: float) -> Packed:
             "stress": [_finite(value) for value in response.estimates.modal_stress],
             "displacement": [_finite(value) for value in response.estimates.modal_displacement],
             "time_window": _finite(response.estimates.time_window),
+            "errors": [shell.errors for shell in summary.shells],
         },
         "warnings": list(response.warnings),
     }

@@ -7,14 +7,21 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import FloatArray
 from coaxshell.model.system import System
-from coaxshell.solver import checks, estimates
-from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver import checks
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.engine import march_directly
+from coaxshell.solver.direct.result import DirectResult
+from coaxshell.solver.estimates import ORDERS_FACTOR
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures
-from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.mode_choice import resolve_modes
+from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
+from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.sampled_orders import SampledOrders, orders_above
+from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Progress, Stopwatch
@@ -36,7 +43,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     problem = dimensionless(system)
     grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
     require_room(problem, settings)
-    order, warnings = estimates.resolve_modes(problem, grid, settings)
+    order, warnings = resolve_modes(problem, grid, settings)
     if settings.modes == "auto":
         require_room(problem, replace(settings, modes=order))
     require_stable(problem, order, settings.duration)
@@ -47,7 +54,8 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)
     stopwatch.lap("time steps")
     w, v = result.normal, result.tangential
-    trust = Estimates(*estimates.truncation(problem, grid, order, grid.transform(w), grid.transform(v)), time_window=float("nan"))
+    left_out = _left_out(problem, grid, order, links, result)
+    trust = Estimates(left_out, np.full_like(left_out, np.nan), np.full_like(left_out, np.nan))
     stopwatch.lap("error estimates")
     keep = slice(None, None, settings.refinement)
     solution = ModalSolution(
@@ -61,5 +69,20 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         solution = replace(solution, absorber_displacement=displacement[:, keep], absorber_force=force[..., keep])
     if result.correction is not None:
         solution = replace(solution, control_correction=result.correction[..., keep])
-    warnings += checks.before(problem, grid, order) + checks.after(problem, trust, order) + checks.actuators(solution)
+    warnings += checks.before(problem, grid, order) + checks.after(problem, trust, solution.settings) + checks.actuators(solution)
     return replace(solution, warnings=tuple(warnings))
+
+
+def _left_out(problem: Problem, grid: LaplaceGrid, order: int, links: AbsorberSet, result: DirectResult) -> FloatArray:
+    """Return the printed error by the orders left out; compliances are those of the Laplace domain."""
+    interface = None
+    if links.count:
+        force = result.absorber_force.swapaxes(0, 1)
+        walls = InterfacePoints(problem, links, order).evaluate(result.normal).reshape(force.shape)
+        stretch = result.absorber_displacement - walls
+        interface = Interface(links, force.reshape(2 * links.count, -1), stretch, result.correction, marched=True)
+    above = SampledOrders.of(problem, grid, orders_above(problem, order + 1))
+    histories = result.normal, result.tangential
+    spectra = grid.transform(result.normal), grid.transform(result.tangential)
+    whole = surface_norms(*histories) * grid.time_step
+    return ORDERS_FACTOR * left_out(PreparedStructure(problem, grid, order), above, spectra, whole, interface)

@@ -1,0 +1,117 @@
+"""The number of modes that a tolerance asks for, chosen before the run from a sample of orders.
+
+What sources excite falls off with the order; what absorbers excite does too, once they are as many modes as they need to feel the wall.
+Their forces are not known before the run: they are estimated for each absorber alone on its two walls, cubic springs by the stiffness of
+the stretch that comes out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import FloatArray
+from coaxshell.solver.absorbers import AbsorberSet, absorber_set
+from coaxshell.solver.estimates import ORDERS_FACTOR
+from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.solver.workshop import Workshop
+
+_FEWEST = 8
+_GROWTH = 1.25
+_LINEARISATIONS = 4
+
+
+def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, workshop: Workshop | None = None) -> tuple[int, float]:
+    """Return the smallest order M whose estimated stress error is within the tolerance on every shell, and that estimate.
+
+    If even 2000 orders are not enough, 2000 and what remains.
+    """
+    orders = np.unique(np.concatenate([np.arange(0, 33), np.geomspace(36, 2 * MAX_MODES, 48).round()]))
+    sampled = SampledOrders.of(problem, grid, orders, workshop)
+    system = problem.system
+    links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
+    squares = sampled.excited
+    if links.count:
+        links, motion, force = _free_forces(sampled, links, grid)
+        squares = squares + sampled.forced(force_density(problem, links, force))
+    strain = sampled.norms(squares)[:, 1]
+    remaining = ORDERS_FACTOR * share_above(orders, strain)
+    enough = np.flatnonzero(remaining <= tolerance)
+    chosen = min(max(int(enough[0]) if enough.size else MAX_MODES, _FEWEST), MAX_MODES)
+    while links.count:
+        changed = ORDERS_FACTOR * _changed(sampled, links, motion, force, strain, chosen)
+        if max(changed, remaining[chosen]) <= tolerance or chosen == MAX_MODES:
+            return chosen, float(max(changed, remaining[chosen]))
+        chosen = min(int(_GROWTH * chosen) + 1, MAX_MODES)
+    return chosen, float(remaining[chosen])
+
+
+def share_above(orders: FloatArray, norms: FloatArray) -> FloatArray:
+    """Return sqrt of the share of all orders' norm that lies above 0, 1, 2, ..., of the shell where it is largest.
+
+    Parameters
+    ----------
+    orders : ndarray, shape (sampled,)
+        Ascending from 0; between them norms are interpolated (log-log).
+    norms : ndarray, shape (shells, sampled)
+    """
+    every = np.arange(0, int(orders[-1]) + 1)
+    remaining = np.zeros(every.size)
+    for row in norms:
+        dense = np.exp(np.interp(np.log(every + 1.0), np.log(orders + 1.0), np.log(np.maximum(row, 1e-300))))
+        total = dense.sum()
+        if total > 1e-290:
+            remaining = np.maximum(remaining, np.sqrt((np.cumsum(dense[::-1])[::-1] - dense) / total))
+    return remaining
+
+
+def _free_forces(sampled: SampledOrders, links: AbsorberSet, grid: LaplaceGrid) -> tuple[AbsorberSet, ComplexArray, ComplexArray]:
+    """Return linear absorbers instead, the walls' motion without them and their forces, (2, N, nodes), phases drawn at random."""
+    sides = np.stack([links.inner_shell, links.inner_shell + 1])
+    phase = np.exp(2j * np.pi * np.random.default_rng(0).random((*sides.shape, sampled.nodes.size)))
+    motion = phase * np.sqrt(sampled.motion())[sides]
+    linear = replace(links, cubic=np.zeros_like(links.cubic))
+    mobility = sampled.mobility()
+    force = each_alone(linear, sampled.nodes, mobility, motion)
+    mean = 2.0 * grid.shift * NODES.step * grid.frequency_step / np.pi  # of squares over the time that the contour weighs
+    for _ in range(0 if links.is_linear else _LINEARISATIONS):
+        law = linear.damping[:, None] * sampled.nodes + linear.linear[:, None]
+        stretch = mean * (np.abs(force / law) ** 2).sum(axis=-1).max(axis=0)
+        spring = links.linear + 3.0 * links.cubic * stretch
+        linear = replace(linear, linear=np.sqrt(spring * linear.linear) if np.all(linear.linear > 0) else spring)  # between: no swinging
+        force = each_alone(linear, sampled.nodes, mobility, motion)
+    return linear, motion, force
+
+
+def _changed(
+    sampled: SampledOrders, links: AbsorberSet, motion: ComplexArray, force: ComplexArray, strain: FloatArray, order: int
+) -> float:
+    """Return what leaving out the orders above one changes in the stress through the absorbers, relative, on the worst shell."""
+    sides = np.stack([links.inner_shell, links.inner_shell + 1])
+    moved = np.einsum("abnk,bnk->ank", sampled.mobility(order)[sides[:, None], sides[None, :]], force)
+    whole, beyond = sampled.motion(), sampled.motion(order)
+    share = np.sqrt(np.divide(beyond, whole, out=np.zeros_like(whole), where=whole > 0))
+    change = each_alone(links, sampled.nodes, sampled.mobility(), moved + motion * share[sides])
+    kept = np.where(sampled.orders <= order, sampled.weight, 0.0)
+    part = sampled.norms(sampled.forced(force_density(sampled.problem, links, change)))[:, 1] @ kept
+    total = strain @ sampled.weight
+    return float(np.sqrt(np.divide(part, total, out=np.zeros_like(part), where=total > 1e-290)).max())
+
+
+def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings, workshop: Workshop | None = None) -> tuple[int, list[str]]:
+    """Return the number of modes asked for, chosen by the tolerance if "auto", and a warning if 2000 are not enough."""
+    if settings.modes != "auto":
+        return settings.modes, []
+    order, remaining = choose_modes(problem, grid, settings.tolerance, workshop)
+    if remaining <= settings.tolerance:
+        return order, []
+    return order, [
+        f'modes="auto": {order} orders, the most that are allowed, leave an estimated {remaining:.2g} of the stress, more than '
+        f"the tolerance {settings.tolerance:g}; accept it or shorten the source's spectrum (a longer rise_time)"
+    ]

@@ -1,0 +1,181 @@
+"""What the orders above M would add, and what they would change in the orders kept.
+
+Sources excite the orders above M themselves. Absorbers add two things. Their forces f excite every order; and they feel a wall that is
+softer by the compliance dG of the orders left out, and that moves by dw more than it should: with f = -Y w, w = w_linear + G f in the run,
+
+    (1 + (G + dG) Y) dw_all = dw + dG f,      df = -Y dw_all,
+
+and df moves the orders kept. Cubic springs count with their mean tangent.
+
+Norms along the contour weigh early times, e^{-2 sigma t}. How long a mode goes on is taken from the run itself: each order's norm over all
+times is known, and those above M go on as the highest kept do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.linear_absorbers import admittance
+from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
+
+FloatArray = npt.NDArray[np.float64]
+
+REST = 1e-7
+"""A shell that moves less than this times the one that moves most has not been reached: what it shows is rounding."""
+LEAST_TRUE = 0.3
+_COUPLED_POINTS = 64
+"""Points up to which absorbers are solved together; more of them each alone with its two walls."""
+
+
+@dataclass(frozen=True)
+class Interface:
+    """What an interface did in a run.
+
+    Attributes
+    ----------
+    links : AbsorberSet
+    force : ndarray, shape (2N, T)
+        Line forces at every instant of the grid.
+    stretch : ndarray, shape (2, N, T)
+        D.
+    correction : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressures that saturated actuators lack.
+    marched : bool
+        Whether steps were taken, or the interface solved exactly.
+    """
+
+    links: AbsorberSet
+    force: FloatArray
+    stretch: FloatArray
+    correction: FloatArray | None
+    marched: bool
+
+
+def surface_norms(normal: npt.NDArray[np.number], tangential: npt.NDArray[np.number]) -> FloatArray:
+    """Return the mean squares over the surface of displacement W and strain m V - W, summed over the last axis: (shells, 2, M + 1).
+
+    The arguments have the shape (shells, halves, M + 1, instants or nodes).
+    """
+    m = np.arange(normal.shape[2])
+    strain = m[:, None] * tangential
+    strain -= normal
+    squares = np.stack([np.einsum("ihmt,ihmt->im", x, np.conj(x)).real for x in (normal, strain)], axis=1)
+    return np.asarray(squares * np.where(m == 0, 1.0, 0.5))
+
+
+def relative(part: FloatArray, whole: FloatArray) -> FloatArray:
+    """Return sqrt(part/whole) of mean squares, shape (shells, 2); a shell at rest beside the others counts with what rest means to them."""
+    whole = np.maximum(whole, REST**2 * whole.max(axis=0))
+    return np.asarray(np.sqrt(np.divide(part, whole, out=np.zeros_like(part), where=whole > 0)))
+
+
+def of_the_truth(added: FloatArray, changed: FloatArray, whole: FloatArray) -> FloatArray:
+    """Return the error relative to the true answer, shape (shells, 2), from the squares of its parts and of the run's own answer.
+
+    What the orders above M add is orthogonal to the run, what they change in its orders may be all of it or against it: the true answer
+    is at least sqrt(added + (whole^(1/2) - changed^(1/2))^2), of which we take at least 0.3 of the run's.
+    """
+    change, addition = relative(changed, whole), relative(added, whole)
+    truth = np.hypot(np.maximum(1.0 - change, LEAST_TRUE), addition)
+    return np.asarray(np.hypot(change, addition) / truth)
+
+
+def persistence(grid: LaplaceGrid, whole: FloatArray, along: FloatArray) -> FloatArray:
+    """Return norms over all times of the run per norm along the contour's sampled nodes; of something brief where nothing moves."""
+    brief = NODES.step * grid.frequency_step / np.pi  # Parseval
+    return np.asarray(np.divide(whole, along, out=np.full_like(whole, brief), where=along > 1e-280))
+
+
+def mean_tangent(links: AbsorberSet, stretch: FloatArray) -> AbsorberSet:
+    """Return the absorbers with their mean tangent stiffness k_l + 3 k_nl <D^4>/<D^2> for linear springs; D of shape (2, N, T)."""
+    if links.is_linear:
+        return links
+    squares = (stretch**2).sum(axis=(0, 2))
+    fourth = (stretch**4).sum(axis=(0, 2))
+    spread = np.divide(fourth, squares, out=np.zeros_like(squares), where=squares > 0)
+    return replace(links, linear=links.linear + 3.0 * links.cubic * spread, cubic=np.zeros_like(links.cubic))
+
+
+def forces_changed(structure: PreparedStructure, links: AbsorberSet, above: SampledOrders, force: ComplexArray) -> ComplexArray:
+    """Return df, shape (2, N, nodes), at the sampled nodes; ``force`` are the run's own, ``links`` linear.
+
+    The phases of dw, known by their mean squares alone, are drawn at random, the same in every run.
+    """
+    nodes, count = structure.grid.nodes[NODES], links.count
+    soft = above.mobility()
+    sides = np.stack([links.inner_shell, links.inner_shell + 1])
+    moved = np.einsum("abnk,bnk->ank", soft[sides[:, None], sides[None, :]], force)
+    phase = np.exp(2j * np.pi * np.random.default_rng(0).random(moved.shape))
+    moved = moved + phase * np.sqrt(above.motion())[sides]
+    if 2 * count > _COUPLED_POINTS:
+        return each_alone(links, nodes, soft + _mean_mobility(structure), moved)
+    points = InterfacePoints(structure.problem, links, structure.max_order)
+    receptance = points.receptance(structure.compliance[..., NODES])
+    index = np.arange(count)
+    for a in (0, 1):
+        for b in (0, 1):
+            receptance[:, a * count + index, b * count + index] += soft[sides[a], sides[b]].T
+    own, other, _ = admittance(links, nodes)
+    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
+    for a in (0, 1):
+        law[:, a * count + index, a * count + index] = own
+        law[:, a * count + index, (1 - a) * count + index] = other
+    wall = np.linalg.solve(np.eye(2 * count) + receptance @ law, moved.reshape(2 * count, -1).T[:, :, None])
+    return np.asarray(-(law @ wall)[:, :, 0].T.reshape(2, count, -1))
+
+
+def _mean_mobility(structure: PreparedStructure) -> ComplexArray:
+    """Return the mobility of a point by the orders kept, shape (shells, shells, nodes)."""
+    problem, share = structure.problem, np.where(np.arange(structure.max_order + 1) == 0, 0.5, 1.0)
+    radius = np.pi * np.array([shell.radius for shell in problem.shells])
+    return np.asarray(np.einsum("ijmk,m->ijk", structure.compliance[..., NODES], share) / radius[:, None])
+
+
+def moved_by(structure: PreparedStructure, links: AbsorberSet, force: ComplexArray) -> FloatArray:
+    """Return the norms (shells, 2, M + 1) of what line forces (2, N, nodes) at the sampled nodes move in the orders kept."""
+    pressure = InterfacePoints(structure.problem, links, structure.max_order).project(force.reshape(2 * links.count, -1))
+    compliance, ratio = structure.compliance[..., NODES], structure.tangential_ratio[..., NODES]
+    normal = np.einsum("ijmk,jhmk->ihmk", compliance, pressure)
+    return surface_norms(normal, ratio[:, None] * normal)
+
+
+def left_out(
+    structure: PreparedStructure,
+    above: SampledOrders,
+    spectra: tuple[ComplexArray, ComplexArray],
+    whole: FloatArray,
+    interface: Interface | None = None,
+) -> FloatArray:
+    """Return what the orders left out would change in displacement and stress of each shell, shape (shells, 2), relative.
+
+    Parameters
+    ----------
+    structure : PreparedStructure
+    above : SampledOrders
+        Of orders above M.
+    spectra : pair of ndarray
+        W and V of the run.
+    whole : ndarray, shape (shells, 2, M + 1)
+        Norms of the run over all times.
+    interface : Interface, optional
+    """
+    grid = structure.grid
+    along = surface_norms(*(x[..., NODES] for x in spectra))
+    lasting = persistence(grid, whole, along)
+    squares, changed = above.excited, np.zeros_like(along)
+    if interface is not None and interface.links.count:
+        links = mean_tangent(interface.links, interface.stretch)
+        force = grid.transform_linear(interface.force)[:, NODES].reshape(2, links.count, -1)
+        change = forces_changed(structure, links, above, force)
+        squares = squares + above.forced(force_density(above.problem, links, force + change))
+        changed = moved_by(structure, links, change)
+    high = slice(-max(1, whole.shape[-1] // 3), None)
+    beyond = persistence(grid, whole[..., high].sum(axis=-1), along[..., high].sum(axis=-1))
+    return of_the_truth(above.norms(squares) @ above.weight * beyond, (changed * lasting).sum(axis=-1), whole.sum(axis=-1))

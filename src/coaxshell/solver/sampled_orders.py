@@ -1,0 +1,167 @@
+"""The structure at a sample of circumferential orders and Laplace nodes: what sources and absorbers excite there.
+
+The orders above M are not extrapolated: a sample of them is solved. That matters because modal stress need not decay steadily: near the
+order R sqrt(a22/d22), where a shell's membrane and bending frequencies cross (m = 284 for the paper's shells), it rises again
+before it falls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.solver.absorbers import AbsorberSet
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.excitation import SurfaceLoads
+from coaxshell.solver.linear_absorbers import admittance
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.settings import MAX_MODES
+from coaxshell.solver.workshop import Workshop
+
+FloatArray = npt.NDArray[np.float64]
+
+NODES = slice(0, None, 12)
+"""Every twelfth node: poles are at least sigma from the contour, and sums over nodes 3 sigma apart err by 30 % for one such pole,
+by less for the many poles of many orders."""
+_SAMPLE = 20
+
+
+def crossing_order(problem: Problem) -> float:
+    """Return the largest order R sqrt(a22/d22) at which a shell's membrane and bending frequencies cross."""
+    sections = [shell.section for shell in problem.shells if shell.section is not None]
+    return max((s.radius * float(np.sqrt(s.membrane / s.bending)) for s in sections if s.bending > 0), default=0.0)
+
+
+def orders_above(problem: Problem, first: int) -> FloatArray:
+    """Return about 20 orders from ``first`` to well above four times it and the crossing order, geometrically spaced."""
+    top = min(2 * MAX_MODES, int(max(4 * first, 2.2 * crossing_order(problem), first + 32)))
+    return np.unique(np.geomspace(first, top, _SAMPLE).round())
+
+
+def standing_for(orders: FloatArray) -> FloatArray:
+    """Return how many orders each of an ascending sample stands for (trapezoidal rule); the last one for half as many as it counts more."""
+    gaps = np.diff(orders)
+    weight: FloatArray = 0.5 * (np.append(gaps, 0.0) + np.insert(gaps, 0, 0.0))
+    weight[0] += 0.5
+    weight[-1] += 0.5 + 0.5 * orders[-1]
+    return weight
+
+
+@dataclass(frozen=True)
+class SampledOrders:
+    """Responses of some orders at every twelfth node of a grid.
+
+    Attributes
+    ----------
+    problem : Problem
+    orders, weight : ndarray, shape (orders,)
+        The orders, and how many each stands for.
+    nodes : ndarray, shape (nodes,)
+    excited : ndarray, shape (shells, orders, nodes)
+        |W|^2 under the sources, both halves together.
+    strain : ndarray, shape (shells, orders, nodes)
+        |m V/W - 1|^2: the strain's share of |W|^2.
+    modal : ModalSystem
+    """
+
+    problem: Problem
+    orders: FloatArray
+    weight: FloatArray
+    nodes: ComplexArray
+    excited: FloatArray
+    strain: FloatArray
+    modal: ModalSystem
+
+    @classmethod
+    def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> SampledOrders:
+        """Solve a problem at some ascending orders."""
+        count, nodes = len(problem.shells), grid.nodes[NODES]
+        modal = ModalSystem(problem, nodes, orders, workshop=workshop)
+        excited = np.zeros((count, orders.size, nodes.size))
+        for load in SurfaceLoads(problem, grid, orders, workshop)(modal.surface, NODES):
+            excited += np.abs(np.stack(modal.solve(count - 1, load))) ** 2
+        strain = [
+            np.zeros((orders.size, nodes.size)) if wall is None else np.abs(orders[:, None] * wall.tangential - 1.0) ** 2
+            for wall in modal.shells
+        ]
+        return cls(problem, orders, standing_for(orders), nodes, excited, np.stack(strain), modal)
+
+    @cached_property
+    def compliance(self) -> ComplexArray:
+        """C_ij, shape (shells, shells, orders, nodes): W of shell i per modal pressure on shell j."""
+        return np.stack([np.stack(self.modal.solve(j, 1.0)) for j in range(len(self.problem.shells))], axis=1)
+
+    def norms(self, squares: FloatArray) -> FloatArray:
+        """Return the mean squares over the surface of displacement and strain, summed over the nodes, of each order.
+
+        Parameters
+        ----------
+        squares : ndarray, shape (shells, orders, nodes)
+            |W|^2, both halves together.
+
+        Returns
+        -------
+        ndarray, shape (shells, 2, orders)
+        """
+        share = np.where(self.orders == 0, 1.0, 0.5)
+        return np.stack([squares.sum(axis=-1), (squares * self.strain).sum(axis=-1)], axis=1) * share
+
+    def forced(self, density: ComplexArray) -> FloatArray:
+        """Return |W|^2 of every shell and order under point forces, shape (shells, orders, nodes).
+
+        Parameters
+        ----------
+        density : ndarray, shape (shells, shells, nodes)
+            sum_n f_n,j conj(f_n,k) of the line forces on shells j and k: cos^2 and sin^2 of m theta_n add to 1, and products of
+            different absorbers' forces cancel over the orders.
+        """
+        radius = np.pi * np.array([shell.radius for shell in self.problem.shells])
+        moved = np.einsum("ijmk,jlk->ilmk", self.compliance / radius[:, None, None], density)
+        squares = np.einsum("ilmk,ilmk->imk", moved, np.conj(self.compliance) / radius[:, None, None])
+        return np.asarray(squares.real, dtype=np.float64)
+
+    def mobility(self, above: int = -1) -> ComplexArray:
+        """Return the displacement at a point of shell i per line force at the same angle of shell j, shape (shells, shells, nodes).
+
+        Of the orders above one alone if it is given.
+        """
+        radius = np.pi * np.array([shell.radius for shell in self.problem.shells])
+        share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 0.5, 1.0)
+        return np.asarray(np.einsum("ijmk,m->ijk", self.compliance, share) / radius[:, None])
+
+    def motion(self, above: int = -1) -> FloatArray:
+        """Return the mean square of the motion of a point of every shell under the sources, shape (shells, nodes); alike."""
+        share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 1.0, 0.5)
+        return np.asarray(np.einsum("imk,m->ik", self.excited, share))
+
+
+def force_density(problem: Problem, links: AbsorberSet, force: ComplexArray) -> ComplexArray:
+    """Return sum_n f_n,j conj(f_n,k) on shells j, k, shape (shells, shells, nodes), from line forces (2, N, nodes)."""
+    density = np.zeros((len(problem.shells), len(problem.shells), force.shape[-1]), np.complex128)
+    for inner in np.unique(links.inner_shell):
+        members = links.inner_shell == inner
+        pair, sides = slice(inner, inner + 2), force[:, members]
+        density[pair, pair] += np.einsum("ank,bnk,n->abk", sides, np.conj(sides), links.multiplicity[members])
+    return density
+
+
+def each_alone(links: AbsorberSet, nodes: ComplexArray, mobility: ComplexArray, motion: ComplexArray) -> ComplexArray:
+    """Return the forces (2, N, nodes) of absorbers that do not feel each other on walls that would move by ``motion`` (2, N, nodes).
+
+    ``mobility`` is that of :meth:`SampledOrders.mobility`.
+    """
+    own, other, _ = (x.T for x in admittance(links, nodes))
+    force = np.empty(motion.shape, np.complex128)
+    for n, inner in enumerate(links.inner_shell):
+        (g00, g01), (g10, g11) = mobility[inner : inner + 2, inner : inner + 2]
+        a, b = 1.0 + g00 * own[n] + g01 * other[n], g00 * other[n] + g01 * own[n]
+        c, d = g10 * own[n] + g11 * other[n], 1.0 + g10 * other[n] + g11 * own[n]
+        determinant = a * d - b * c
+        here, there = (d * motion[0, n] - b * motion[1, n]) / determinant, (a * motion[1, n] - c * motion[0, n]) / determinant
+        force[0, n], force[1, n] = -(own[n] * here + other[n] * there), -(other[n] * here + own[n] * there)
+    return force

@@ -1,0 +1,167 @@
+"""What the time step costs: the band limit of the inverse transform, and the march of nonlinear interfaces.
+
+Both are differences between two answers of the run at some of its orders, in norms over the surface and the whole time, so that they
+are the same wherever the source stands.
+
+- Band limit: what changes when the roll-off is widened from a fifth to two fifths of the band. Spectra that still matter there also
+  go on above the band.
+- March: the interface marched again at four times the step, with the same kernels summed to longer steps. It converges at second order,
+  so that the difference is fifteen times the error where the step resolves the interface, and about once where it does not.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.errors import InputError
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.history import KernelTable
+from coaxshell.solver.march import march
+from coaxshell.solver.orders_left_out import relative
+from coaxshell.solver.prepared import ForcedParts, PreparedStructure
+
+FloatArray = npt.NDArray[np.float64]
+
+WIDE_ROLL_OFF = 0.4
+MOST = 10.0
+"""Difference beyond which a march at longer steps says only that it fails."""
+COARSENING = 4
+ROUNDING = float(np.finfo(np.float64).eps)
+_FEW, _MORE = 16, 28
+"""Orders whose histories are compared."""
+
+
+def _some_orders(max_order: int, count: int) -> npt.NDArray[np.int64]:
+    """Return all orders up to M, or some at equal distances."""
+    return np.unique(np.linspace(0, max_order, min(max_order + 1, count)).round().astype(np.int64))
+
+
+def _of_orders(
+    grid: LaplaceGrid, normal: ComplexArray, tangential: ComplexArray, orders: npt.NDArray[np.int64], window: FloatArray
+) -> FloatArray:
+    """Return the norms (shells, 2) of some orders of a motion, from its transforms (shells, halves, orders, nodes)."""
+    share = np.where(orders == 0, 1.0, 0.5)
+    squares = [np.sum(grid.invert(x, window) ** 2, axis=(1, 3)) for x in (normal, orders[:, None] * tangential - normal)]
+    return np.stack(squares, axis=1) @ share
+
+
+def band_limit(grid: LaplaceGrid, normal: ComplexArray, tangential: ComplexArray, whole: FloatArray) -> FloatArray:
+    """Return the relative error of displacement and stress by the band limit, shape (shells, 2), from all transforms of a run.
+
+    ``whole`` are the norms of the run, (shells, 2, M + 1), summed over the instants of the grid.
+    """
+    orders = _some_orders(normal.shape[2] - 1, _FEW)
+    change = _of_orders(grid, normal[:, :, orders], tangential[:, :, orders], orders, grid.taper() - grid.taper(WIDE_ROLL_OFF))
+    total = whole.sum(axis=-1)
+    return relative(change * _spread(orders), total) + grid.wrap_around + rounding(grid, total)
+
+
+def rounding(grid: LaplaceGrid, whole: FloatArray) -> FloatArray:
+    """Return the relative error by rounding: of the shell that moves most, amplified by e^{sigma t} up to the end, on every shell."""
+    amplified: FloatArray = relative(np.broadcast_to(whole.max(axis=0), whole.shape), whole) * (ROUNDING / np.sqrt(grid.wrap_around))
+    return amplified
+
+
+class CoarserStructure(PreparedStructure):
+    """A structure seen at every few steps of another: kernels for forces that are linear over the longer steps.
+
+    Parameters
+    ----------
+    fine : PreparedStructure
+    every : int
+        Steps of the fine one in one of this.
+    saturate : bool
+        Whether voltages are needed.
+    """
+
+    def __init__(self, fine: PreparedStructure, every: int, saturate: bool) -> None:
+        grid = LaplaceGrid(fine.grid.time_step * every, fine.grid.steps // every)
+        table = fine.kernels_with_voltage if saturate else fine.kernels
+        coarse = KernelTable(_summed(table.kernels, every, grid.time.size))
+        forced = ForcedParts(kernels_with_voltage=coarse) if saturate else ForcedParts(kernels=coarse)
+        super().__init__(fine.problem, grid, fine.max_order, forced=forced)
+        self._fine, self._kept = fine, slice(0, grid.time.size * every, every)
+
+    @cached_property
+    def linear_displacement(self) -> FloatArray:
+        """W without absorbers at the kept instants."""
+        return self._fine.linear_displacement[..., self._kept]
+
+    @cached_property
+    def linear_velocity(self) -> FloatArray:
+        """dW/dt without absorbers there."""
+        return self._fine.linear_velocity[..., self._kept]
+
+    @cached_property
+    def linear_voltage(self) -> FloatArray:
+        """Voltages asked for without absorbers or saturation there."""
+        return self._fine.linear_voltage[..., self._kept]
+
+
+def _summed(weights: FloatArray, every: int, steps: int) -> FloatArray:
+    """Return step weights for steps *every* times longer: a hat as wide is the sum of narrower ones."""
+    padded = np.zeros((*weights.shape[:-1], steps * every + 2 * every))
+    length = min(weights.shape[-1], steps * every + every)
+    padded[..., every : every + length] = weights[..., :length]
+    total = np.zeros((*weights.shape[:-1], steps))
+    for shift in range(1 - every, every):
+        start = every + shift
+        total += (1.0 - abs(shift) / every) * padded[..., start : start + steps * every : every]
+    return total
+
+
+def march_difference(
+    structure: PreparedStructure, links: AbsorberSet, force: FloatArray, correction: FloatArray | None, whole: FloatArray
+) -> FloatArray:
+    """Return how much displacement and stress differ when the interface is marched at four times the step, shape (shells, 2), relative.
+
+    MOST if that march does not converge.
+
+    Parameters
+    ----------
+    structure : PreparedStructure
+    links : AbsorberSet
+    force : ndarray, shape (2N, T)
+        Of the run.
+    correction : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressures that saturated actuators lack in the run.
+    whole : ndarray, shape (shells, 2)
+        Mean squares of the run's motion, summed over the instants of its grid.
+    """
+    grid = structure.grid
+    coarser = CoarserStructure(structure, COARSENING, correction is not None)
+    unknown = np.where(whole > 0, MOST, 0.0)
+    try:
+        with np.errstate(all="ignore"):
+            coarse = march(coarser, links, saturate=correction is not None)
+    except (InputError, np.linalg.LinAlgError, FloatingPointError):
+        return unknown
+    if not np.abs(coarse.modal_pressure).max(initial=0.0) < 1e100:
+        return unknown
+    orders = _some_orders(structure.max_order, _MORE)
+    points = InterfacePoints(structure.problem, links, structure.max_order)
+    pressure = points.project(grid.transform_linear(_between(coarser, grid, coarse.force) - force))[:, :, orders]
+    if correction is not None and coarse.correction is not None:
+        pressure += grid.transform_linear(_between(coarser, grid, coarse.correction[:, :, orders]) - correction[:, :, orders])
+    normal = np.einsum("ijmk,jhmk->ihmk", structure.compliance[:, :, orders], pressure)
+    tangential = structure.tangential_ratio[:, None, orders] * normal
+    change = _of_orders(grid, normal, tangential, orders, grid.taper()) * _spread(orders)
+    return np.minimum(relative(change, whole), MOST)
+
+
+def _spread(orders: npt.NDArray[np.int64]) -> float:
+    """Return how many orders each of some equally distant ones stands for."""
+    return float(max(1.0, (orders[-1] + 1) / orders.size))
+
+
+def _between(coarser: PreparedStructure, grid: LaplaceGrid, histories: FloatArray) -> FloatArray:
+    """Return histories of the coarser grid at the instants of the fine one, by straight lines; the last value goes on."""
+    position = np.minimum(grid.time / coarser.grid.time_step, coarser.grid.steps)
+    left = np.minimum(position.astype(int), coarser.grid.steps - 1)
+    part = position - left
+    return np.asarray(histories[..., left] * (1.0 - part) + histories[..., left + 1] * part)

@@ -1,0 +1,89 @@
+"""Oracles and printed errors over many random systems, and what came of them as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from oracles import ORACLES, limit
+from random_systems import Case, random_case
+from true_errors import true_errors
+
+import coaxshell as cx
+
+RIGHT = 1e-9
+"""True errors below are not worth printing."""
+
+
+@dataclass
+class Study:
+    """What many systems came to.
+
+    Attributes
+    ----------
+    mismatches : dict
+        By oracle, a list of (mismatch over its limit, seed, kind).
+    ratios : dict
+        By cause and quantity, a list of (true/printed, seed, kind).
+    refused : list of str
+        Runs that ended in an InputError, and why.
+    """
+
+    mismatches: dict[str, list[tuple[float, int, str]]] = field(default_factory=dict)
+    ratios: dict[tuple[str, str], list[tuple[float, int, str]]] = field(default_factory=dict)
+    refused: list[str] = field(default_factory=list)
+
+    def add(self, seed: int, oracles: Iterable[str] = ORACLES, *, refine: bool = True) -> None:
+        """Run one system through some oracles, and its refinements."""
+        case = random_case(seed)
+        try:
+            response = cx.simulate(case.system, **case.settings)
+            for name in oracles:
+                found = ORACLES[name](case, response)
+                if found is not None:
+                    allowed = limit(name, case)
+                    over = found / allowed if allowed else float(found > 0)
+                    self.mismatches.setdefault(name, []).append((over, seed, case.kind))
+            if refine:
+                for key, ratio in printed(case, response):
+                    self.ratios.setdefault(key, []).append((ratio, seed, case.kind))
+        except cx.InputError as error:
+            self.refused.append(f"{seed} ({case.kind}): {error}")
+
+    def broken(self) -> list[str]:
+        """Return the oracles that some system did not meet, one line a system."""
+        return [
+            f"{name}: {over:.3g} times the limit, seed {seed} ({kind})"
+            for name, all_ in self.mismatches.items()
+            for over, seed, kind in all_
+            if not over <= 1.0
+        ]
+
+    def __str__(self) -> str:
+        """Return the table."""
+        lines = ["oracle          systems  worst/limit   seed"]
+        for name, found in self.mismatches.items():
+            worst = max(found, key=lambda one: np.nan_to_num(one[0], nan=np.inf))
+            lines.append(f"{name:15s} {len(found):7d} {worst[0]:12.2g} {worst[1]:6d}  {worst[2]}")
+        lines += ["", "true/printed              numbers  median   >1 %   >2 %  >10 %  <1/100 %      worst   seed"]
+        for (cause, quantity), found in self.ratios.items():
+            x = np.array([one[0] for one in found])
+            worst = found[int(x.argmax())]
+            shares = "".join(f"{100 * np.mean(x > most):7.1f}" for most in (1, 2, 10))
+            lines.append(
+                f"{cause + ' of ' + quantity:25s} {x.size:7d} {np.median(x):7.2g}{shares} {100 * np.mean(x < 0.01):9.1f} "
+                f"{worst[0]:10.3g} {worst[1]:6d}  {worst[2]}"
+            )
+        return "\n".join([*lines, "", *(f"refused: {one}" for one in self.refused), *(f"BROKEN {one}" for one in self.broken())])
+
+
+def printed(case: Case, response: cx.Response) -> Iterator[tuple[tuple[str, str], float]]:
+    """Yield true over printed errors by cause and quantity, of all shells; "step" is time step and march together."""
+    true, errors = true_errors(case, response), response.errors()
+    shown = {"orders": errors.sel(cause="orders"), "step": errors.sel(cause=["time step", "march"]).sum("cause", skipna=False)}
+    for cause, values in shown.items():
+        for quantity, name in enumerate(("displacement", "stress")):
+            for one, said in zip(true[cause][:, quantity], values.sel(quantity=name).values, strict=True):
+                if np.isfinite(one) and one > RIGHT:
+                    yield (cause, name), float(one / max(said, 1e-300))
