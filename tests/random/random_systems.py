@@ -57,9 +57,9 @@ def random_case(seed: int) -> Case:
 
 def _settings(random: np.random.Generator) -> dict[str, Any]:
     return {
-        "duration": float(random.uniform(1.0, 3.0)),
-        "time_step": float(_log(random, 5e-3, 2e-2)),
-        "modes": int(random.integers(8, 31)),
+        "duration": float(random.uniform(1.0, 2.2)),
+        "time_step": float(_log(random, 8e-3, 2e-2)),
+        "modes": int(random.integers(8, 21)),
     }
 
 

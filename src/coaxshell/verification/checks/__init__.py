@@ -20,5 +20,6 @@ ORDER = (
     "causality",
     "disc_limit",
     "published",
+    "published_frequencies",
 )
 """Files in the order of the report."""
