@@ -53,6 +53,10 @@ TOML_LISTS = Limit(50_000, "lists and tables", "a TOML text")
 RECORD_BYTES = Limit(200_000_000, "bytes", "a pressure record")
 RECORD_SAMPLES = Limit(2_000_000, "samples", "a pressure record")
 RECORD_COLUMNS = Limit(256, "columns", "a pressure record")
+SAVED_TEXT = Limit(16_000_000, "bytes", "a text in a saved run")
+SAVED_STRUCTURE = Limit(250_000_000, "bytes", "what a saved run holds beside its arrays")
+SAVED_ARRAYS = Limit(16_000_000_000, "bytes", "the arrays of a saved run")
+SAVED_CHUNK = Limit(64_000_000, "bytes", "a chunk of a compressed array")
 
 TABLE: tuple[Limit, ...] = (
     QUANTITY,
@@ -67,5 +71,9 @@ TABLE: tuple[Limit, ...] = (
     RECORD_BYTES,
     RECORD_SAMPLES,
     RECORD_COLUMNS,
+    SAVED_TEXT,
+    SAVED_STRUCTURE,
+    SAVED_ARRAYS,
+    SAVED_CHUNK,
 )
 """All bounds, in the order in which the documentation lists them."""

@@ -1,28 +1,27 @@
-"""A solution as one self-describing dataset, and back, bit by bit."""
+"""A solution as one self-describing dataset, with a checksum."""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import platform
 from collections.abc import Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import scipy
 
 from coaxshell._version import __version__
-from coaxshell.errors import InputError
 from coaxshell.model.naming import shell_name
-from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, time_coordinates
-from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.settings import Settings
-from coaxshell.solver.solution import CAUSES, QUANTITIES, Estimates, ModalSolution
+from coaxshell.solver.solution import CAUSES, QUANTITIES, ModalSolution
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
+"""1: without a checksum."""
 
 MODAL = ("shell", "half", "mode", "time")
 ERROR = ("shell", "quantity", "cause")
@@ -43,6 +42,9 @@ ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Arrays of a solution by name: dimensions, unit, meaning. Those that a solution does not carry are left out of the file."""
 
+OURS = "give a file written by coaxshell run --output or Response.save"
+"""What to do about a file that is not a saved run."""
+
 
 def to_dataset(solution: ModalSolution) -> xr.Dataset:
     """Return the solution, its scenario and its circumstances as a dataset; arrays stay dimensionless, as the solver left them."""
@@ -62,7 +64,22 @@ def to_dataset(solution: ModalSolution) -> xr.Dataset:
         "cause": xr.Variable("cause", list(CAUSES)),
         "mode": xr.Variable("mode", np.arange(solution.normal.shape[2]), {"long_name": "circumferential order m"}),
     }
-    return xr.Dataset(variables, coordinates, _attributes(solution))
+    dataset = xr.Dataset(variables, coordinates, _attributes(solution))
+    arrays = {name: dataset[name].to_numpy() for name in ("time", "error_estimate", *ARRAYS) if name in dataset}
+    dataset.attrs["checksum"] = checksum(arrays, str(dataset["scenario"].item()), dataset.attrs)
+    return dataset
+
+
+def checksum(arrays: Mapping[str, npt.NDArray[np.float64]], scenario: str, attributes: Mapping[Any, Any]) -> str:
+    """Return the digest of all that a run consists of: arrays bit by bit, the scenario, settings, estimates and warnings."""
+    digest = hashlib.sha256()
+    texts = {"scenario": scenario, **{name: attributes[name] for name in ("settings", "warnings")}}
+    digest.update(json.dumps(texts, sort_keys=True).encode())
+    for name in sorted(arrays):
+        values = np.ascontiguousarray(arrays[name], "<f8")
+        digest.update(f"{name} {values.shape}".encode())
+        digest.update(values.data)
+    return f"sha256 {digest.hexdigest()}"
 
 
 def _attributes(solution: ModalSolution) -> dict[str, Any]:
@@ -85,62 +102,3 @@ def _attributes(solution: ModalSolution) -> dict[str, Any]:
         "warnings": json.dumps(list(solution.warnings)),
         "timings": json.dumps(solution.timings),
     }
-
-
-OURS = "give a file written by coaxshell run --output or Response.save"
-"""What to do about a file that is not a saved run."""
-
-
-def format_problem(attributes: Mapping[Any, Any]) -> InputError | None:
-    """Return what keeps us from reading a file with these attributes: not ours, or of a newer format; None if nothing does."""
-    version = attributes.get("coaxshell_format_version")
-    if version is None:
-        return InputError("", "was not written by coaxshell", OURS)
-    if int(version) > FORMAT_VERSION:
-        by = attributes.get("coaxshell_version", "of a newer version")
-        return InputError("", f"has format {int(version)} of coaxshell {by}, beyond {FORMAT_VERSION} of this version", "update coaxshell")
-    return None
-
-
-def _estimates(dataset: xr.Dataset) -> Estimates:
-    if "error_estimate" in dataset:
-        found = dataset["error_estimate"]
-        if found.dims != ERROR or found.sizes["quantity"] != len(QUANTITIES):
-            raise ValueError(f"error_estimate has the dimensions {found.dims} and the shape {found.shape}")
-        return Estimates(*(found.sel(cause=cause).to_numpy() for cause in CAUSES))
-    # Files of earlier versions: one number for the time step of all shells, nothing of the march.
-    orders = np.stack([dataset[f"modal_{quantity}_estimate"].to_numpy() for quantity in QUANTITIES], axis=1)
-    step = np.full(orders.shape, float(dataset.attrs["time_window_estimate"]))
-    return Estimates(orders, step, np.full(orders.shape, np.nan))
-
-
-def from_dataset(dataset: xr.Dataset) -> ModalSolution:
-    """Return the solution that a dataset holds.
-
-    Raises
-    ------
-    InputError
-        If the dataset is not ours, of a newer format, or its scenario is not a valid system.
-    KeyError, TypeError, ValueError
-        If something is missing or does not fit; the reader of files turns these into an InputError.
-    """
-    problem = format_problem(dataset.attrs)
-    if problem is not None:
-        raise problem
-    known = {field.name for field in fields(ModalSolution)}
-    arrays: dict[str, Any] = {name: dataset[name].to_numpy() for name in ARRAYS if name in dataset and name in known}
-    for name, values in arrays.items():
-        if dataset[name].dims != ARRAYS[name][0]:
-            raise ValueError(f"{name} has the dimensions {dataset[name].dims} and the shape {values.shape}")
-    system = System.from_toml_string(str(dataset["scenario"].item()))
-    if dataset.sizes["shell"] != len(system.shells):
-        raise ValueError(f"{dataset.sizes['shell']} shells in the arrays, {len(system.shells)} in the scenario")
-    return ModalSolution(
-        problem=dimensionless(system),
-        settings=Settings(**json.loads(dataset.attrs["settings"])),
-        time=dataset["time"].to_numpy(),
-        estimates=_estimates(dataset),
-        warnings=tuple(json.loads(dataset.attrs["warnings"])),
-        timings=json.loads(dataset.attrs["timings"]),
-        **arrays,
-    )

@@ -16,6 +16,7 @@ from coaxshell.response import absorbers, errors, fields, histories, storage, vo
 from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
+from coaxshell.response.thinning import thinned
 from coaxshell.response.translation import translation
 from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_solution
@@ -214,6 +215,14 @@ class Response:
         See :func:`coaxshell.response.summary.summarise`.
         """
         return summarise(self.solution, window, segment)
+
+    def thin(self, every: int = 1, window: Sequence[float] | None = None) -> Response:
+        """Return the response with every so many instants of a window (start, end) in transits, for a smaller file.
+
+        Histories, modal amplitudes, voltages and the peaks at the instants that are left stay what they were; fields and energy need
+        the whole history and are refused. See :func:`coaxshell.response.thinning.thinned`.
+        """
+        return Response(thinned(self.solution, every, window))
 
     def save(self, path: str | Path, *, compression: bool = False) -> Path:
         """Write everything to one self-describing NetCDF file, whole or not at all, and return its path.

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
-from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.netcdf import write_netcdf
-from coaxshell.response.dataset import ARRAYS, OURS, format_problem, from_dataset, to_dataset
+from coaxshell.numerics.seal import add_seal
+from coaxshell.response import restored
+from coaxshell.response.dataset import ARRAYS, to_dataset
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution
 
-_LONGEST_SCENARIO = 8_000_000
-
-UNREADABLE = (OSError, ValueError, KeyError, TypeError, RuntimeError)
-"""What HDF5 and xarray raise on files that are cut short, damaged, or something else altogether."""
+if TYPE_CHECKING:
+    from coaxshell.response.foreign import ForeignFile
 
 
 def save(solution: ModalSolution, path: str | Path, *, compression: bool = False) -> Path:
     """Write a solution to a NetCDF file and return its path; an older file there is replaced only by a complete new one.
 
-    The file holds the dimensionless modal amplitudes bit by bit, the scenario as TOML, settings, estimates, warnings, timings and versions.
+    The file holds the dimensionless modal amplitudes bit by bit, the scenario as TOML (records of pressure with all their samples),
+    settings, estimates, warnings, timings and versions; a checksum over all of it, and one over the file's bytes.
 
     Parameters
     ----------
@@ -43,52 +41,28 @@ def save(solution: ModalSolution, path: str | Path, *, compression: bool = False
     dataset = to_dataset(solution)
     packed = {"zlib": True, "complevel": 4, "shuffle": True} if compression else {}
     encoding = {name: {"_FillValue": None, **packed} for name in ARRAYS if name in dataset and dataset[name].size}
-    write_netcdf(dataset, path, encoding)
+    write_netcdf(dataset, path, encoding, add_seal)
     return Path(path)
 
 
-def _opened(path: str | Path) -> xr.Dataset:
-    """Open one of our files without reading its arrays and without decoding anything; InputError if that is not possible."""
-    source = Path(path)
-    if not source.is_file():
-        raise InputError(str(path), "is a folder" if source.is_dir() else "does not exist", OURS)
-    try:
-        dataset = xr.open_dataset(source, engine="h5netcdf", decode_times=False, mask_and_scale=False, decode_timedelta=False, cache=False)
-    except PermissionError:
-        raise InputError(str(path), "cannot be read (permission denied)", "choose another file") from None
-    except UNREADABLE as error:
-        raise InputError(str(path), "is not a NetCDF file, or is cut short or damaged", OURS) from error
-    problem = format_problem(dataset.attrs)
-    if problem is not None:
-        dataset.close()
-        raise InputError(str(path), problem.problem, problem.remedy)
-    return dataset
-
-
-@contextmanager
-def _reading(path: str | Path) -> Iterator[xr.Dataset]:
-    """Yield one of our files, opened; InputError if that is not possible, or if it turns out to be damaged."""
-    with _opened(path) as dataset:
-        try:
-            yield dataset
-        except InputError:
-            raise
-        except UNREADABLE as error:
-            raise InputError(str(path), f"is damaged ({type(error).__name__}: {error})", "write it again") from error
-
-
 def load_solution(path: str | Path) -> ModalSolution:
-    """Return the solution of a file written by :func:`save`.
+    """Return the solution of a file written by :func:`save`, of this version or an earlier one.
+
+    A file from elsewhere opens no other file, and nothing is allocated before its sizes have been judged.
 
     Raises
     ------
     InputError
-        If there is no such file, or it is not ours, cut short, damaged, or of a newer format.
+        If there is no such file, or it is not ours, cut short, damaged, changed, not of its own settings, or of a newer format.
     """
-    with _reading(path) as dataset:
+    from coaxshell.response.foreign import opened
+
+    with opened(path) as file:
         try:
-            return from_dataset(dataset.load())
+            return restored.solution_of(file)
         except InputError as error:
+            if not error.where:
+                raise InputError(str(path), error.problem, error.remedy) from None
             raise InputError(str(path), f"holds a scenario that this version does not accept: {error}") from error
 
 
@@ -100,14 +74,11 @@ def scenario(path: str | Path) -> tuple[str, dict[str, Any]]:
     InputError
         As :func:`load_solution`.
     """
-    with _reading(path) as dataset:
-        text = dataset["scenario"]
-        if text.size != 1 or text.nbytes > _LONGEST_SCENARIO:
-            raise ValueError(f"a scenario of {text.nbytes} bytes")
-        settings = json.loads(dataset.attrs["settings"])
-        if not isinstance(settings, dict):
-            raise TypeError("settings that are not a table")
-        return str(text.item()), settings
+    from coaxshell.response.foreign import opened
+
+    with opened(path) as file:
+        _judge_format(file, path)
+        return file.text("scenario"), restored.settings_of(file)
 
 
 def info(path: str | Path) -> str:
@@ -118,24 +89,34 @@ def info(path: str | Path) -> str:
     InputError
         As :func:`load_solution`.
     """
-    with _reading(path) as dataset:
-        return _described(dataset)
+    from coaxshell.response.foreign import opened
+
+    with opened(path) as file:
+        _judge_format(file, path)
+        return _described(file)
 
 
-def _described(dataset: xr.Dataset) -> str:
-    about, sizes = dataset.attrs, dataset.sizes
-    versions = ", ".join(f"{part} {about[f'{part}_version']}" for part in ("coaxshell", "numpy", "scipy", "python"))
-    settings = ", ".join(f"{key} {value}" for key, value in json.loads(about["settings"]).items())
-    held = [dataset[name] for name in ARRAYS if name in dataset]
+def _judge_format(file: ForeignFile, path: str | Path) -> None:
+    try:
+        restored.judge_format(file)
+    except InputError as error:
+        raise InputError(str(path), error.problem, error.remedy) from None
+
+
+def _described(file: ForeignFile) -> str:
+    sizes = restored.sizes_of(file)
+    versions = ", ".join(f"{part} {file.attribute(f'{part}_version')}" for part in ("coaxshell", "numpy", "scipy", "python"))
+    settings = ", ".join(f"{key} {value}" for key, value in restored.settings_of(file).items())
+    dimensions = {name: ", ".join(f"{dim} {sizes[dim]}" for dim in dims) for name, (dims, _, _) in ARRAYS.items() if name in file}
     return "\n".join(
         [
-            f"{about['title']}: shells {sizes['shell']}, orders 0 to {sizes['mode'] - 1}, instants {sizes['time']}",
-            f"written {about['created']} in format {about['coaxshell_format_version']} by {versions}",
+            f"{file.attribute('title')}: shells {sizes['shell']}, orders 0 to {sizes['mode'] - 1}, instants {sizes['time']}",
+            f"written {file.attribute('created')} in format {file.attribute('coaxshell_format_version')} by {versions}",
             f"settings: {settings}",
-            *(f"warning: {text}" for text in json.loads(about["warnings"])),
+            *(f"warning: {text}" for text in json.loads(str(file.attribute("warnings")))),
             "arrays:",
-            *(f"  {array.name} ({', '.join(f'{dim} {size}' for dim, size in array.sizes.items())})" for array in held),
+            *(f"  {name} ({sizes})" for name, sizes in dimensions.items()),
             "scenario:",
-            str(dataset["scenario"].item()),
+            file.text("scenario"),
         ]
     )

@@ -76,6 +76,7 @@ def sensor_rate(solution: ModalSolution, shell: int) -> FloatArray:
     gain = voltage_gain(solution, shell)
     normal, tangential = getattr(solution, "normal_rate", None), getattr(solution, "tangential_rate", None)
     if normal is None or tangential is None:
+        solution.need_every_instant("a voltage of derivative control")
         return time_derivative(amplitudes(solution, shell, gain), solution.settings.time_step)
     rate: FloatArray = gain.w[:, None] * normal[shell] + gain.v[:, None] * tangential[shell]
     return rate

@@ -40,7 +40,8 @@ class SolvedSpectra:
 
 
 def spectra_of(solution: ModalSolution) -> SolvedSpectra:
-    """Return the transforms of W and V of a finished run."""
+    """Return the transforms of W and V of a finished run; InputError if instants of it are missing."""
+    solution.need_every_instant("what is computed from its transforms (field, energy)")
     modes = solution.settings.modes
     assert isinstance(modes, int)
     problem = solution.problem

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.errors import InputError
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 
@@ -107,3 +108,15 @@ class ModalSolution:
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
     control_correction: FloatArray | None = None
+
+    @property
+    def whole(self) -> bool:
+        """Whether the history has every instant of the run: a saved one may have been thinned, cut or interpolated since."""
+        step, steps = self.settings.time_step, self.settings.steps
+        return self.time.size == steps + 1 and bool(np.all(np.abs(self.time - step * np.arange(steps + 1)) <= 1e-6 * step))
+
+    def need_every_instant(self, what: str) -> None:
+        """Refuse *what* is asked for where instants are missing; InputError."""
+        if not self.whole:
+            found = f"holds {self.time.size} instants where its run had {self.settings.steps + 1} (it was thinned, cut or interpolated)"
+            raise InputError("response", found, f"{what} needs every one of them: use the run as it was saved, or solve it again")
