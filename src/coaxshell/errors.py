@@ -14,20 +14,23 @@ class InputError(ValueError):
         The value found and what is wrong with it.
     remedy : str, optional
         What is allowed, or what to do instead.
+    also : tuple of InputError
+        What else is wrong with the same input, each without further ones; a form shows them all, a line of text the first.
 
     The command line prints ``str(error)`` on stderr and exits with code 2.
     """
 
-    def __init__(self, where: str, problem: str, remedy: str = "") -> None:
+    def __init__(self, where: str, problem: str, remedy: str = "", also: tuple[InputError, ...] = ()) -> None:
         self.where = where
         self.problem = problem
         self.remedy = remedy
+        self.also = also
         text = f"{where}: {problem}" if where else problem
         super().__init__(" ".join((text + (f"; {remedy}" if remedy else "")).split()))
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str]]:
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str, tuple[InputError, ...]]]:
         """Travel between processes whole; an exception would by default be made again from its text alone."""
-        return type(self), (self.where, self.problem, self.remedy)
+        return type(self), (self.where, self.problem, self.remedy, self.also)
 
 
 class PhysicsWarning(UserWarning):

@@ -9,7 +9,7 @@ from asking import described
 
 from coaxshell.errors import InputError
 from coaxshell.model import System, presets
-from coaxshell.studio import limits
+from coaxshell.studio import limits, links
 
 
 def validated(client, **body):
@@ -96,6 +96,47 @@ def test_a_link_holds_the_whole_system(client):
     assert (opened["resolution"], opened["view"]) == ({"modes": 80}, {"tab": "field"})
     for broken in (fragment[:-9], "s=!!", "x", "s=", fragment[:9] + "A" + fragment[10:]):
         assert client.post("/api/link/open", json={"fragment": broken}).status_code == 400
+
+
+def recorded(samples):
+    """Return a description whose source is a record of so many samples."""
+    system = described("bare")
+    pulse = {"type": "sampled", "time": [1e-6 * k for k in range(samples)], "pressure": [1e4 * 0.999**k for k in range(samples)]}
+    return {**system, "source": {"type": "plane-wave", "angle": 0.0, "pulse": pulse}}
+
+
+def test_a_long_record_makes_no_long_link_and_comes_back_as_long_as_the_server_runs(client):
+    short, long = ({"v": 1, "system": recorded(samples)} for samples in (100, 20_000))
+    for content, kept in ((short, 0), (long, 20_000)):
+        answer = client.post("/api/link", json=content).json()
+        assert answer["samples_kept"] == kept
+        assert len(answer["fragment"]) < 3_000
+        back = client.post("/api/link/open", json={"fragment": answer["fragment"]}).json()
+        assert back["system"] == validated(client, system=content["system"])["system"]
+    other = {**long, "system": recorded(20_000)}
+    other["system"]["source"]["pulse"] = {"type": "sampled", "kept": "0" * 32}
+    lost = client.post("/api/link/open", json={"fragment": links.fragment(other)}).json()
+    assert lost["problem"]["where"] == "link"
+    assert "file" in lost["problem"]["remedy"]
+
+
+def test_all_that_is_wrong_is_told_at_once(client):
+    system = described("hybrid")
+    system["absorbers"].update(mass="-3 kg/m", damping="heavy")
+    system["shells"][1]["layers"][0]["thickness"] = "6 kg"
+    told = validated(client, system=system, resolution={"duration": -1, "modes": 301, "time_step": 0.001, "refinement": 1})
+    places = [problem["where"] for problem in told["problems"]]
+    assert told["problem"] == told["problems"][0]
+    assert sorted(places) == [
+        "absorbers.damping",
+        "absorbers.mass",
+        "resolution.duration",
+        "resolution.modes",
+        "shells[1].layers[0].thickness",
+    ]
+    for problem in told["problems"]:
+        assert problem["problem"]
+        assert problem["remedy"]
 
 
 def test_a_link_that_unpacks_to_too_much_is_refused(client):

@@ -16,6 +16,7 @@ PATHS = [
     "/api/jobs/" + "a" * 4000,
     "/api/events",
     "/api/events?client=../x",
+    "/api/events?client=tab&client=../x",
     "/api/jobs?client=",
     "/api/runs/x/point?x=1&y=1",
     "/api/runs/x/energy?every=0",

@@ -69,7 +69,8 @@ def test_downloads(client, run, tmp_path):
     before = set(folder.iterdir())
     toml = client.get(f"/api/runs/{run}/download.toml")
     assert System.from_toml_string(toml.text) == system
-    assert "attachment" in toml.headers["content-disposition"]
+    assert 'attachment; filename="absorbers-2' in toml.headers["content-disposition"]
+    assert 'filename="absorbers-histories-2' in client.get(f"/api/runs/{run}/download.csv").headers["content-disposition"]
     path = tmp_path / "run.nc"
     path.write_bytes(client.get(f"/api/runs/{run}/download.nc").content)
     assert cx.load_response(path).system == system

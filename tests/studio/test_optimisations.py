@@ -87,7 +87,7 @@ def test_one_objective_is_that_of_the_library(client, single):
 def test_the_best_can_be_adopted_and_taken_home(client, single):
     name, told = single
     toml = client.get(f"/api/jobs/{name}/file")
-    assert 'filename="best.toml"' in toml.headers["content-disposition"]
+    assert 'filename="absorbers-best-2' in toml.headers["content-disposition"]
     system = System.from_toml_string(toml.text)
     assert toml.text == told["best"]["toml"] == client.get(f"/api/jobs/{name}/file?what=toml").text
     assert system == System.model_validate(told["best"]["system"])

@@ -71,7 +71,7 @@ def test_events_tell_of_jobs_and_it_ends_cleanly_on_interrupt(server):
     process, http, folder = server
     body = {"client": "tab", "kind": "solve", "slot": "a", "revision": 1, "system": described("bare"), "resolution": {"modes": 10}}
     seen: list[tuple[str, dict]] = []
-    with http.stream("GET", "/api/events?client=tab") as stream:
+    with http.stream("GET", "/api/events?client=other&client=tab") as stream:
         name = ""
         for line in stream.iter_lines():
             if line.startswith("event: "):

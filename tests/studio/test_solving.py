@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 import coaxshell as cx
 from coaxshell.model import System, presets
+from coaxshell.plotting.energy import energy_groups, group_colours
 
 SINGLE = 1.001 * 2.0**-24
 """Rounding to single precision, in which curves are sent."""
@@ -130,6 +131,13 @@ def test_energy_and_pressure_at_a_point(client):
     told, arrays = decoded(client.get(f"/api/runs/{header['run']}/energy?every=5").content)
     assert {entry["name"] for entry in told["entries"]} == set(balance.data_vars)
     assert_allclose(arrays["inner_kinetic"], balance["inner_kinetic"], rtol=SINGLE)
+    job = start(client, kind="energy", run=header["run"], every=5)
+    assert ended(client, job)["state"] == "done"
+    again, same = decoded(client.get(f"/api/jobs/{job['id']}/result").content)
+    assert [again["entries"], again["groups"]] == [told["entries"], told["groups"]]
+    assert all(np.array_equal(same[name], arrays[name]) for name in arrays)
+    drawn = group_colours(energy_groups(balance))
+    assert [(group["name"], group["colour"]) for group in told["groups"] if group["name"] in drawn] == list(drawn.items())
     told, arrays = decoded(client.get(f"/api/runs/{header['run']}/point?x=0.2&y=-0.4").content)
     assert told["region"] == "interior"
     expected = response.pressure(x=[0.2], y=[-0.4], time=response.time).values.ravel()

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
@@ -26,8 +27,8 @@ def joined(outer: str, inner: str) -> str:
 
 
 def within(outer: str, error: InputError) -> InputError:
-    """Return *error* with its path continued outwards by *outer*."""
-    return InputError(joined(outer, error.where), error.problem, error.remedy)
+    """Return *error*, and what else is wrong, with paths continued outwards by *outer*."""
+    return InputError(joined(outer, error.where), error.problem, error.remedy, tuple(within(outer, one) for one in error.also))
 
 
 def shown(value: object) -> str:
@@ -48,6 +49,9 @@ WORDS = {
     "a valid dictionary": "a table",
 }
 """pydantic's words, and those of a user who knows neither Python nor pydantic."""
+
+MOST_TOLD = 30
+"""Further problems that an error carries: a form has few fields, a list of numbers may have thousands."""
 
 UNSTATED: Any = object()
 """Default of an argument that is required, so that its absence is told like every other problem."""
@@ -92,11 +96,21 @@ class Described(BaseModel):
 
 
 def _told(error: ValidationError, cls: type[BaseModel]) -> InputError:
-    """Translate pydantic's report into the first problem, in the user's terms."""
+    """Translate pydantic's report into the first problem, in the user's terms, with the others beside it."""
     # A default that depends on a bad field is a consequence, not a problem of its own.
     problems = [p for p in error.errors(include_url=False) if p["type"] != "default_factory_not_called"]
     # An entry that is misspelt is often missing too: the name is what is wrong.
-    first = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])
+    problems.sort(key=lambda p: p["type"] != "extra_forbidden")
+    first, *others = [one for problem in problems for one in _each(_one(problem, cls))]
+    return InputError(first.where, first.problem, first.remedy, tuple(others[:MOST_TOLD]))
+
+
+def _each(error: InputError) -> list[InputError]:
+    return [InputError(error.where, error.problem, error.remedy), *error.also]
+
+
+def _one(first: ErrorDetails, cls: type[BaseModel]) -> InputError:
+    """Translate one of pydantic's reports."""
     where = dotted(first["loc"])
     value = first["input"]
     name = getattr(cls, "called", "") or cls.__name__

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,8 +43,16 @@ def energy_groups(energy: xr.Dataset) -> dict[str, FloatArray]:
                 group = variable.attrs["group"]
                 groups[group] = groups[group] + values if group in groups else values
     shown = {group: values for group, values in groups.items() if np.any(values)}
-    order = [*_FIXED, *shown]
-    return dict(sorted(shown.items(), key=lambda item: (item[0] in ("dampers", "actuators"), order.index(item[0]))))
+    return {group: shown[group] for group in group_colours(shown)}
+
+
+def group_colours(groups: Iterable[str]) -> dict[str, str]:
+    """Return the colour of each group, in the order in which they are stacked: what is lost for good last."""
+    names = list(groups)
+    order = [*_FIXED, *names]
+    spare = iter(_SPARE * (len(names) // len(_SPARE) + 1))
+    ranked = sorted(names, key=lambda name: (name in ("dampers", "actuators"), order.index(name)))
+    return {name: _FIXED.get(name) or next(spare) for name in ranked}
 
 
 def plot_energy(energy: xr.Dataset, ax: Axes | None = None) -> Axes:
@@ -64,15 +73,15 @@ def plot_energy(energy: xr.Dataset, ax: Axes | None = None) -> Axes:
     with style():
         if ax is None:
             ax = new_figure(PAGE_WIDTH, 3.6).add_subplot()
-        spare = iter(_SPARE * 4)
         above, below = np.zeros_like(time), np.zeros_like(time)
-        for group, values in energy_groups(energy).items():
+        groups = energy_groups(energy)
+        colours = group_colours(groups)
+        for group, values in groups.items():
             # What is given back (actuators that drive) is stacked below zero, or it would hide its neighbours.
             for base, part in ((above, np.maximum(values, 0.0)), (below, np.minimum(values, 0.0))):
                 if np.any(part):
                     label = group if base is above or not np.any(values > 0) else None
-                    colour = _FIXED.get(group) or next(spare)
-                    ax.fill_between(time, base, base + part, color=colour, linewidth=0.3, edgecolor="white", label=label)
+                    ax.fill_between(time, base, base + part, color=colours[group], linewidth=0.3, edgecolor="white", label=label)
                     base += part
         ax.plot(time, _PER_JOULE * energy["exterior_work"].to_numpy(), color="black", linewidth=1.0, label="work of the exterior pressure")
         ax.axhline(0.0, color="black", linewidth=0.5)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.model import System
+from coaxshell.model.naming import slug
 from coaxshell.response.storage import scenario
 from coaxshell.solver.settings import Settings
 from coaxshell.studio import worker
@@ -22,6 +24,12 @@ TYPES = {
 }
 
 Run = tuple[System, Settings]
+
+
+def named(system: str, suffix: str, what: str = "") -> str:
+    """Return the name of a file to take home: of which system, what it holds, when it was made."""
+    words = [slug(system)[:40].rstrip("-") or "coaxshell", what, datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")]
+    return f"{'-'.join(word for word in words if word)}.{suffix}"
 
 
 def netcdf(run: Run, path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import System
+from coaxshell.plotting.energy import group_colours
 from coaxshell.plotting.field import absorber_places, ring_radii
 from coaxshell.plotting.field_scales import field_scales
 from coaxshell.plotting.frames import FieldView, Frames, field_frames, gathered
@@ -28,9 +29,11 @@ def film(system: System, settings: Settings, every: int, size: int, half_width: 
 
     The file is a .npy of the pressure over ``scale`` as float16, shape (K, size, size); the stress is in Pa, shape (K, 360) each.
     """
-    response = worker.answer(system, settings)
+    with worker.part(0, 2, "solving"):
+        response = worker.answer(system, settings)
     view = FieldView(half_width, size)
-    frames = gathered(field_frames(response, response.time[::every], view, progress=worker.report))
+    with worker.part(1, 2, "field"):
+        frames = gathered(field_frames(response, response.time[::every], view, progress=worker.report))
     scales = field_scales([frames])
     largest = float(np.max(np.abs(frames.pressure), initial=0.0)) or 1.0
     pressure = np.empty((len(frames), size, size), np.float16)
@@ -97,11 +100,19 @@ def point(system: System, settings: Settings, x: float, y: float) -> Packed:
 
 def energy(system: System, settings: Settings, every: int) -> Packed:
     """Return the energy balance of a run."""
-    balance = worker.answer(system, settings).energy(every, worker.report)
+    with worker.part(0, 2, "solving"):
+        response = worker.answer(system, settings)
+    with worker.part(1, 2, "integrating the fluids' energy"):
+        balance = response.energy(every, worker.report)
     entries = [
         {"name": str(name), "label": str(values.attrs["long_name"]), "role": values.attrs["role"], "group": values.attrs["group"]}
         for name, values in balance.data_vars.items()
     ]
     items = {str(name): Item(np.asarray(values), str(values.attrs["units"])) for name, values in balance.data_vars.items()}
+    stacked = {entry["group"] for entry in entries if entry["role"] in ("store", "loss")}
+    colours = group_colours(sorted(stacked))
     closure = float(np.max(np.abs(balance["closure_relative"])))
-    return packed({"entries": entries, "closure": closure}, {"time": Item(np.asarray(balance["time"]), "transits"), **items})
+    return packed(
+        {"entries": entries, "groups": [{"name": name, "colour": tint} for name, tint in colours.items()], "closure": closure},
+        {"time": Item(np.asarray(balance["time"]), "transits"), **items},
+    )

@@ -24,7 +24,7 @@ from coaxshell.studio.state import Run, Studio
 if TYPE_CHECKING:
     from coaxshell.studies.optimisation.optimum import Optimum
 
-KINDS = ("solve", "field", "film", "sweep", "optimise")
+KINDS = ("solve", "field", "film", "energy", "sweep", "optimise")
 HEARTBEAT, THROTTLE = 15.0, 0.1
 
 
@@ -33,7 +33,9 @@ async def start(request: Request) -> Response:
     studio, data = studio_of(request), await bodies.read_table(request)
     job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", KINDS), bodies.text_of(data, "title"))
     try:
-        await {"solve": _solve, "field": _field, "film": _film, "sweep": _sweep, "optimise": _optimise}[job.kind](studio, job, data)
+        await {"solve": _solve, "field": _field, "film": _film, "energy": _energy, "sweep": _sweep, "optimise": _optimise}[job.kind](
+            studio, job, data
+        )
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({"job": job.told()}, 202)
@@ -76,12 +78,21 @@ async def _field(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     studio.jobs.start(job, fields.film, *run.pair, every, size, half_width, job.file, place=run.place)
 
 
+async def _energy(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.studio import fields
+
+    run = studio.run(bodies.name_of(data, "run"))
+    job.run = run.name
+    every = bodies.whole_of(data, "every", 1, limits.STEPS, 10)
+    studio.jobs.start(job, fields.energy, *run.pair, every, place=run.place)
+
+
 async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     runs = _runs(studio, data.get("runs"))
     kind = bodies.one_of(data, "format", ("mp4", "webp"), "mp4")
     frames, size = bodies.whole_of(data, "frames", 2, 500, 120), bodies.whole_of(data, "size", 64, 480, 360)
     fps = bodies.number_of(data, "fps", 1.0, 60.0, 25.0)
-    job.run, job.file = runs[0].name, studio.file(kind)
+    job.run, job.file, job.name = runs[0].name, studio.file(kind), runs[0].system.name
     pairs = [run.pair for run in runs]
     studio.jobs.start(job, downloads.movie, pairs, frames, fps, size, job.file, place=runs[0].place)
 
@@ -90,7 +101,7 @@ async def _sweep(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.studio import sweeps
 
     study = await run_in_threadpool(study_routes.asked, "sweep", data)
-    job.file = studio.file("nc")
+    job.file, job.name = studio.file("nc"), study.system.name
     studio.jobs.start(job, sweeps.sweep, *study.arguments, job.file, place=worker.structure_key(study.system, study.settings))
 
 
@@ -98,6 +109,7 @@ async def _optimise(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.studio import optimisations
 
     study = await run_in_threadpool(study_routes.asked, "optimise", data)
+    job.name = study.system.name
     studio.jobs.start(job, optimisations.optimise, *study.arguments, place=worker.structure_key(study.system, study.settings))
 
 
@@ -132,6 +144,8 @@ async def result(request: Request) -> Response:
         from coaxshell.studio import optimisations
 
         return JSONResponse({"kind": "optimise", **await run_in_threadpool(optimisations.told, found.result)})
+    if found.kind == "energy":
+        return arrays.answer(found.result, run=found.run)
     if found.kind != "field":
         raise RefusedError(404, "not-found", "result", f"a {found.kind} has none", "see /api/runs/{run} or /api/jobs/{id}/file")
     return JSONResponse({"run": found.run, **found.result[0], "most_values": limits.FRAME_VALUES})
@@ -173,19 +187,19 @@ async def job_file(request: Request) -> Response:
     found = studio_of(request).jobs.finished(request.path_params["job"])
     if found.kind == "optimise":
         kind = bodies.one_of(dict(request.query_params), "what", ("toml", "csv"), "toml")
-        return await _written(found.result.optimum, kind)
+        return await _written(found.result.optimum, kind, found.name)
     if found.kind not in ("film", "sweep") or found.file is None:
         raise RefusedError(404, "not-found", "file", f"a {found.kind} has none", "start a job of the kind film")
     suffix = found.file.suffix[1:]
-    return FileResponse(found.file, media_type=downloads.TYPES[suffix], filename=f"coaxshell.{suffix}")
+    return FileResponse(found.file, media_type=downloads.TYPES[suffix], filename=downloads.named(found.name, suffix, found.kind))
 
 
-async def _written(optimum: Optimum, kind: str) -> Response:
+async def _written(optimum: Optimum, kind: str, of: str) -> Response:
     try:
         text = await run_in_threadpool(optimum.to_csv if kind == "csv" else lambda: optimum.system.to_toml_string())
     except InputError as error:
         raise RefusedError.of(error) from None
-    name = "history.csv" if kind == "csv" else "best.toml"
+    name = downloads.named(of, kind, "designs" if kind == "csv" else "best")
     return Response(text, media_type=downloads.TYPES[kind], headers={"Content-Disposition": f'attachment; filename="{name}"'})
 
 
@@ -194,7 +208,7 @@ async def download(request: Request) -> Response:
     studio, suffix, query = studio_of(request), request.path_params["suffix"], request.query_params
     run, wanted_file = studio.run(request.path_params["run"]), request.path_params["what"]
     if (wanted_file, suffix) == ("download", "toml"):
-        attached = {"Content-Disposition": 'attachment; filename="coaxshell.toml"'}
+        attached = {"Content-Disposition": f'attachment; filename="{downloads.named(run.system.name, suffix)}"'}
         return Response(run.system.to_toml_string(), media_type=downloads.TYPES["toml"], headers=attached)
     path = studio.file(suffix)
     if (wanted_file, suffix) in (("download", "nc"), ("download", "csv")):
@@ -214,14 +228,19 @@ async def download(request: Request) -> Response:
         path.unlink(missing_ok=True)
         raise RefusedError.of(error) from None
     away = BackgroundTask(path.unlink, missing_ok=True)
-    return FileResponse(path, media_type=downloads.TYPES[suffix], filename=f"coaxshell.{suffix}", background=away)
+    what = {"csv": "histories", "png": "stress", "svg": "stress"}.get(suffix, "")
+    return FileResponse(path, media_type=downloads.TYPES[suffix], filename=downloads.named(run.system.name, suffix, what), background=away)
 
 
 async def events(request: Request) -> Response:
-    """Answer with a stream of what happens to a client's jobs."""
-    client = bodies.name_of(dict(request.query_params), "client")
+    """Answer with a stream of what happens to the jobs of one client or several: all tabs of a browser share one."""
+    clients = dict.fromkeys(request.query_params.getlist("client"))
+    if not 0 < len(clients) <= limits.TABS or not all(map(bodies.is_name, clients)):
+        raise bodies.bad("client", ", ".join(clients) or None, f"give 1 to {limits.TABS} names of clients")
     studio = studio_of(request)
-    event = studio.jobs.watch(client)
+    event = studio.jobs.watch(next(iter(clients)))
+    for other in clients:
+        studio.jobs.watch(other, event)
 
     async def stream() -> AsyncIterator[str]:
         seen: dict[str, int] = {}
@@ -229,7 +248,7 @@ async def events(request: Request) -> Response:
             yield "retry: 1000\n" + _event("hello", {"version": __version__, "server": studio.id})
             while not studio.closing:
                 event.clear()
-                current = studio.jobs.of(client)
+                current = [job for client in clients for job in studio.jobs.of(client)]
                 for one in current:
                     if seen.get(one.id) != one.version:
                         seen[one.id] = one.version
@@ -241,7 +260,8 @@ async def events(request: Request) -> Response:
                 except TimeoutError:
                     yield ": \n\n"
         finally:
-            studio.jobs.unwatch(client, event)
+            for client in clients:
+                studio.jobs.unwatch(client, event)
 
     return StreamingResponse(stream(), media_type="text/event-stream")
 

@@ -23,7 +23,7 @@ TOLD = ("id", "client", "kind", "title", "slot", "revision", "state", "fraction"
 
 @dataclass(eq=False)
 class Job:
-    """One job; ``version`` counts its changes, and ``left`` tells that its page has gone."""
+    """One job; ``name`` is its system's, ``version`` counts its changes, and ``left`` tells that its page has gone."""
 
     client: str
     kind: str
@@ -32,6 +32,7 @@ class Job:
     revision: int | None = None
     run: str | None = None
     file: Path | None = None
+    name: str = ""
     id: str = field(default_factory=lambda: secrets.token_urlsafe(12))
     state: str = WAITING
     fraction: float = 0.0
@@ -123,11 +124,12 @@ class Jobs:
         if job.work is not None:
             self.workers.drop(job.work)
 
-    def watch(self, client: str) -> asyncio.Event:
-        """Return an event that is set whenever a job of the client changes; RefusedError when too many watch."""
-        if sum(len(events) for events in self._watchers.values()) >= limits.STREAMS:
-            raise RefusedError(429, "busy", "events", "too many pages are open", "close some")
-        event = asyncio.Event()
+    def watch(self, client: str, event: asyncio.Event | None = None) -> asyncio.Event:
+        """Return an event, a new one unless given, that is set whenever a job of the client changes; RefusedError when too many watch."""
+        if event is None:
+            if len({watcher for events in self._watchers.values() for watcher in events}) >= limits.STREAMS:
+                raise RefusedError(429, "busy", "events", "too many pages are open", "close some")
+            event = asyncio.Event()
         self._watchers.setdefault(client, set()).add(event)
         for job in self.of(client):
             job.left = False

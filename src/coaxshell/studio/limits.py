@@ -29,6 +29,10 @@ SWEPT, CASES = 4, 400
 VARIED, COORDINATES, CONSTRAINTS = 8, 64, 12
 """Variables of an optimisation as written, and one by one when each absorber has its own; limits on metrics."""
 EVALUATIONS, POPULATION = 2_000, 400
+LINKED_SAMPLES, RECORD_BYTES = 200, 100_000_000
+"""Samples up to which a link holds a record itself, and bytes of the longer ones that are kept for links."""
+TABS = 100
+"""Tabs of a browser that share a stream of events."""
 TEXT = 200
 """Letters of a value, a constraint or a title."""
 RUNS, SLOTS = 4_000, 4_000
@@ -153,12 +157,29 @@ def settings_of(given: object, *, live: bool, system: System | None = None) -> S
     if modes > most_modes:
         raise _above("resolution.modes", modes, most_modes, "orders")
     if steps > most_steps:
-        raise _above("resolution.time_step", steps, most_steps, "time steps")
+        asked = f"{steps:,} time steps of {settings.time_step / settings.refinement:.3g} over {settings.duration:g} are too many here"
+        least = settings.duration * settings.refinement / most_steps
+        raise InputError("resolution.time_step", asked, f"at most {most_steps:,}: a step of {least:.3g} or more, or a shorter duration")
     if settings.refinement > REFINEMENT:
         raise _above("resolution.refinement", settings.refinement, REFINEMENT, "steps a step")
     if modes * steps > MODE_STEPS:
         raise _above("resolution", modes * steps, MODE_STEPS, "orders times steps")
     return settings
+
+
+def wrong_with(given: object) -> list[InputError]:
+    """Return all that is wrong with a resolution at which a run may be asked for; nothing with none."""
+    found: list[InputError] = []
+    left = dict(given) if isinstance(given, dict) else given
+    while left is not None and len(found) <= len(PREVIEW):
+        try:
+            settings_of(left, live=False)
+            break
+        except InputError as error:
+            found.append(error)
+            name = error.where.removeprefix("resolution.")
+            left = {key: value for key, value in left.items() if key != name} if isinstance(left, dict) and name in left else None
+    return found
 
 
 def _above(where: str, found: int, most: int, what: str) -> InputError:

@@ -40,8 +40,9 @@ class RefusedError(Exception):
 
 
 def told(error: InputError) -> dict[str, Any]:
-    """Return the answer to a description with a problem, which is part of the conversation."""
-    return {"ok": False, "problem": {"where": error.where, "problem": error.problem, "remedy": error.remedy}}
+    """Return the answer to a description with problems, which is part of the conversation: the first, and all of them."""
+    problems = [{"where": one.where, "problem": one.problem, "remedy": one.remedy} for one in (error, *error.also)]
+    return {"ok": False, "problem": problems[0], "problems": problems}
 
 
 def not_found(what: str) -> RefusedError:

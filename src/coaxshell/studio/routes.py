@@ -51,10 +51,24 @@ async def read(work: Callable[[], T], data: dict[str, Any]) -> T:
 async def conversation(data: dict[str, Any], **more: Any) -> Response:
     """Return the answer to a description, valid or not, with further entries."""
     try:
-        answer = await read(lambda: descriptions.told(descriptions.system_of(data)), data)
+        answer = await read(lambda: descriptions.told(_described(data)), data)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({**answer, **more})
+
+
+def _described(data: dict[str, Any]) -> System:
+    """Return the system of a request; InputError with all that is wrong with it and with the resolution that goes with it, if one does."""
+    problems: list[InputError] = []
+    try:
+        system = descriptions.system_of(data)
+    except InputError as error:
+        problems = [error, *error.also]
+    problems += limits.wrong_with(data.get("resolution"))
+    if problems:
+        first, *others = problems
+        raise InputError(first.where, first.problem, first.remedy, tuple(others))
+    return system
 
 
 def wanted(data: dict[str, Any], *, live: bool) -> tuple[System, Settings]:
@@ -133,18 +147,26 @@ async def point(request: Request) -> Response:
 
 
 async def link(request: Request) -> Response:
-    """Answer with the fragment of a link that holds a description."""
-    data = await bodies.read_table(request)
+    """Answer with the fragment of a link that holds a description, and how many samples of it this server keeps until it ends."""
+    studio, data = studio_of(request), await bodies.read_table(request)
     unknown = [name for name in data if name not in links.ENTRIES]
     if unknown or data.get("v") != links.VERSION:
         raise bodies.bad(unknown[0] if unknown else "v", data.get("v"), f"give {', '.join(links.ENTRIES)}, with v = {links.VERSION}")
-    return JSONResponse({"fragment": await run_in_threadpool(lambda: links.fragment(data))})
+
+    def made() -> dict[str, Any]:
+        short, samples = studio.records.shortened(data)
+        return {"fragment": links.fragment(short), "samples_kept": samples}
+
+    return JSONResponse(await run_in_threadpool(made))
 
 
 async def open_link(request: Request) -> Response:
     """Answer with the description in a link, checked as any other."""
-    data = await bodies.read_table(request)
-    content = await run_in_threadpool(lambda: links.opened(data.get("fragment")))
+    studio, data = studio_of(request), await bodies.read_table(request)
+    try:
+        content = await run_in_threadpool(lambda: studio.records.restored(links.opened(data.get("fragment"))))
+    except InputError as error:
+        return JSONResponse(refusals.told(error))
     return await conversation(content, resolution=content.get("resolution"), view=content.get("view"))
 
 

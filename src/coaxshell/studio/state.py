@@ -17,6 +17,7 @@ from coaxshell.studio import limits, worker
 from coaxshell.studio.arrays import Packed
 from coaxshell.studio.cache import Cache
 from coaxshell.studio.jobs import Jobs
+from coaxshell.studio.kept_records import KeptRecords
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.workers import Work, Workers
 
@@ -60,6 +61,7 @@ class Studio:
         self.workers = Workers()
         self.jobs = Jobs(self.workers)
         self.curves: Cache[Packed] = Cache(CURVE_BYTES, lambda content: len(content.data) + 4_000)
+        self.records = KeptRecords()
         self.closing = False
         self._runs: OrderedDict[str, Run] = OrderedDict()
         self._slots: OrderedDict[tuple[str, str], Slot] = OrderedDict()

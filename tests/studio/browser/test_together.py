@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from asking import SMALL
 from numpy.testing import assert_allclose
-from page_reading import open_preset, rest, run_of, solved, system_of, until
+from page_reading import PATIENCE, open_preset, rest, run_of, solved, system_of, until
 
 import coaxshell as cx
+from coaxshell.studio.links import fragment
 
 
 def test_two_tabs_do_not_disturb_each_other(open_page):
@@ -22,6 +23,28 @@ def test_two_tabs_do_not_disturb_each_other(open_page):
         shown = run_of(page)  # once: the full resolution may come at any moment
         value = next(bar["value"] for bar in shown["bars"] if bar["name"] == "stress" and bar["shell"] == 0)
         assert_allclose(value, solved(cx.presets.load(name), shown["resolution"]).summary().shells[0].stress.value, rtol=1e-9)
+
+
+def test_seven_tabs_of_one_browser_are_all_answered_and_share_one_stream(browser, server, watched):
+    context = browser.new_context()
+    context.set_default_timeout(1e3 * PATIENCE)
+    held = {"v": 1, "system": cx.presets.load("bare").model_dump(mode="json"), "resolution": {**SMALL, "modes": 6}}
+    address = f"{server.address}#{fragment(held)}"
+    pages, streams = [], []
+    for _ in range(7):
+        page = context.new_page()
+        watched.watch(page)
+        page.on("request", lambda request: "/api/events" in request.url and streams.append(request.url))
+        page.goto(address)
+        pages.append(page)
+    for page in pages:  # full resolution comes by an event
+        until(page, "!!window.coaxshell?.state.runs.current?.full")
+    assert streams[-1].count("client=") == 7
+    pages[0].close()  # the one that listens
+    pages[3].locator("#preset").select_option(label="iakovlev-evacuated")
+    until(pages[3], "window.coaxshell.state.system.shells.length === 1")
+    until(pages[3], "window.coaxshell.state.runs.current?.shells.length === 1 && window.coaxshell.state.runs.current.full")
+    context.close()
 
 
 def test_the_page_outlives_a_restart_of_the_server(own_server, open_page, watched, free_port):

@@ -5,7 +5,7 @@ export const client = crypto.randomUUID();
 
 export class Failure extends Error {
   constructor(status, { code = "", where = "", problem = "", remedy = "" }) {
-    super([where, problem, remedy].filter(Boolean).join(": "));
+    super([where, [problem, remedy].filter(Boolean).join("; ")].filter(Boolean).join(": "));
     Object.assign(this, { status, code, where, problem, remedy });
   }
 }

@@ -3,12 +3,18 @@ import { el, by, svg } from "./dom.js";
 import { row } from "./arrays.js";
 import { colour } from "./theme.js";
 import { prefixed, show } from "./units.js";
+import { shellName } from "./words.js";
 
 export const SETTINGS = { displayModeBar: false, responsive: true, doubleClick: "reset", scrollZoom: false };
 export const RUNS = {
   current: { name: "current", colour: "current", dash: "solid", width: 2 },
   bare: { name: "bare", colour: "bare", dash: "4px,2px", width: 1.4 },
   pinned: { name: "pinned", colour: "pinned", dash: "solid", width: 1.4 },
+};
+// What time is read in: the label of the axis, and one transit in it.
+export const UNITS = {
+  transits: { name: "a/c", of: () => 1 },
+  ms: { name: "ms", of: (run) => 1e3 * run.transit_time_seconds },
 };
 const ORDER = ["bare", "pinned", "current"]; // drawn one over the other
 let drawn = null, clicked = () => {};
@@ -25,7 +31,7 @@ export function legend(runs) {
 // Panels: one for each shell shown and for head and tail, or the absorbers at head and tail.
 function panels(result, quantity, which) {
   if (quantity === "absorber_force") return [0].flatMap((shell) => [0, 1].map((end) => ({ shell, end, column: end, row: 0, title: `absorber nearest to the ${end ? "tail" : "head"}` })));
-  return which.flatMap((shell, column) => [0, 1].map((end) => ({ shell, end, column, row: end, title: `${result.shells[shell].name}, ${end ? "tail" : "head"}` })));
+  return which.flatMap((shell, column) => [0, 1].map((end) => ({ shell, end, column, row: end, title: `${shellName(shell, result.shells.length)}, ${end ? "tail" : "head"}` })));
 }
 
 // What all charts of the page share.
@@ -37,36 +43,37 @@ export function frame(more = {}) {
   return { style, axis, layout };
 }
 
-export function draw(runs, quantity, which) {
+export function draw(runs, quantity, which, unit = "transits") {
   const current = runs.current ?? runs.bare;
   if (!current || !window.Plotly) return;
   const wanted = panels(current, quantity.name, which);
   const columns = Math.max(...wanted.map((p) => p.column)) + 1, rows = Math.max(...wanted.map((p) => p.row)) + 1;
   const [low, high] = ends(wanted.flatMap((p) => ORDER.map((key) => history(runs[key], quantity.name, p))));
   const scale = prefixed(quantity.unit, Math.max(-low, high)), margin = 0.06 * (high - low) || 1;
-  const { style, axis, layout } = frame();
-  layout.uirevision = `${quantity.name}${which}`;
+  const { style, axis, layout } = frame(), { name, of } = UNITS[unit];
+  const times = Object.fromEntries(ORDER.filter((key) => runs[key]).map((key) => [key, scaled(runs[key].arrays.time.values, 1 / of(runs[key]))]));
+  layout.uirevision = `${quantity.name}${which}${unit}`;
   const traces = [];
   wanted.forEach((panel, i) => {
     const n = i ? String(i + 1) : "", gapX = 0.05, gapY = 0.15;
     const width = (1 - gapX * (columns - 1)) / columns, height = (1 - gapY * (rows - 1)) / rows;
     const left = panel.column * (width + gapX), bottom = 1 - panel.row * (height + gapY) - height;
-    const span = current.arrays.time.values.at(-1);
-    layout[`xaxis${n}`] = { ...axis, domain: [left, left + width], anchor: `y${n}`, range: [0, span], showticklabels: panel.row === rows - 1, zeroline: false, ...(i ? { matches: "x" } : {}), nticks: 6, ...(panel.row === rows - 1 ? { title: { text: "time (a/c)", font: style, standoff: 4 } } : {}) };
+    const span = current.arrays.time.values.at(-1) * of(current);
+    layout[`xaxis${n}`] = { ...axis, domain: [left, left + width], anchor: `y${n}`, range: [0, span], showticklabels: panel.row === rows - 1, zeroline: false, ...(i ? { matches: "x" } : {}), nticks: 6, ...(panel.row === rows - 1 ? { title: { text: `time (${name})`, font: style, standoff: 4 } } : {}) };
     layout[`yaxis${n}`] = { ...axis, domain: [bottom, bottom + height], anchor: `x${n}`, nticks: 5, showticklabels: panel.column === 0, range: [(low - margin) / scale.factor, (high + margin) / scale.factor], ...(i ? { matches: "y" } : {}) };
     layout.annotations.push({ text: panel.title, xref: "paper", yref: "paper", x: left, y: bottom + height, xanchor: "left", yanchor: "bottom", showarrow: false, font: { ...style, color: colour("text") } });
     for (const key of ORDER) {
       const values = history(runs[key], quantity.name, panel);
       if (!values) continue;
-      traces.push({ type: "scatter", mode: "lines", name: RUNS[key].name, x: runs[key].arrays.time.values, y: scaled(values, scale.factor), xaxis: `x${n}`, yaxis: `y${n}`,
-        line: { color: colour(RUNS[key].colour), width: RUNS[key].width, dash: RUNS[key].dash, simplify: true }, hovertemplate: `%{y:.4~g} ${scale.unit}` });
+      traces.push({ type: "scatter", mode: "lines", name: RUNS[key].name, x: times[key], y: scaled(values, scale.factor), xaxis: `x${n}`, yaxis: `y${n}`,
+        line: { color: colour(RUNS[key].colour), width: RUNS[key].width, dash: RUNS[key].dash, simplify: false }, hovertemplate: `%{y:.4~g} ${scale.unit}` });
     }
   });
   layout.annotations.push({ text: `${quantity.label} (${scale.unit})`, xref: "paper", yref: "paper", x: 0, xshift: -66, y: 0.5, textangle: -90, xanchor: "left", yanchor: "middle", showarrow: false, font: style });
   const box = by("curves");
   window.Plotly.react(box, traces, layout, SETTINGS);
-  if (!drawn) box.on("plotly_click", ({ points }) => clicked(points[0].x));
-  drawn = { wanted, key: quantity.name };
+  if (!drawn) box.on("plotly_click", ({ points }) => clicked(points[0].x / drawn.transit));
+  drawn = { wanted, key: quantity.name, transit: of(current) };
   box.setAttribute("role", "group");
   box.setAttribute("aria-label", `${quantity.label} against time: ${wanted.map((p) => `${p.title} up to ${show(largest(history(current, quantity.name, p)), quantity.unit)}`).join("; ")}`);
 }
@@ -103,7 +110,7 @@ export function cursor(time) {
     const n = i ? String(i + 1) : "", x = full[`xaxis${n}`], y = full[`yaxis${n}`];
     if (!x || !y) return;
     const line = box.querySelectorAll(".time-cursor")[i] ?? box.appendChild(el("div", { class: "time-cursor" }));
-    const at = x.l2p(time);
+    const at = x.l2p(time * drawn.transit);
     line.hidden = at < 0 || at > x._length;
     Object.assign(line.style, { left: `${x._offset + at}px`, top: `${y._offset}px`, height: `${y._length}px` });
   });

@@ -1,57 +1,70 @@
-// Where the energy goes: stores and losses stacked, the work done on the outer shell as a line over them.
+// Where the energy goes: stores and losses stacked, the work done on the outer shell as a line over them; colours and order are the library's.
 import { request } from "./api.js";
 import { by, el } from "./dom.js";
-import { SETTINGS, frame } from "./curves.js";
+import { SETTINGS, UNITS, frame } from "./curves.js";
+import { finished } from "./events.js";
 import { colour } from "./theme.js";
 import { prefixed, show } from "./units.js";
+import { told } from "./words.js";
 
-// Okabe and Ito's colours and two lighter ones.
-const COLOURS = ["#0072b2", "#56b4e9", "#009e73", "#8fd3b6", "#cc79a7", "#e69f00", "#f0e442", "#d55e00", "#7a5195", "#a0a0a0"];
-let drawn = null;
+let shown = null, wanted = null, work = null; // what is drawn: { answer, run }; the run asked for; its job
 
-export async function draw(run, every) {
-  if (!run || drawn === run) return;
-  const box = by("energy");
-  drawn = run;
-  if (!by("energy-plot")) box.replaceChildren(el("p", { class: "empty", role: "status" }, "Integrating the fluids’ energy…"));
+export async function draw(run, unit) {
+  if (shown?.run === run.run) return chart(shown.answer, run, unit);
+  if (wanted === run.run) return null;
+  work?.cancel();
+  wanted = run.run;
+  const mine = (work = finished({ kind: "energy", run: run.run, every: Math.ceil(run.arrays.time.values.length / 200) }, (job) => work === mine && progress(job)));
+  progress({ fraction: 0 });
   try {
-    chart(await request(`/api/runs/${run}/energy?every=${every}`), box);
+    const job = await mine.promise;
+    const answer = await request(`/api/jobs/${job.id}/result`);
+    if (work !== mine) return null;
+    shown = { answer, run: run.run };
+    chart(answer, run, unit);
   } catch (failure) {
-    drawn = null;
-    box.replaceChildren(el("p", { class: "problem" }, failure.message));
+    if (work === mine) forget(failure.cancelled ? el("p", { class: "empty" }, "Cancelled.") : el("p", { class: "problem" }, told(failure)));
   }
+  return null;
 }
 
-export function forget() { drawn = null; }
+export function forget(instead = null) {
+  shown = wanted = work = null;
+  if (instead) by("energy").replaceChildren(instead);
+}
 
-// The entries of one group as one area; a group is lost for good when all of it is.
+// How far the balance of a new state is; that of the one before stays, dimmed.
+function progress({ fraction }) {
+  const box = by("energy"), plot = by("energy-plot"), text = `Integrating the fluids’ energy: ${Math.round(100 * (fraction ?? 0))}\u202f%`;
+  plot?.classList.add("old");
+  if (!by("energy-state")) box.prepend(el("div", { class: "bar status", id: "energy-state" }, el("p", { class: "note", role: "status" }), el("button", { type: "button", class: "quiet", onclick: () => work?.cancel() }, "Cancel")));
+  by("energy-state").firstChild.textContent = text;
+}
+
+// Stores and losses by what they belong to, in the library's order; a group is lost for good when all of it is.
 function groups(answer) {
-  const found = new Map();
-  for (const { name, label, role, group } of answer.entries) {
-    if (role !== "store" && role !== "loss") continue;
-    const key = group || label, one = found.get(key) ?? { label: key.replaceAll("_", " "), lost: true, values: new Float64Array(answer.arrays[name].values.length) };
-    one.lost &&= role === "loss";
-    answer.arrays[name].values.forEach((value, i) => { one.values[i] += value; });
-    found.set(key, one);
-  }
-  return [...found.values()];
+  return answer.groups.map(({ name, colour: tint }) => {
+    const mine = answer.entries.filter(({ role, group }) => group === name && (role === "store" || role === "loss"));
+    const values = new Float64Array(answer.arrays.time.values.length);
+    for (const entry of mine) answer.arrays[entry.name].values.forEach((value, i) => { values[i] += value; });
+    return { label: name, tint, lost: mine.every(({ role }) => role === "loss"), values };
+  }).filter(({ values }) => values.some((value) => value !== 0));
 }
 
-function chart(answer, box) {
-  const time = answer.arrays.time.values, parts = groups(answer);
-  const work = answer.entries.filter(({ name }) => name === "exterior_work");
-  const largest = Math.max(...[...parts.map(({ values }) => values), ...work.map(({ name }) => answer.arrays[name].values)].flatMap((values) => Array.from(values, Math.abs)));
-  const scale = prefixed("J/m", largest);
-  const y = (values) => Float32Array.from(values, (value) => value / scale.factor);
-  const traces = parts.filter(({ values }) => values.some((value) => Math.abs(value) > 1e-6 * largest)).map(({ values, label, lost }, i) => ({
-    x: time, y: y(values), name: label, stackgroup: "one", type: "scatter", mode: "lines", line: { width: 0.5, color: COLOURS[i % COLOURS.length] },
-    fillpattern: lost ? { shape: "/", size: 6, solidity: 0.25 } : undefined, hovertemplate: `%{y:.3g} ${scale.unit}<extra>${label}</extra>`,
-  }));
-  for (const { name } of work) traces.push({ x: time, y: y(answer.arrays[name].values), name: "work of the pressure outside", type: "scatter", mode: "lines", line: { color: colour("text"), width: 1.6 }, hovertemplate: `%{y:.3g} ${scale.unit}<extra></extra>` });
+function chart(answer, run, unit) {
+  const { name, of } = UNITS[unit], time = answer.arrays.time.values.map((value) => value * of(run)), parts = groups(answer), total = answer.arrays.exterior_work?.values;
+  const largest = Math.max(...[...parts.map(({ values }) => values), total ?? []].flatMap((values) => Array.from(values, Math.abs)));
+  const scale = prefixed("J/m", largest), y = (values, part) => Float32Array.from(values, (value) => part(value) / scale.factor);
+  // What is given back (actuators that drive) is stacked below zero, or it would hide its neighbours.
+  const traces = parts.flatMap(({ values, label, tint, lost }) => [["above", (value) => Math.max(value, 0)], ["below", (value) => Math.min(value, 0)]].filter(([, part]) => values.some((value) => part(value))).map(([stackgroup, part], i) => ({
+    x: time, y: y(values, part), name: label, legendgroup: label, showlegend: !i, stackgroup, type: "scatter", mode: "lines", line: { width: 0.5, color: tint },
+    fillcolor: tint, fillpattern: lost ? { shape: "/", size: 6, solidity: 0.25 } : undefined, hovertemplate: `%{y:.3g} ${scale.unit}<extra>${label}</extra>`,
+  })));
+  if (total) traces.push({ x: time, y: y(total, (value) => value), name: "work of the exterior pressure", type: "scatter", mode: "lines", line: { color: colour("text"), width: 1.6 }, hovertemplate: `%{y:.3g} ${scale.unit}<extra></extra>` });
   const { style, axis, layout } = frame({ showlegend: true, height: 380, hovermode: "x unified" });
   Object.assign(layout, { legend: { orientation: "h", y: -0.2, traceorder: "normal", font: { ...style, size: 11 } }, margin: { l: 68, r: 12, t: 12, b: 40 },
-    xaxis: { ...axis, title: { text: "time (a/c)", font: style } }, yaxis: { ...axis, title: { text: `energy (${scale.unit})`, font: style } } });
+    xaxis: { ...axis, title: { text: `time (${name})`, font: style } }, yaxis: { ...axis, title: { text: `energy (${scale.unit})`, font: style } } });
   const plot = el("div", { id: "energy-plot", role: "img", "aria-label": `Energy over time, up to ${show(largest, "J/m", 3)}` });
-  box.replaceChildren(plot, el("p", { class: "note" }, `Hatched: lost for good. Stores, losses and the work done agree within ${show(100 * answer.closure, "", 2)}\u202f% of the work.`));
+  by("energy").replaceChildren(plot, el("p", { class: "note" }, `Hatched: lost for good. Stores, losses and the work done agree within ${show(100 * answer.closure, "", 2)}\u202f% of the work.`));
   window.Plotly.newPlot(plot, traces, layout, SETTINGS);
 }

@@ -1,5 +1,6 @@
 // What the server tells by itself: the states of jobs, and that it has started anew.
 import { client, request } from "./api.js";
+import * as stream from "./stream.js";
 
 const watchers = new Map(), everyone = new Set(), restarted = new Set(), moods = new Set();
 export const jobs = new Map();
@@ -10,23 +11,20 @@ export const onRestart = (watcher) => restarted.add(watcher);
 export const onConnection = (watcher) => moods.add(watcher);
 
 export function listen() {
-  const stream = new EventSource(`/api/events?client=${client}`);
-  stream.addEventListener("hello", ({ data }) => {
-    const hello = JSON.parse(data);
-    const anew = server !== null && server !== hello.server;
-    server = hello.server;
-    for (const mood of moods) mood(true);
-    if (!anew) return;
-    jobs.clear();
-    watchers.clear();
-    for (const watcher of restarted) watcher();
+  stream.listen((kind, data) => {
+    if (kind === "job") return data.client === client && tell(data);
+    for (const mood of moods) mood(kind === "hello");
+    return kind === "hello" && greeted(data);
   });
-  stream.addEventListener("job", ({ data }) => tell(JSON.parse(data)));
-  stream.onerror = () => {
-    for (const mood of moods) mood(false);
-    // After an answer that is no stream (a server that is closing) browsers give up for good.
-    if (stream.readyState === EventSource.CLOSED) setTimeout(listen, 1000);
-  };
+}
+
+function greeted(hello) {
+  const anew = server !== null && server !== hello.server;
+  server = hello.server;
+  if (!anew) return;
+  jobs.clear();
+  watchers.clear();
+  for (const watcher of restarted) watcher();
 }
 
 function tell(job) {
@@ -64,10 +62,10 @@ export function finished(body, progress = () => {}) {
     start(body, (job) => {
       progress(job);
       if (job.state === "done") resolve(job);
-      else if (ended(job)) reject(Object.assign(new Error(job.error?.problem ?? job.state), { job, cancelled: job.state === "cancelled" }));
+      else if (ended(job)) reject(Object.assign(new Error(job.state), { job, problem: job.error, cancelled: job.state === "cancelled" }));
     }).then((job) => {
       id = job?.id;
-      if (!id) reject(Object.assign(new Error(job?.problem?.problem ?? "a newer one has come"), { problem: job?.problem, cancelled: !job }));
+      if (!id) reject(Object.assign(new Error("a newer one has come"), { problem: job?.problem, cancelled: !job }));
       else if (cancelled) stop(id);
     }, reject);
   });

@@ -2,6 +2,8 @@
 import { client, request } from "./api.js";
 import { by, el, toast } from "./dom.js";
 import { ended, watch } from "./events.js";
+import * as link from "./link.js";
+import { told } from "./words.js";
 
 const FILES = [
   ["download.toml", "Scenario", "TOML, for coaxshell run"],
@@ -45,20 +47,21 @@ function fill(list, runs, close) {
 async function film(runs) {
   try {
     const body = { client, kind: "film", runs: together(runs), frames: 120, fps: 24, size: 360, format };
-    const { job } = await request("/api/jobs", { body });
+    const { job, problem } = await request("/api/jobs", { body });
+    if (!job) return toast(`No film: ${told(problem)}`);
     making = job.id;
-    watch(job, (told) => {
-      if (!ended(told)) return toast(`Film: ${Math.round(100 * (told.fraction ?? 0))} %`);
+    watch(job, (now) => {
+      if (!ended(now)) return toast(`Film: ${Math.round(100 * (now.fraction ?? 0))}\u202f%`);
       making = null;
-      if (told.state === "cancelled") return toast("No film: cancelled.");
-      if (told.state !== "done") return toast(`No film: ${[told.error?.problem, told.error?.remedy].filter(Boolean).join("; ")}`);
-      const link = el("a", { href: `/api/jobs/${told.id}/file`, download: `coaxshell.${format}` });
-      document.body.append(link);
-      link.click();
-      link.remove();
+      if (now.state === "cancelled") return toast("No film: cancelled.");
+      if (now.state !== "done") return toast(`No film: ${told({ problem: now.error })}`);
+      const anchor = el("a", { href: `/api/jobs/${now.id}/file`, download: "" });
+      document.body.append(anchor);
+      anchor.click();
+      anchor.remove();
       return toast("The film is done.");
     });
-  } catch (failure) { toast(failure.message); }
+  } catch (failure) { toast(told(failure)); }
 }
 
 async function upload(file, opened) {
@@ -66,15 +69,15 @@ async function upload(file, opened) {
   if (!type) return toast(`${file.name}: give a .toml or a .nc file`);
   try {
     const answer = await request("/api/upload", { body: file, type });
-    if (answer.ok) { opened(answer); return toast(`Opened ${file.name}.`); }
-    return toast(`${file.name}: ${[answer.problem.where, answer.problem.problem, answer.problem.remedy].filter(Boolean).join(": ")}`);
-  } catch (failure) { return toast(failure.message); }
+    if (answer.ok) { opened(answer, file.name); return toast(`Opened ${file.name}.`); }
+    return toast(`${file.name}: ${told(answer.problem)}`);
+  } catch (failure) { return toast(told(failure)); }
 }
 
 async function copyLink(described) {
   try {
-    const { fragment } = await request("/api/link", { body: { v: 1, ...described } });
-    history.replaceState(null, "", `#${fragment}`);
-    try { await navigator.clipboard.writeText(location.href); toast("Link copied: it holds the whole system."); } catch { toast("The link stands in the address bar."); }
-  } catch (failure) { toast(failure.message); }
+    const samples = await link.put(described);
+    const holds = samples ? `it holds the system, but its record of ${samples.toLocaleString("en")} samples only as long as this server runs. To keep or share it: Download, Scenario.` : "it holds the whole system.";
+    try { await navigator.clipboard.writeText(location.href); toast(`Link copied: ${holds}`); } catch { toast(`The link stands in the address bar: ${holds}`); }
+  } catch (failure) { toast(told(failure)); }
 }

@@ -9,6 +9,7 @@ const FRAMES = 160, SIZE = 200, HALF_WIDTH = 3;
 export async function film(answer, signal, tell, limit = null) {
   const every = Math.max(1, Math.ceil(answer.arrays.time.values.length / FRAMES));
   const started = await request("/api/jobs", { body: { client, kind: "field", run: answer.run, every, size: SIZE, half_width: HALF_WIDTH }, signal });
+  if (!started.job) throw Object.assign(new Error("not started"), { problem: started.problem });
   await finished(started.job, signal, tell);
   const about = await request(`/api/jobs/${started.job.id}/result`, { signal });
   const size = about.size ** 2, pressure = new Uint8Array(about.frames * size), rings = new Map();
@@ -43,7 +44,7 @@ function finished(job, signal, tell) {
       if (!ended(told)) return;
       signal.removeEventListener("abort", stop);
       if (told.state === "done") done();
-      else fail(told.state === "cancelled" ? new DOMException("stopped", "AbortError") : new Error([told.error?.where, told.error?.problem, told.error?.remedy].filter(Boolean).join(": ")));
+      else fail(told.state === "cancelled" ? new DOMException("stopped", "AbortError") : Object.assign(new Error(told.state), { problem: told.error }));
     });
   });
 }

@@ -2,14 +2,15 @@
 import { el, by } from "./dom.js";
 import { join, read } from "./paths.js";
 import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
-import { fresh, kinds, kindTitle, limits, matches, resolve, title, use } from "./schema.js";
-import { editable, numeral, pretty, show } from "./units.js";
+import { fresh, kinds, kindTitle, limits, matches, resolve, use } from "./schema.js";
+import { editable, numeral, show } from "./units.js";
+import { capital, gapName, inWords, shellName, shellPhrase, title } from "./words.js";
 
 const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
 const KEPT_OPEN = new Map();
 
-let world, change; // what /api/schema says; (path, value, { live }) => void
+let world, change, shells = 1; // what /api/schema says; (path, value, { live }) => void; how many shells there are
 
 export function setUp(known, onChange) {
   world = known;
@@ -17,13 +18,16 @@ export function setUp(known, onChange) {
   use(known.schema);
 }
 
-export function render(system, problem) {
+export const shellCount = () => shells;
+
+export function render(system, problems) {
   const form = by("form");
+  shells = Array.isArray(system.shells) ? system.shells.length : 1;
   const focus = document.activeElement?.dataset?.path;
   const parts = resolve(world.schema).properties;
   const names = [...ORDER, ...Object.keys(parts).filter((name) => !ORDER.includes(name))];
   form.replaceChildren(...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
-  mark(problem);
+  mark(problems);
   if (focus) form.querySelector(`[data-path="${focus}"]`)?.focus({ preventScroll: true });
 }
 
@@ -53,7 +57,15 @@ const RESOLUTION = {
   duration: { type: "number", unit: "", description: "How long, in transits a/c of the outermost radius" },
   time_step: { type: "number", unit: "", description: "Time step, in transits; the preview takes a coarser one" },
   modes: { type: "integer", unit: "", description: "Circumferential orders; the preview takes at most 60" },
-  refinement: { type: "integer", unit: "", description: "Steps of the absorbers' march within one time step" },
+  refinement: { type: "integer", unit: "", description: "Steps of the absorbers’ march within one time step" },
+};
+
+// What is not solved here, told before it is asked for.
+const MOST = {
+  "absorbers.count": ({ absorbers }) => `at most ${absorbers}`,
+  "resolution.modes": ({ modes }) => `at most ${modes}`,
+  "resolution.time_step": ({ steps }) => `at most ${steps.toLocaleString("en")} steps of all refinement`,
+  "resolution.refinement": ({ refinement }) => `at most ${refinement}`,
 };
 
 function resolution(value) {
@@ -97,6 +109,7 @@ function table(schema, path, name, value, bare) {
 function label(path, name) {
   const index = path.match(/(\w+)\[(\d+)\]$/);
   if (!index) return title(name);
+  if (index[1] === "shells") return capital(shellPhrase(Number(index[2]), shells));
   return `${title(index[1].replace(/s$/, ""))} ${Number(index[2]) + 1}`;
 }
 
@@ -104,7 +117,7 @@ function list(schema, path, name, value) {
   const singular = name.replace(/s$/, "");
   const item = schema.items ?? {};
   const numeric = ["number", "integer"].includes(resolve(item).type);
-  if (numeric) return leaf({ type: "string", list: true, description: schema.description }, path, name, value.join(", "));
+  if (numeric) return leaf({ type: "string", list: true, description: schema.description }, path, name, Array.isArray(value) ? value.join(", ") : value);
   const items = value.map((one, i) => {
     const at = join(path, i);
     const inner = entry(item, at, singular, one);
@@ -115,8 +128,9 @@ function list(schema, path, name, value) {
     (body ?? inner)?.append?.(path === "fluids" ? "" : tools);
     return inner;
   });
+  const most = { shells: world.limits.shells, layers: world.limits.layers, absorbers: world.limits.absorbers, source: world.limits.sources }[name] ?? Infinity;
   return el("div", { "data-group": path }, ...items, path === "fluids" ? null : el("div", { class: "buttons" },
-    el("button", { type: "button", onclick: () => change(path, [...value, following(item, value, name)]) }, `Add ${singular}`)));
+    el("button", { type: "button", disabled: value.length >= most, onclick: () => change(path, [...value, following(item, value, name)]) }, `Add ${singular}`), value.length >= most ? el("small", { class: "hint" }, `at most ${most}`) : null));
 }
 
 function swap(path, value, i, j) {
@@ -182,16 +196,10 @@ function library(path, name, value, choices, known, entryName, key) {
   const own = named < 0 ? el("option", { value: "", selected: true }, value?.[key] ? `${value[key]} (own)` : "own") : null;
   const select = el("select", { id, "data-path": path, onchange: () => select.value !== "" && change(path, structuredClone(known[select.value][entryName])) },
     own, ...known.map((item, i) => el("option", { value: i, selected: i === named, title: item.reference }, item.name)));
-  const line = el("div", { class: "field" }, el("label", { for: id }, entryName === "fluid" ? place_of(path) : "Material"), select);
+  const line = el("div", { class: "field" }, el("label", { for: id }, entryName === "fluid" ? capital(gapName(Number(path.match(/\[(\d+)\]$/)[1]), shells)) : "Material"), select);
   const kind = choices.find((one) => matches(one, value)) ?? choices[0];
   const constants = value && typeof value === "object" ? group(`${path}.constants`, "Constants", false, "", table(kind, path, name, value, true)) : null;
   return el("div", { "data-group": path }, line, constants);
-}
-
-function place_of(path) {
-  const number = Number(path.match(/\[(\d+)\]$/)[1]);
-  const last = by("form").dataset.fluids - 1;
-  return number === 0 ? "Inside" : number === last ? "Outside" : last === 2 ? "Gap" : `Gap ${number}`;
 }
 
 function same(a, b) {
@@ -202,8 +210,11 @@ function same(a, b) {
 
 function leaf(schema, path, name, value) {
   const id = `at-${path}`, shared = { id, "data-path": path, title: [schema.description, limits(schema)].filter(Boolean).join("\n") };
-  const words = { proportional: "Proportional gain", derivative: "Derivative gain", linear_stiffness: "Linear stiffness", inner_shell: "Inner one of its shells", duration: "Duration (a/c)", time_step: "Time step (a/c)", modes: "Orders" };
-  const text = el("label", { for: id }, words[name] ?? title(name));
+  const text = el("label", { for: id }, title(name));
+  if (name === "inner_shell" && shells > 1) {
+    const select = el("select", { ...shared, onchange: () => change(path, Number(select.value)) }, ...Array.from({ length: shells - 1 }, (_, i) => el("option", { value: i, selected: i === (value ?? 0) }, `${shellName(i, shells)} and ${shellName(i + 1, shells)}`)));
+    return el("div", { class: "field broad" }, text, select);
+  }
   if (schema.enum) {
     const select = el("select", { ...shared, onchange: () => change(path, select.value) }, ...schema.enum.map((one) => el("option", { value: one, selected: one === value }, one)));
     return el("div", { class: "field" }, text, select);
@@ -230,9 +241,9 @@ function listed(text) {
 function quantity(schema, path, text, value, shared) {
   const unit = schema.unit ?? "";
   const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: editable(value, unit),
-    placeholder: schema.optional ? "material’s own" : pretty(schema.examples?.[0] ?? ""),
+    placeholder: schema.optional ? "material’s own" : null,
     onchange: () => change(path, schema.optional && !input.value.trim() ? null : numeral(input.value)) });
-  const field = el("div", { class: "field" }, text, input);
+  const field = el("div", { class: "field" }, text, input, path in MOST ? el("small", { class: "hint" }, MOST[path](world.limits)) : null);
   const range = rangeOf(path);
   if (range) {
     const slider = el("input", { type: "range", min: 0, max: steps(range), step: 1, "data-path": path, "aria-label": `${text.textContent}, slider`,
@@ -254,27 +265,29 @@ function place(slider, value, unit) {
   slider.setAttribute("aria-valuetext", show(value, unit));
 }
 
-// The library's own words beside the field they are about, or beside the nearest part around it.
-export function mark(problem) {
+// The library's own words beside the fields they are about, or beside the nearest part around each; the first is announced.
+export function mark(problems) {
   const form = by("form"), general = by("form-problem");
   for (const old of form.querySelectorAll(".problem")) old.remove();
   for (const input of form.querySelectorAll("[aria-invalid]")) { input.removeAttribute("aria-invalid"); input.removeAttribute("aria-describedby"); }
-  general.hidden = true;
-  if (!problem) return;
-  const words = `${problem.problem}; ${problem.remedy}`;
-  const spot = nearest(form, problem.where);
-  if (!spot) {
-    general.textContent = problem.where ? `${problem.where}: ${words}` : words;
-    general.hidden = false;
-    return;
-  }
+  const homeless = problems.filter((problem, i) => !beside(form, problem, i));
+  general.replaceChildren(...homeless.map((problem) => el("span", {}, problem.where ? `${problem.where}: ${sentence(problem)}` : sentence(problem))));
+  general.hidden = !homeless.length;
+}
+
+const sentence = ({ problem, remedy }) => inWords([problem, remedy].filter(Boolean).join("; "));
+
+function beside(form, problem, number) {
+  const spot = nearest(form, problem.where), id = number ? `field-problem-${number}` : "field-problem";
+  if (!spot) return false;
   for (let box = spot.closest("details"); box; box = box.parentElement.closest("details")) box.open = true;
-  const message = el("p", { class: "problem", id: "field-problem", role: "alert" }, words);
-  if (spot.matches("input, select")) {
+  const message = el("p", { class: "problem", id, role: number ? null : "alert" }, sentence(problem));
+  if (spot.matches("input, select, textarea")) {
     spot.setAttribute("aria-invalid", "true");
-    spot.setAttribute("aria-describedby", "field-problem");
+    spot.setAttribute("aria-describedby", id);
     spot.parentElement.append(message);
   } else (spot.querySelector(":scope > .body") ?? spot).prepend(message);
+  return true;
 }
 
 function nearest(form, where) {

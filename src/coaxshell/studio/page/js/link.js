@@ -1,4 +1,9 @@
-// The whole system in the fragment of the address: #s= and base64url of raw deflate of JSON.
+// The whole system in the fragment of the address: #s= and base64url of raw deflate of JSON. A long record is the server's to keep:
+// the fragment has its checksum.
+import { request } from "./api.js";
+
+const LONG = 200; // samples
+
 async function through(bytes, stream) {
   return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
 }
@@ -15,8 +20,15 @@ export function held() {
   return location.hash.startsWith("#s=") ? location.hash.slice(1) : null;
 }
 
+const isLong = ({ system }) => [system.source].flat().some((source) => source?.pulse?.time?.length > LONG);
+
+// Bring the address up to date; the answer tells how many samples of it only this server has.
 export async function put(content) {
-  const fragment = await encode(content);
-  history.replaceState(null, "", fragment);
-  return location.origin + location.pathname + fragment;
+  if (!isLong(content)) {
+    history.replaceState(null, "", await encode(content));
+    return 0;
+  }
+  const { fragment, samples_kept } = await request("/api/link", { body: { v: 1, ...content } });
+  history.replaceState(null, "", `#${fragment}`);
+  return samples_kept;
 }

@@ -7,7 +7,8 @@ let revision = 0;
 export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
 export class Slot {
-  // `name` of the slot; `show(result)` draws, `problem(problem)`, `progress(job or null)`, `fail(error)`.
+  // `name` of the slot; `show(result)` draws, `problem(problems)` of the description, `progress(job or null)`,
+  // `fail(error, full)` of anything else; `full` tells that only full resolution failed.
   constructor(name, tell) {
     Object.assign(this, { name, tell, wanted: null, busy: false, shown: 0, full: null, timer: 0, result: null });
   }
@@ -40,7 +41,7 @@ export class Slot {
     this.shown = wish.revision;
     if (!answer.ok) {
       this.stopFull();
-      return this.tell.problem(answer.problem);
+      return this.tell.problem(answer.problems ?? [answer.problem], wish);
     }
     this.keep(wish, answer, false);
     if (this.name === "current") times.push(performance.now() - wish.since);
@@ -62,8 +63,8 @@ export class Slot {
     work.promise.then(async (job) => {
       const answer = await request(`/api/runs/${job.run}`);
       if (this.full === work && this.wanted.revision === wish.revision && answer?.run) this.keep(wish, { ok: true, ...answer }, true);
-    }).catch((error) => {
-      if (this.full === work && !error.cancelled) this.tell.fail(error);
+    }).catch((error) => { // what preview could show stays
+      if (this.full === work && !error.cancelled) this.tell.fail(error, true);
     }).finally(() => {
       if (this.full !== work) return;
       this.full = null;

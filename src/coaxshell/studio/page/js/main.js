@@ -8,6 +8,7 @@ import * as files from "./files.js";
 import * as form from "./form.js";
 import * as link from "./link.js";
 import { Slot, times } from "./live.js";
+import * as past from "./past.js";
 import { read, written } from "./paths.js";
 import * as peaks from "./peaks.js";
 import * as section from "./section.js";
@@ -15,12 +16,14 @@ import * as studies from "./studies.js";
 import * as tabs from "./tabs.js";
 import { show } from "./units.js";
 import * as wave from "./wave.js";
+import { capital, inWords, placeName, refusal, shellName, told } from "./words.js";
 
-const page = { world: null, system: null, resolution: null, problem: null, runs: {}, quantity: "stress", which: "ends", past: [], reachable: true, metrics: [] };
+const page = { world: null, system: null, resolution: null, problems: [], runs: {}, quantity: "stress", which: "ends", unit: "transits", reachable: true, metrics: [] };
 
 const slots = {
-  current: new Slot("current", { show: (result) => take("current", result), problem: refuse, fail, progress }),
-  bare: new Slot("bare", { show: (result) => take("bare", result), problem: () => drop("bare"), fail: () => drop("bare") }),
+  current: new Slot("current", { show: (result) => take("current", result), problem: (problems) => refuse(problems), fail, progress }),
+  // A refusal of these is the current one's too, told there; what they showed last stays beside what it showed last.
+  bare: new Slot("bare", { show: (result) => take("bare", result), problem: () => {}, fail: () => { page.bareKey = ""; } }),
   pinned: new Slot("pinned", { show: (result) => take("pinned", result), problem: () => drop("pinned"), fail: () => {} }),
 };
 
@@ -29,9 +32,11 @@ const slots = {
 const isBare = (system) => !system.control && (!system.absorbers || (Array.isArray(system.absorbers) ? !system.absorbers.length : !system.absorbers.count));
 const bareOf = (system) => ({ ...system, absorbers: [], control: null });
 
+// A coarse resolution within the limits of what is solved at once, whatever was typed: those of full resolution are what a person is told.
 function preview() {
-  const { duration, modes, refinement } = page.resolution, coarse = page.world.resolutions.preview;
-  return { duration, time_step: Math.max(page.resolution.time_step, coarse.time_step, Math.ceil((1e3 * duration) / 2500) / 1e3), modes: Math.min(modes, coarse.modes), refinement };
+  const { duration, time_step, modes, refinement } = page.resolution, coarse = page.world.resolutions.preview, most = page.world.limits.preview_steps;
+  const step = Math.max(time_step, coarse.time_step, Math.ceil((1e3 * duration) / most) / 1e3);
+  return { duration, time_step: step, modes: Math.min(modes, coarse.modes), refinement: Math.max(1, Math.min(refinement, Math.floor((most * step) / duration))) };
 }
 
 function solve(since = performance.now()) {
@@ -52,42 +57,49 @@ function again() {
 
 // ---- what the person changes
 
-let lastPath = "", lastTime = 0;
-function remember(path, live) {
-  const coalesced = live && path === lastPath && performance.now() - lastTime < 1500;
-  lastPath = path;
-  lastTime = performance.now();
-  if (!coalesced) page.past.push(structuredClone({ system: page.system, resolution: page.resolution }));
-  if (page.past.length > 100) page.past.shift();
-  by("undo").disabled = !page.past.length;
+const state = () => ({ system: page.system, resolution: page.resolution, from: page.from });
+
+function goTo(found) {
+  if (!found) return;
+  page.resolution = found.resolution;
+  startedFrom(found.from);
+  if (page.runs.pinned) slots.pinned.want(page.runs.pinned.system, { resolution: preview(), full: page.resolution });
+  check({ keepForm: false });
 }
 
 let checking = 0;
 async function change(path, value, { live = false } = {}) {
-  const since = performance.now();
-  remember(path, live);
-  if (path.startsWith("resolution.")) return resolve(path.slice(11), value);
-  page.system = path === "shells" ? withShells(page.system, value) : written(page.system, path, value);
-  if (live) {
-    page.problem = null;
-    form.mark(null);
+  const since = performance.now(), ofResolution = path.startsWith("resolution.");
+  past.keep(state(), path, live);
+  if (ofResolution) page.resolution = { ...page.resolution, [path.slice(11)]: value };
+  else page.system = path === "shells" ? withShells(page.system, value) : written(page.system, path, value);
+  if (live && !page.problems.length) {
     form.refresh(forForm());
     section.draw(page.system);
     solve(since);
     return keepLink();
   }
-  const mine = ++checking;
+  const whole = typeof value === "object" || value === undefined || (!ofResolution && !read(page.system, path));
+  return check({ since, path, whole, keepForm: !whole });
+}
+
+// Ask the library about system and resolution: adopted when it accepts both, else every problem beside its field, that of `path` first.
+async function check({ since, path = "", whole = false, keepForm }) {
+  const mine = ++checking, resolution = JSON.stringify(page.resolution);
   let answer;
   try {
-    answer = await request("/api/validate", { body: { system: page.system } });
+    answer = await request("/api/validate", { body: { system: page.system, resolution: page.resolution } });
   } catch (error) { return fail(error); }
   if (mine !== checking) return;
   if (!answer.ok) { // what was typed stays as it was typed, the reason beside it
-    if (typeof value === "object" || !read(page.system, path)) form.render(forForm(), answer.problem);
-    return refuse(answer.problem);
+    if (whole || !keepForm) form.render(forForm(), []);
+    return refuse(answer.problems, path);
   }
   page.metrics = answer.metrics ?? [];
-  adopt(answer.system, { since, keepForm: typeof value !== "object" && shape(answer.system) === page.shape });
+  const finer = resolution !== page.resolved;
+  page.resolved = resolution;
+  adopt(answer.system, { since, keepForm: keepForm && shape(answer.system) === page.shape });
+  if (finer && page.runs.pinned) slots.pinned.want(page.runs.pinned.system, { resolution: preview(), full: page.resolution });
 }
 
 // Fluids follow the number of shells, a further gap as the last one; a single shell has no absorbers.
@@ -98,44 +110,48 @@ function withShells(system, shells) {
   return { ...system, shells, fluids, absorbers: shells.length < 2 ? [] : system.absorbers };
 }
 
-function resolve(name, value) {
-  page.resolution = { ...page.resolution, [name]: value };
-  form.mark(null);
-  solve();
-  again();
-  keepLink();
-}
-
 const shape = (system) => JSON.stringify(system, (_, value) => (typeof value === "number" ? 0 : value));
 const forForm = () => ({ ...page.system, resolution: page.resolution });
 
 // A system that the library has accepted: into the form, the drawing, the solver, the address.
 function adopt(system, { since, keepForm = false } = {}) {
   page.system = system;
-  page.problem = null;
+  page.problems = [];
   page.shape = shape(system);
-  by("form").dataset.fluids = system.fluids.length;
-  if (keepForm) { form.mark(null); form.refresh(forForm()); } else form.render(forForm(), null);
+  if (keepForm) { form.mark([]); form.refresh(forForm()); } else form.render(forForm(), []);
   section.draw(system);
   solve(since);
   keepLink();
 }
 
 // A system described somewhere else: by a preset, in a file, in a link.
-async function open(body, path = "/api/validate") {
+async function open(body, from, path = "/api/validate") {
   try {
     const answer = await request(path, { body });
-    if (answer.ok) return opened(answer);
-    toast(`Not opened. ${[answer.problem.where, answer.problem.problem, answer.problem.remedy].filter(Boolean).join(": ")}`);
-  } catch (error) { toast(`Not opened. ${error.message}`); }
+    if (answer.ok) return opened(answer, from);
+    toast(`Not opened. ${told(answer.problem)}`);
+  } catch (error) { toast(`Not opened. ${told(error)}`); }
   return null;
 }
 
-function opened(answer) {
-  if (page.system) remember("", false);
+// The list of presets shows what the system was made from; choosing that one again starts anew.
+function startedFrom(name) {
+  page.from = name;
+  const select = by("preset"), own = select.options[select.options.length - 1];
+  own.textContent = name;
+  own.title = page.world.presets.find((one) => one.name === name)?.title ?? "";
+  own.selected = true;
+}
+
+function opened(answer, from) {
+  if (page.system) past.keep(state(), "", false);
+  checking += 1;
+  startedFrom(typeof answer.view?.from === "string" ? answer.view.from.slice(0, 60) : from);
   if (answer.resolution) page.resolution = { ...page.world.resolutions.full, ...answer.resolution };
+  page.resolved = JSON.stringify(page.resolution);
   const view = answer.view ?? {};
   if (view.quantity) page.quantity = view.quantity;
+  if (view.unit in curves.UNITS) page.unit = by("unit").value = view.unit;
   if (view.tab && document.getElementById(`tab-${view.tab}`)) tabs.choose(view.tab);
   page.metrics = answer.metrics ?? page.metrics;
   adopt(answer.system);
@@ -143,17 +159,20 @@ function opened(answer) {
 }
 
 let linkTimer;
-const content = () => ({ system: page.system, resolution: page.resolution, view: { quantity: page.quantity, tab: tabs.shown() } });
+const content = () => ({ system: page.system, resolution: page.resolution, view: { quantity: page.quantity, tab: tabs.shown(), unit: page.unit, from: page.from } });
 function keepLink() {
   clearTimeout(linkTimer);
-  linkTimer = setTimeout(() => link.put(content()), 400);
+  linkTimer = setTimeout(() => link.put(content()).catch(() => {}), 400);
 }
 
 // ---- what comes back
 
 function take(slot, result) {
   page.runs[slot] = result;
-  if (slot === "current") { page.problem = null; by("response").classList.remove("stale"); }
+  if (slot === "current") { // an answer to an older wish says nothing about what is in the form now
+    if (result.system === page.system && !page.problems.length) stale(false);
+    if (isBare(result.system)) drop("bare");
+  }
   drawRuns();
 }
 
@@ -163,17 +182,28 @@ function drop(slot) {
   drawRuns();
 }
 
-function refuse(problem) {
-  page.problem = problem;
-  const mended = /^(duration|time_step|modes|refinement)/.test(problem.where) ? { ...problem, where: `resolution.${problem.where}` } : problem;
+// Curves, peaks, warnings, wave and energy of a state that is no longer in the form are dimmed, and a line above says so.
+function stale(is) {
+  document.documentElement.classList.toggle("stale", is);
+  for (const note of document.querySelectorAll(".of-old")) note.hidden = !is || !page.runs.current;
+}
+
+// The description is refused: everything that is wrong beside its field, that of the field just edited told first.
+function refuse(problems, edited = "") {
+  const found = problems.map(refusal).map((one) => (/^(duration|time_step|modes|refinement)/.test(one.where) ? { ...one, where: `resolution.${one.where}` } : one));
+  const mine = ({ where }) => edited && (where === edited || where.startsWith(`${edited}.`) || where.startsWith(`${edited}[`));
+  page.problems = [...found.filter(mine), ...found.filter((one) => !mine(one))];
   slots.current.stopFull();
-  form.mark(mended);
-  by("response").classList.add("stale");
+  form.mark(page.problems);
+  stale(true);
   say();
 }
 
-function fail(error) {
-  page.problem = { where: error.where ?? "", problem: error.problem ?? error.message, remedy: error.remedy ?? "" };
+// Anything else that goes wrong; what full resolution alone cannot have leaves the preview as it is.
+function fail(error, full = false) {
+  page.problems = [{ ...refusal(error), full }];
+  if (page.problems[0].where) form.mark(page.problems);
+  if (!full) stale(true);
   say();
 }
 
@@ -191,7 +221,7 @@ function drawRuns() {
     quantities();
     shellsShown();
     curves.legend(page.runs);
-    curves.draw(page.runs, quantityShown(), whichShells());
+    curves.draw(page.runs, quantityShown(), whichShells(), page.unit);
     drawTab(tabs.shown());
     by("pin").textContent = page.runs.pinned ? "Unpin" : "Pin";
     by("pin").disabled = !page.runs.current;
@@ -206,7 +236,7 @@ function drawTab(name) {
   if (name === "peaks") peaks.draw(page.runs);
   if (name === "studies") studies.offer();
   if (!page.runs.current) return;
-  if (name === "energy") tabTimer = setTimeout(() => energy.draw(page.runs.current.run, Math.ceil(page.runs.current.arrays.time.values.length / 200)), 300);
+  if (name === "energy") tabTimer = setTimeout(() => energy.draw(page.runs.current, page.unit), 300);
   if (name === "wave") tabTimer = setTimeout(() => wave.load(page.runs), 300);
   if (name !== "wave") { wave.pause(); curves.cursor(null); } else wave.draw();
 }
@@ -233,15 +263,19 @@ function whichShells() {
 function shellsShown() {
   const shells = page.runs.current?.shells ?? [];
   by("which-shells").hidden = shells.length < 3;
-  const select = by("shells"), wanted = [el("option", { value: "ends" }, "Innermost and outermost"), ...shells.map((shell) => el("option", { value: shell.index }, `Shell ${shell.name}`))];
-  if (select.children.length !== wanted.length) select.replaceChildren(...wanted);
+  const select = by("shells"), wanted = [el("option", { value: "ends" }, "Inner and outer"), ...shells.map((shell) => el("option", { value: shell.index }, capital(shellName(shell.index, shells.length))))];
+  if (select.children.length !== wanted.length) { page.which = "ends"; select.replaceChildren(...wanted); }
 }
 
 function say() {
   const { current } = page.runs, box = by("state");
-  by("refine").hidden = Boolean(page.job) || !current || current.full || Boolean(page.problem);
+  by("refine").hidden = Boolean(page.job) || !current || current.full || page.problems.length > 0;
   if (!page.reachable) box.textContent = "The server does not answer; trying again. Is coaxshell studio still running?";
-  else if (page.problem) box.textContent = `Not solved: ${[page.problem.where, page.problem.problem].filter(Boolean).join(": ")}`;
+  else if (page.problems.length) {
+    const [{ where, problem, full }] = page.problems, more = page.problems.length - 1;
+    const place = where && (where === "resolution" || /[.[]/.test(where)) ? capital(placeName(where.replace(/^resolution\./, ""), page.system?.shells?.length ?? 1)) : where;
+    box.textContent = `Not solved${full ? " at full resolution" : ""}: ${[place, inWords(problem)].filter(Boolean).join(": ")}${more ? ` (and ${more} more)` : ""}`;
+  }
   else if (!current) box.textContent = "Solving…";
   else {
     const { modes, time_step } = current.resolution;
@@ -253,16 +287,14 @@ function say() {
 // ---- setting up
 
 function wire() {
-  by("preset").addEventListener("change", (event) => open({ system: page.world.presets[event.target.value].system }));
+  by("preset").addEventListener("change", (event) => { const preset = page.world.presets[event.target.value]; if (preset) open({ system: preset.system }, preset.name); });
   by("quantity").addEventListener("change", (event) => { page.quantity = event.target.value; drawRuns(); keepLink(); });
   by("shells").addEventListener("change", (event) => { page.which = event.target.value; drawRuns(); });
-  by("undo").addEventListener("click", () => {
-    const { system, resolution } = page.past.pop();
-    by("undo").disabled = !page.past.length;
-    lastPath = "";
-    page.resolution = resolution;
-    adopt(system);
-  });
+  by("unit").addEventListener("change", (event) => { page.unit = event.target.value; drawRuns(); keepLink(); });
+  const back = (way) => () => { const found = way(state()); if (found) page.system = found.system; goTo(found); };
+  by("undo").addEventListener("click", back(past.undo));
+  by("redo").addEventListener("click", back(past.redo));
+  past.onChange(({ undo, redo }) => { by("undo").disabled = !undo; by("redo").disabled = !redo; });
   by("pin").addEventListener("click", () => {
     if (page.runs.pinned) { slots.pinned.stopFull(); return drop("pinned"); }
     const { system } = page.runs.current;
@@ -272,9 +304,9 @@ function wire() {
   by("cancel").addEventListener("click", () => slots.current.stopFull());
   by("refine").addEventListener("click", () => slots.current.refine());
   by("form").addEventListener("submit", (event) => event.preventDefault());
-  document.addEventListener("theme", () => { energy.forget(); if (page.runs.current) drawRuns(); });
+  document.addEventListener("theme", () => { if (page.runs.current) drawRuns(); });
   tabs.onTab((name) => { drawTab(name); if (name === "studies") studies.fit(); if (page.system) keepLink(); });
-  addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "/api/link/open"));
+  addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "a link", "/api/link/open"));
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
   wave.setUp(curves.cursor);
@@ -282,7 +314,9 @@ function wire() {
   events.onRestart(() => { wave.forget(); energy.forget(); again(); });
   events.onConnection((reachable) => { page.reachable = reachable; if (page.world) say(); });
   addEventListener("keydown", (event) => {
-    if ((event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.matches("input[type=text], textarea") && page.past.length) { event.preventDefault(); by("undo").click(); }
+    if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=text], textarea")) return;
+    const key = event.key.toLowerCase(), button = key === "y" || (key === "z" && event.shiftKey) ? by("redo") : key === "z" ? by("undo") : null;
+    if (button && !button.disabled) { event.preventDefault(); button.click(); }
   });
 }
 
@@ -290,18 +324,17 @@ async function begin() {
   try {
     page.world = await request("/api/schema");
   } catch (error) {
-    by("state").textContent = `${error.problem ?? error.message}; trying again`;
+    by("state").textContent = `${told(error)}; trying again`;
     return setTimeout(begin, 1000);
   }
   page.resolution = { ...page.world.resolutions.full };
   form.setUp(page.world, change);
-  by("preset").replaceChildren(...page.world.presets.map((one, i) => el("option", { value: i, title: one.title }, one.name)));
+  by("preset").replaceChildren(...page.world.presets.map((one, i) => el("option", { value: i, title: one.title }, one.name)), el("option", { value: "", hidden: true }));
+  by("unit").replaceChildren(...Object.entries(curves.UNITS).map(([value, { name }]) => el("option", { value }, name)));
   events.listen();
   wire();
-  const first = page.world.presets.findIndex((one) => one.name === "hybrid");
-  by("preset").value = first;
-  const fragment = link.held();
-  if (!fragment || !(await open({ fragment }, "/api/link/open"))) await open({ system: page.world.presets[first].system });
+  const first = page.world.presets.find((one) => one.name === "hybrid"), fragment = link.held();
+  if (!fragment || !(await open({ fragment }, "a link", "/api/link/open"))) await open({ system: first.system }, first.name);
 }
 
 // For the tests: how long the last changes took until their curves were drawn.

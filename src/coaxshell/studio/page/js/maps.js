@@ -1,5 +1,9 @@
 // Diverging colour maps, centred on 0, safe for every kind of colour vision: blue to red for pressure, purple to orange for stress.
-const PRESSURE = [[33, 102, 172], [103, 169, 207], [209, 229, 240], [247, 247, 247], [253, 219, 199], [239, 138, 98], [178, 24, 43]];
+// In the dark theme no pressure is dark too: the same hues, lighter outwards.
+const PRESSURE = {
+  light: [[33, 102, 172], [103, 169, 207], [209, 229, 240], [247, 247, 247], [253, 219, 199], [239, 138, 98], [178, 24, 43]],
+  dark: [[120, 190, 255], [56, 128, 196], [34, 68, 104], [30, 36, 44], [104, 48, 40], [206, 92, 64], [255, 168, 130]],
+};
 const STRESS = [[84, 39, 136], [153, 142, 195], [216, 218, 235], [200, 200, 200], [254, 224, 182], [241, 163, 64], [179, 88, 6]];
 
 function mixed(stops, share) {
@@ -7,13 +11,16 @@ function mixed(stops, share) {
   return stops[low].map((part, k) => Math.round(part + (at - low) * (stops[low + 1][k] - part)));
 }
 
-// Colours of the bytes 0..255, 128 in the centre, as little-endian RGBA words.
-export const WORDS = Uint32Array.from({ length: 256 }, (_, q) => {
-  const [r, g, b] = mixed(PRESSURE, 0.5 + (q - 128) / 254);
+const theme = () => (document.documentElement.dataset.theme === "dark" ? "dark" : "light");
+
+// Colours of the bytes 0..255, 128 in the centre, as little-endian RGBA words, of the present theme.
+const WORDS = Object.fromEntries(Object.entries(PRESSURE).map(([name, stops]) => [name, Uint32Array.from({ length: 256 }, (_, q) => {
+  const [r, g, b] = mixed(stops, 0.5 + (q - 128) / 254);
   return (255 << 24) | (b << 16) | (g << 8) | r;
-});
+})]));
+export const words = () => WORDS[theme()];
 
 export const stressColour = (share) => `rgb(${mixed(STRESS, 0.5 + share / 2).join(" ")})`;
 
 const css = (stops) => `linear-gradient(to right, ${stops.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
-export const PRESSURE_BAR = css(PRESSURE), STRESS_BAR = css(STRESS);
+export const pressureBar = () => css(PRESSURE[theme()]), STRESS_BAR = css(STRESS);

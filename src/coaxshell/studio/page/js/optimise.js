@@ -1,8 +1,9 @@
 // Optimisations: what may change, what to make small, which limits to keep; the search itself is the server's.
 import { by, el } from "./dom.js";
 import { show as showOptimum } from "./optimum.js";
-import { choose, fields, labelled, metricOptions, metricUnit, options, pathOptions, spacing, spelt, suggested, told, typed, unitOf, withUnit } from "./study_fields.js";
+import { choose, fields, firstMetric, labelled, metricOptions, metricUnit, options, pathOptions, spacing, spelt, suggested, typed, unitOf, withUnit } from "./study_fields.js";
 import { numeral, plain, pretty } from "./units.js";
+import { told } from "./words.js";
 
 export const title = "Optimise", start = "Start optimisation";
 export const show = showOptimum;
@@ -13,7 +14,7 @@ const METHODS = [["auto", "automatic"], ["cma-es", "CMA-ES"], ["differential-evo
 const EACH = [{ value: "mirror", label: "mirror images" }, { value: "single", label: "none" }];
 const FIRST = ["absorbers.mass", "absorbers.damping", "control.proportional"];
 let described, form;
-const study = { variables: [], objectives: [{ metric: "inner.peak_stress", goal: "min" }, { metric: "", goal: "min" }], constraints: [], evaluations: "100", method: "auto", population: "", seed: "0" };
+const study = { variables: [], objectives: [{ metric: null, goal: "min" }, { metric: "", goal: "min" }], constraints: [], evaluations: "100", method: "auto", population: "", seed: "0" };
 
 export function setUp(box, current) {
   [form, described] = [box, current];
@@ -24,6 +25,7 @@ export function setUp(box, current) {
 export function offer() {
   const { system } = described();
   if (!study.variables.length) study.variables = [variable(system, FIRST.find((path) => fields().some((field) => field.path === path)) ?? fields()[0]?.path)].filter(({ path }) => path);
+  study.objectives[0].metric ??= firstMetric(described().metrics);
   draw();
 }
 

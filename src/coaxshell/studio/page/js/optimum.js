@@ -2,9 +2,10 @@
 import { request } from "./api.js";
 import { SETTINGS, frame } from "./curves.js";
 import { el, toast } from "./dom.js";
-import { spelt, told } from "./study_fields.js";
+import { spelt } from "./study_fields.js";
 import { colour } from "./theme.js";
 import { percent, prefixed, show as text, showPercent } from "./units.js";
+import { told } from "./words.js";
 
 const NAMES = { "cma-es": "CMA-ES", "differential-evolution": "differential evolution", nsga2: "NSGA-II" };
 
@@ -20,8 +21,8 @@ export function show(result, box, { id, opened }) {
   async function adopt() {
     try {
       const answer = await request(`/api/jobs/${id}/designs/${chosen.number}`);
-      if (answer.ok) { opened(answer); toast("This is the current system now; Undo takes it back."); } else toast(told(answer.problem));
-    } catch (failure) { toast(failure.message); }
+      if (answer.ok) { opened(answer, "an optimised design"); toast("This is the current system now; Undo takes it back."); } else toast(told(answer.problem));
+    } catch (failure) { toast(told(failure)); }
   }
   function choose(one) {
     chosen = one;

@@ -2,6 +2,7 @@
 import { el, by, svg } from "./dom.js";
 import { RUNS } from "./curves.js";
 import { percent, show, showPercent } from "./units.js";
+import { capital, inWords, shellPhrase } from "./words.js";
 
 export function draw(runs) {
   const { current } = runs;
@@ -12,11 +13,13 @@ export function draw(runs) {
     el("caption", {}, `Largest magnitudes over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), el("td", {}), el("th", { scope: "col", class: "number" }, "Current"), ...others.flatMap((key) => [el("th", { scope: "col", class: "number" }, RUNS[key].name.replace(/^./, (c) => c.toUpperCase())), el("th", { scope: "col", class: "number" }, "Change")]))),
     ...groups(current).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), ...bars.map((bar) => line(bar, runs, others, extent(bar, current, runs, others))))));
-  by("peaks").replaceChildren(...(warnings ? [warnings] : []), el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Peak and RMS values" }, table), el("p", { class: "note" }, accuracy(current)));
+  const region = el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Peak and RMS values" }, table);
+  by("peaks").replaceChildren(...(warnings ? [warnings] : []), region, el("p", { class: "scroll-hint", "aria-hidden": "true" }, "← swipe the table to see all of it →"), el("p", { class: "note" }, accuracy(current)));
+  region.classList.toggle("scrolls", region.scrollWidth > region.clientWidth + 1);
 }
 
 function groups(result) {
-  const named = result.shells.map((shell) => [`${shell.name === "shell" ? "Shell" : `${shell.name.replace(/^./, (c) => c.toUpperCase())} shell`}, ${show(shell.radius, "m")}`, result.bars.filter((bar) => bar.shell === shell.index)]);
+  const named = result.shells.map((shell) => [`${capital(shellPhrase(shell.index, result.shells.length))}, ${show(shell.radius, "m")}`, result.bars.filter((bar) => bar.shell === shell.index)]);
   const rest = result.bars.filter((bar) => bar.shell === undefined || bar.shell === null);
   return [...named, ["Absorbers", rest]].filter(([, bars]) => bars.length);
 }
@@ -35,7 +38,7 @@ function line(bar, runs, others, most) {
   const height = 15 / (1 + others.length);
   const picture = svg("svg", { "aria-hidden": "true" }, svg("rect", { x: 0, y: 1, height: height + 1, width: width(bar.value), rx: 1.5, fill: "var(--current)" }),
     ...values.map(([key, value], i) => svg("rect", { x: 0, y: 2 + (i + 1) * height, height: height - 1, width: width(value ?? 0), rx: 1, fill: `var(--${RUNS[key].colour})` })));
-  const where = bar.time === null || bar.time === undefined ? "" : `at t = ${show(bar.time, "")} a/c${bar.angle === null || bar.angle === undefined ? "" : `, ${show(bar.angle, "deg")}`}`;
+  const where = bar.time === null || bar.time === undefined ? "" : `at t = ${show(bar.time, "")} a/c (${show(bar.time * runs.current.transit_time_seconds, "s")})${bar.angle === null || bar.angle === undefined ? "" : `, ${show(bar.angle, "deg")}`}`;
   return el("tr", { title: where }, el("th", { scope: "row" }, bar.label), el("td", { class: "bars" }, picture), el("td", { class: "number", "data-bar": `${bar.name}/${bar.shell ?? ""}` }, show(bar.value, bar.unit)),
     ...values.flatMap(([, value]) => {
       const change = value === undefined ? null : percent(bar.value, value);
@@ -48,4 +51,4 @@ function accuracy({ estimates, full, resolution }) {
   return `Estimated relative error of the stress from the orders left out: ${show(worst, "", 2)} at ${resolution.modes} orders, step ${show(resolution.time_step, "")} a/c${full ? "" : " (preview)"}.`;
 }
 
-const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
+const sentence = (text) => capital(inWords(text)) + (/[.!?]$/.test(text) ? "" : ".");

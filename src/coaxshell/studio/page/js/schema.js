@@ -1,4 +1,6 @@
-// Reading the description's JSON schema: references, kinds of a union, defaults, titles.
+// Reading the description's JSON schema: references, kinds of a union, defaults.
+import { title } from "./words.js";
+
 let root = {};
 
 export function use(schema) { root = schema; }
@@ -31,11 +33,6 @@ export function matches(schema, value) {
     && Object.keys(value).every((name) => name in (schema.properties ?? {}));
 }
 
-export function title(name) {
-  const words = name.replace(/_/g, " ").replace(/^e(\d\d)$/, "e$1");
-  return words.charAt(0).toUpperCase() + words.slice(1);
-}
-
 export function kindTitle(schema) {
   const kind = resolve(schema.properties?.type)?.const;
   return title((kind ?? schema.title ?? schema.type ?? "").replace(/-/g, " ").replace(/([a-z])([A-Z])|([A-Z]{2})(?=[A-Z][a-z])/g, "$1$3 $2").replace(/\b[A-Z](?=[a-z])/g, (c) => c.toLowerCase()));
@@ -52,7 +49,7 @@ export function fresh(schema, hints = {}) {
   if (found.type === "object") {
     const made = {};
     for (const [name, part] of Object.entries(found.properties ?? {})) {
-      if (name in hints) made[name] = structuredClone(hints[name]);
+      if (name in hints && kinds(part).some((kind) => matches(kind, hints[name]))) made[name] = structuredClone(hints[name]);
       else if ((found.required ?? []).includes(name) || resolve(part).const !== undefined) made[name] = fresh(part, hints);
     }
     return made;

@@ -3,9 +3,10 @@ import { client, request } from "./api.js";
 import { by, el } from "./dom.js";
 import { ended, onRestart, watch } from "./events.js";
 import * as optimise from "./optimise.js";
-import { fields, spelt, told } from "./study_fields.js";
+import { fields, spelt } from "./study_fields.js";
 import * as sweep from "./sweep.js";
 import { show } from "./units.js";
+import { refusal, told } from "./words.js";
 
 const KINDS = { sweep, optimise };
 const jobs = new Map(); // by id: { kind, title, row, state }
@@ -15,14 +16,14 @@ let kind = "sweep", world, redraw = () => {}, fileTimer;
 export function setUp(page, { preview, opened }) {
   world = { page, preview, opened };
   const forms = Object.keys(KINDS).map((name) => el("form", { id: name, class: "study", novalidate: true, autocomplete: "off", hidden: name !== kind, onsubmit: (event) => { event.preventDefault(); start(); } }));
-  by("studies").replaceChildren(
+  by("studies").replaceChildren(el("div", {},
     el("fieldset", { class: "segments" }, el("legend", { class: "hidden" }, "Kind of study"), ...Object.entries(KINDS).map(([name, { title }]) =>
       el("label", {}, el("input", { type: "radio", name: "study-kind", value: name, checked: name === kind, onchange: () => choose(name) }), el("span", {}, title)))),
     ...forms,
     el("details", { id: "study-file", class: "study-file", ontoggle: keepFile }, el("summary", {}, "Study file, for the command line"),
       el("textarea", { id: "study-text", readonly: true, rows: 16, spellcheck: "false", "aria-label": "Study file" }),
-      el("div", { class: "buttons" }, el("button", { type: "button", onclick: copy }, "Copy"), el("code", { id: "study-command" }))),
-    el("p", { class: "hidden", id: "study-said", role: "status" }), el("div", { id: "study-jobs" }), el("div", { id: "study-result" }));
+      el("div", { class: "buttons" }, el("button", { type: "button", onclick: copy }, "Copy"), el("code", { id: "study-command" })))),
+    el("div", {}, el("p", { class: "hidden", id: "study-said", role: "status" }), el("div", { id: "study-jobs" }), el("div", { id: "study-result" })));
   for (const form of forms) {
     KINDS[form.id].setUp(form, page);
     for (const type of ["input", "change", "click"]) form.addEventListener(type, keepFile);
@@ -64,8 +65,9 @@ async function start() {
   try {
     const title = named(body), answer = await request("/api/jobs", { body: { client, title: title.slice(0, 200), ...body } });
     if (answer.ok === false) return mark(form, answer.problem);
-    return list(answer.job, title);
-  } catch (failure) { return mark(form, { where: "", problem: failure.message, remedy: "" }); }
+    list(answer.job, title);
+    return inSight(by("study-jobs"));
+  } catch (failure) { return mark(form, refusal(failure)); }
 }
 
 // ---- jobs
@@ -119,7 +121,13 @@ async function open(id) {
   const box = by("study-result");
   try {
     redraw = KINDS[jobs.get(id).kind].show(await request(`/api/jobs/${id}/result`), box, { id, ...world }) ?? (() => {});
-  } catch (failure) { box.replaceChildren(el("p", { class: "problem" }, failure.message)); }
+    inSight(box);
+  } catch (failure) { box.replaceChildren(el("p", { class: "problem" }, told(failure))); }
+}
+
+// What has just come is not left below the fold, unless somebody is typing above it.
+function inSight(box) {
+  if (!document.activeElement?.matches("input[type=text], select, textarea")) box.scrollIntoView({ block: "nearest" });
 }
 
 // ---- the study file
@@ -135,7 +143,7 @@ async function file() {
   try {
     const answer = await request("/api/study", { body: asked() });
     box.value = answer.ok ? answer.toml : `# not yet: ${told(answer.problem)}`;
-  } catch (failure) { box.value = `# ${failure.message}`; }
+  } catch (failure) { box.value = `# ${told(failure)}`; }
 }
 
 async function copy({ target }) {

@@ -1,8 +1,10 @@
 // What the forms of sweeps and optimisations share: fields that can be varied, metrics with their units, labelled inputs.
 import { by, el } from "./dom.js";
+import { shellCount } from "./form.js";
 import { read } from "./paths.js";
 import { rangeOf, span } from "./ranges.js";
 import { editable, pretty } from "./units.js";
+import { gapName, shellName } from "./words.js";
 
 // Every number of the form, those with a slider first; with `each`, the absorbers one by one too.
 export function fields(each = false) {
@@ -13,7 +15,12 @@ export function fields(each = false) {
   return [...found, ...own];
 }
 
-export const spelt = (path) => path.replaceAll("_", " ");
+// A dotted path, or a text that holds some, with the names that the form gives to shells, layers and fluids.
+export function spelt(text) {
+  const shells = shellCount();
+  return text.replace(/\bshells\[(\d+)\]/g, (_, i) => shellName(Number(i), shells)).replace(/\bfluids\[(\d+)\]/g, (_, i) => gapName(Number(i), shells))
+    .replace(/\b(layer|absorber)s\[(\d+)\]/g, (_, name, i) => `${name} ${Number(i) + 1}`).replaceAll("_", " ");
+}
 
 export const unitOf = (path) => fields(true).find((field) => field.path === path)?.unit ?? "";
 
@@ -31,6 +38,8 @@ export function options(items, chosen) {
 
 export const pathOptions = (chosen, each) => options(fields(each).map(({ path, label }) => ({ value: path, label })), chosen);
 export const metricOptions = (metrics, chosen) => options((metrics ?? []).map((name) => ({ value: name, label: spelt(name) })), chosen);
+// The metric offered first: the peak stress of the innermost shell.
+export const firstMetric = (metrics) => (metrics ?? []).find((name) => name.endsWith(".peak_stress")) ?? metrics?.[0] ?? "inner.peak_stress";
 export const spacing = (chosen, list = false) => options([{ value: "linear", label: "even" }, { value: "log", label: "logarithmic" }, ...(list ? [{ value: "list", label: "a list of choices" }] : [])], chosen);
 
 export const labelled = (text, input) => el("label", {}, el("span", {}, text), input);
@@ -44,4 +53,3 @@ export function metricUnit(world, name) {
   return world.metric_units[name] ?? world.metric_units[name.split(".").at(-1)] ?? "1";
 }
 
-export const told = ({ where, problem, remedy }) => [where, [problem, remedy].filter(Boolean).join("; ")].filter(Boolean).join(": ");

@@ -1,9 +1,10 @@
 // Sweeps: a small form, and their results drawn.
 import { SETTINGS, frame } from "./curves.js";
 import { by, el } from "./dom.js";
-import { choose, labelled, metricOptions, pathOptions, spacing, spelt, suggested, told, typed } from "./study_fields.js";
+import { choose, firstMetric, labelled, metricOptions, pathOptions, spacing, spelt, suggested, typed } from "./study_fields.js";
 import { colour } from "./theme.js";
 import { numeral, prefixed, pretty } from "./units.js";
+import { told } from "./words.js";
 
 export const title = "Sweep", start = "Start sweep";
 let described;
@@ -21,7 +22,7 @@ export function offer(form) {
   form.replaceChildren(
     el("fieldset", {}, el("legend", {}, "Vary"), labelled("What", choose("path", pathOptions(kept.path))), ...axis("", 11)),
     el("fieldset", {}, el("legend", {}, "Against (optional)"), labelled("What", choose("path2", [el("option", { value: "" }, "nothing else"), ...pathOptions(kept.path2)])), ...axis("2", 5)),
-    el("fieldset", {}, el("legend", {}, "Watch"), labelled("Metric", choose("metric", metricOptions(metrics, kept.metric ?? "inner.peak_stress")))),
+    el("fieldset", {}, el("legend", {}, "Watch"), labelled("Metric", choose("metric", metricOptions(metrics, kept.metric ?? firstMetric(metrics))))),
     el("div", { class: "buttons" }, el("button", { class: "main" }, start)), el("p", { class: "problem", id: "sweep-problem", role: "alert", hidden: true }));
   if (!kept.path) suggest("");
 }
@@ -66,10 +67,18 @@ export function show(result, box) {
   return () => draw(plot, result);
 }
 
+// Whether positive values grow by equal factors and not by equal steps, as those of a logarithmic sweep do.
+function geometric(values) {
+  if (values.length < 3 || values.some((value) => !(value > 0))) return false;
+  const uneven = (parts) => Math.max(...parts) - Math.min(...parts);
+  const logs = values.slice(1).map((value, i) => Math.log(value / values[i])), steps = values.slice(1).map((value, i) => (value - values[i]) / (values.at(-1) - values[0]));
+  return uneven(logs) < 0.02 * Math.max(...logs.map(Math.abs)) && uneven(steps) > 0.02;
+}
+
 function draw(plot, { coordinates, metrics: [metric] }) {
   const [first, second] = coordinates;
   const largest = Math.max(...metric.values.flat().map((value) => Math.abs(value ?? 0)));
-  const scale = prefixed(metric.unit, largest), logarithmic = (axis) => (axis.values.length > 2 && axis.values[0] > 0 && axis.values.at(-1) / axis.values[0] > 100 ? "log" : "linear");
+  const scale = prefixed(metric.unit, largest), logarithmic = (axis) => (geometric(axis.values) ? "log" : "linear");
   const name = (axis) => `${axis.label ?? axis.name}${axis.unit && axis.unit !== "1" ? ` (${pretty(axis.unit)})` : ""}`;
   const divided = (values) => values.map((value) => (Array.isArray(value) ? divided(value) : value === null ? null : value / scale.factor));
   const label = `${metric.label ?? metric.name} (${scale.unit || "–"})`;

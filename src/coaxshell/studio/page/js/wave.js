@@ -2,9 +2,10 @@
 import { request } from "./api.js";
 import { by, el } from "./dom.js";
 import { film, frameAt, pressureAt } from "./film.js";
-import { PRESSURE_BAR, STRESS_BAR, WORDS, stressColour } from "./maps.js";
+import { STRESS_BAR, pressureBar, stressColour, words as colourWords } from "./maps.js";
 import { colour } from "./theme.js";
 import { show } from "./units.js";
+import { told } from "./words.js";
 
 const PANELS = [{ name: "bare", label: "Bare" }, { name: "pinned", label: "Pinned" }, { name: "current", label: "Current" }];
 const PIXELS = 480; // of a canvas, a side
@@ -16,11 +17,11 @@ const REST = 400; // ms without a move of the cross before its exact pressure is
 const films = {}; // by panel
 const exact = {}; // by panel: the history of the pressure at the cross
 const parts = {}; // elements
-let told; // called with the time shown
+let shownAt; // called with the time shown
 let loading = null, time = 0, last = 0, playing = false, before = 0, probe = null, resting = 0, asking = false;
 
 export function setUp(onTime) {
-  told = onTime;
+  shownAt = onTime;
   parts.play = el("button", { type: "button", id: "play", class: "main", onclick: () => (playing ? pause() : play()) }, "Play");
   parts.scrub = el("input", { type: "range", id: "scrub", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time", oninput: () => { pause(); seek(Number(parts.scrub.value)); } });
   parts.speed = el("select", { id: "speed", "aria-label": "Speed" }, ...SPEEDS.map(([value, text]) => el("option", { value, selected: value === 0.5 }, text)));
@@ -43,6 +44,7 @@ export async function load(runs) {
   for (const { name } of PANELS) {
     by(`panel-${name}`).hidden = !runs[name];
     if (!runs[name]) delete films[name];
+    aged(name, Boolean(films[name]) && films[name].run !== runs[name].run);
   }
   by("wave").querySelector(".fields").dataset.count = wanted.length;
   // All share the colours of the first one, the bare system, so that they can be compared.
@@ -60,6 +62,7 @@ export async function load(runs) {
       progress();
       const ends = one === wanted[0] ? null : films[wanted[0].name].limit;
       if (!there(one)) films[name] = await film(runs[name], mine.signal, (fraction) => { shares[name] = fraction; progress(); }, ends);
+      aged(name, false);
       shares[name] = 1;
     }
     parts.state.textContent = "";
@@ -68,9 +71,15 @@ export async function load(runs) {
     draw();
     moved();
   } catch (failure) {
-    parts.state.textContent = failure.name === "AbortError" ? (loading === mine ? "Cancelled." : parts.state.textContent) : failure.message;
+    parts.state.textContent = failure.name === "AbortError" ? (loading === mine ? "Cancelled." : parts.state.textContent) : told(failure);
   }
   if (loading === mine) { loading = null; parts.stop.hidden = true; }
+}
+
+// The film of an earlier state stays until the new one is there, and says so.
+function aged(name, old) {
+  parts[name].classList.toggle("old", old);
+  parts[name].nextElementSibling.textContent = `${PANELS.find((one) => one.name === name).label}${old ? ": the state before, until the new one is computed" : ""}`;
 }
 
 export function forget() { for (const name of Object.keys(films)) delete films[name]; }
@@ -79,7 +88,7 @@ export function seek(to) {
   time = Math.min(Math.max(to, 0), last);
   parts.scrub.value = time;
   draw();
-  told(time);
+  shownAt(time);
 }
 
 export function pause() { playing = false; parts.play.textContent = "Play"; }
@@ -110,7 +119,7 @@ export function draw() {
   parts.time.textContent = `t = ${time.toFixed(2)} (${show(time * shown.transit_time_seconds, "s", 3)})`;
   const limit = { pressure: shown.limit, stress: shown.stress_limit };
   for (const { name } of PANELS) if (films[name]) panel(parts[name], films[name], limit);
-  parts.scales.replaceChildren(scale("pressure", limit.pressure, PRESSURE_BAR), scale("hoop stress", limit.stress, STRESS_BAR));
+  parts.scales.replaceChildren(scale("pressure", limit.pressure, pressureBar()), scale("hoop stress", limit.stress, STRESS_BAR));
   read();
 }
 
@@ -120,10 +129,10 @@ function panel(canvas, one, limit) {
   const { size } = one, frame = frameAt(one, time), context = canvas.getContext("2d");
   if (buffers.get(canvas)?.width !== size) buffers.set(canvas, new OffscreenCanvas(size, size));
   const buffer = buffers.get(canvas), inner = buffer.getContext("2d"), image = inner.createImageData(size, size);
-  const words = new Uint32Array(image.data.buffer), start = frame * size * size;
+  const words = new Uint32Array(image.data.buffer), tints = colourWords(), start = frame * size * size;
   for (let line = 0; line < size; line += 1) {
     const from = start + (size - 1 - line) * size, to = line * size; // the lowest y comes first
-    for (let column = 0; column < size; column += 1) words[to + column] = WORDS[one.pressure[from + column]];
+    for (let column = 0; column < size; column += 1) words[to + column] = tints[one.pressure[from + column]];
   }
   inner.putImageData(image, 0, 0);
   context.imageSmoothingEnabled = true;
@@ -152,7 +161,7 @@ function rings(context, one, frame, limit) {
       context.stroke();
     }
   });
-  context.fillStyle = "rgb(40 40 40)";
+  context.fillStyle = colour("text");
   for (const [x, y] of one.absorbers) {
     context.beginPath();
     context.arc(centre + x * toPixels, centre - y * toPixels, 2.4, 0, 2 * Math.PI);
@@ -163,7 +172,7 @@ function rings(context, one, frame, limit) {
 function cross(context, one) {
   if (!probe) return;
   const toPixels = PIXELS / (2 * one.half_width), x = PIXELS / 2 + probe.x * toPixels, y = PIXELS / 2 - probe.y * toPixels;
-  context.strokeStyle = "rgb(20 20 20)";
+  context.strokeStyle = colour("text");
   context.lineWidth = 1.2;
   context.beginPath();
   for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) { context.moveTo(x + 3 * dx, y + 3 * dy); context.lineTo(x + 9 * dx, y + 9 * dy); }

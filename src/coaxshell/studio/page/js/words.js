@@ -1,0 +1,70 @@
+// The page's own words: names of shells, of fields by their paths, and the library's remedies as things to do here.
+import { split } from "./paths.js";
+
+// Of shells, counted from 0 inside, as everywhere in the library: "inner", "middle" of three, "outer", "shell 2 of 4", "shell".
+export function shellName(index, count) {
+  if (count === 1) return "shell";
+  if (index === 0) return "inner";
+  if (index === count - 1) return "outer";
+  return count === 3 ? "middle" : `shell ${index + 1} of ${count}`;
+}
+
+export function shellPhrase(index, count) {
+  const name = shellName(index, count);
+  return name.startsWith("shell") ? name : `${name} shell`;
+}
+
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+const FIELDS = {
+  proportional: "Proportional gain (V/V)", derivative: "Derivative gain (V per V/transit)", inner_shell: "Between", duration: "Duration (a/c)", time_step: "Time step (a/c)", modes: "Orders",
+  youngs_modulus: "Young’s modulus", poisson_ratio: "Poisson’s ratio",
+};
+
+// What a field is called: words with a capital, but symbols such as c22 and e32 as they are.
+export function title(name) {
+  if (name in FIELDS) return FIELDS[name];
+  const words = name.replace(/_/g, " ");
+  return /^[a-z]{1,3}\d\d$/.test(name) ? words : capital(words);
+}
+
+export function gapName(number, shells) {
+  return number === 0 ? "inside" : number === shells ? "outside" : shells === 2 ? "gap" : `gap ${number}`;
+}
+
+// A dotted path for people: "inner shell, layer 2, thickness".
+export function placeName(path, shells) {
+  const parts = split(path), words = [];
+  parts.forEach((part, i) => {
+    const before = parts[i - 1];
+    if (typeof part !== "number") {
+      if (typeof parts[i + 1] === "number" && /^(shells|fluids|layers|absorbers|source)$/.test(part)) return;
+      words.push(title(part).replace(/ \(.*\)$/, "").replace(/^[A-Z](?=[a-z])(?!oung|oisson)/, (c) => c.toLowerCase()));
+    } else if (before === "shells") words.push(shellPhrase(part, shells));
+    else if (before === "fluids") words.push(`fluid ${gapName(part, shells)}`);
+    else words.push(`${String(before ?? "item").replace(/s$/, "")} ${part + 1}`);
+  });
+  return words.join(", ");
+}
+
+// Whatever went wrong (a failed request, a failed job, a problem with the description), as texts.
+export function refusal(error) {
+  const found = error?.problem && typeof error.problem === "object" ? error.problem : error ?? {};
+  const text = (value) => (typeof value === "string" ? value : "");
+  return { where: text(found.where), problem: text(found.problem) || text(found.message) || "it failed without a reason", remedy: text(found.remedy) };
+}
+
+// The same as one line; the library's remedies name Python's and the scenario's entries, which are ticks and fields here.
+export function told(error) {
+  const { where, problem, remedy } = refusal(error);
+  return [where, inWords([problem, remedy].filter(Boolean).join("; "))].filter(Boolean).join(": ");
+}
+
+export function inWords(text) {
+  return text
+    .replace(/\bset ([\w.[\]]+) ?= ?(true|false)\b/g, (_, path, value) => `${value === "true" ? "tick" : "untick"} ${title(path.split(".").at(-1))}`)
+    .replace(/\buse modes ?= ?(\d+) or modes ?= ?"auto"/g, "set Orders to $1 under Resolution")
+    .replace(/\bmodes ?= ?(\d+)/g, "Orders $1")
+    .replace(/\btime_step ?= ?([\d.e-]+)/g, "a time step of $1 a/c")
+    .replace(/\bhalve time_step\b/g, "halve the time step under Resolution");
+}
