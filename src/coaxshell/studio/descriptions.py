@@ -11,6 +11,7 @@ from coaxshell.model.naming import shell_phrase
 from coaxshell.model.toml import loads
 from coaxshell.studies.metrics import metric_names
 from coaxshell.studio import limits
+from coaxshell.studio.record_views import viewed
 
 
 def system_of(data: dict[str, Any]) -> System:
@@ -44,7 +45,7 @@ def normalised(system: System) -> dict[str, Any]:
 def told(system: System) -> dict[str, Any]:
     """Return the answer to a valid description."""
     plain = {"system": normalised(system), "toml": system.to_toml_string()}
-    return {"ok": True, **plain, "derived": derived(system), "metrics": metric_names(system)}
+    return {"ok": True, **plain, "derived": derived(system), "metrics": metric_names(system), "records": viewed(system)}
 
 
 def derived(system: System) -> list[dict[str, Any]]:

@@ -26,8 +26,8 @@ class KeptRecords:
 
         def short(pulse: dict[str, Any]) -> dict[str, Any]:
             nonlocal samples
-            columns = [pulse.get(name) for name in COLUMNS]
-            if not all(isinstance(column, list) and limits.LINKED_SAMPLES < len(column) <= limits.SAMPLES for column in columns):
+            columns = [column for column in map(pulse.get, COLUMNS) if isinstance(column, list)]
+            if len(columns) < len(COLUMNS) or not all(limits.LINKED_SAMPLES < len(column) <= limits.SAMPLES for column in columns):
                 return pulse
             record = dict(zip(COLUMNS, columns, strict=True))
             name = hashlib.blake2b(json.dumps(record).encode(), digest_size=16).hexdigest()

@@ -2,6 +2,7 @@
 import { el, by } from "./dom.js";
 import { join, read } from "./paths.js";
 import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
+import { editor } from "./record.js";
 import { fresh, kinds, kindTitle, limits, matches, resolve, use } from "./schema.js";
 import { editable, numeral, show } from "./units.js";
 import { capital, gapName, inWords, shellName, shellPhrase, title } from "./words.js";
@@ -9,6 +10,7 @@ import { capital, gapName, inWords, shellName, shellPhrase, title } from "./word
 const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
 const KEPT_OPEN = new Map();
+const SAMPLES = new Set(["time", "pressure"]);
 
 let world, change, shells = 1; // what /api/schema says; (path, value, { live }) => void; how many shells there are
 
@@ -39,6 +41,7 @@ export function refresh(system) {
     const slider = by("form").querySelector(`input[type="range"][data-path="${input.dataset.path}"]`);
     if (slider && typeof value === "number") place(slider, value, input.dataset.unit);
   }
+  for (const box of by("form").querySelectorAll("[data-record]")) box.replaceWith(editor(box.dataset.record, change));
   for (const digest of by("form").querySelectorAll(".digest")) digest.textContent = summary(digest.dataset.of, read(system, digest.dataset.of));
 }
 
@@ -102,7 +105,9 @@ function entry(schema, path, name, value, bare = false) {
 }
 
 function table(schema, path, name, value, bare) {
-  const fields = Object.entries(schema.properties ?? {}).map(([key, part]) => entry(part, join(path, key), key, value[key]));
+  const isRecord = resolve(schema.properties?.type).const === "sampled"; // its samples are read from a file or a text, not typed one by one
+  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !isRecord || !SAMPLES.has(key)).map(([key, part]) => entry(part, join(path, key), key, value[key]));
+  if (isRecord) fields.unshift(editor(path, change));
   return bare ? el("div", {}, ...fields) : group(path, label(path, name), false, summary(path, value), ...fields);
 }
 
@@ -151,7 +156,7 @@ function following(item, value, name) {
 const HINTS = {
   count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150,
   distance: 5, peak_pressure: 2.5e4, decay_time: 1.314e-4, width: 1e-4, pressure: 2.5e4, charge_mass: 1, stand_off: 10,
-  time: [0, 1e-4, 5e-4], density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
+  density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
 };
 
 function union(schema, choices, path, name, value, bare) {
@@ -177,10 +182,17 @@ function start(index, choices, value) {
   if (kind.type === "array") return value && !Array.isArray(value) ? singles(value, kind) : [fresh(kind.items, HINTS)];
   const kept = Array.isArray(value) ? (value[0] ?? {}) : value && typeof value === "object" ? value : {};
   const common = Object.fromEntries(Object.entries(kept).filter(([key]) => key !== "type"));
-  const made = fresh(kind, { ...HINTS, ...common });
+  const fits = ([key, one]) => kinds(kind.properties?.[key] ?? {}).some((part) => matches(part, one));
+  const made = fresh(kind, { ...HINTS, ...Object.fromEntries(Object.entries(common).filter(fits)), ...(resolve(kind.properties?.type).const === "sampled" ? sampled(kept) : {}) });
   if (kind.type === "object" && Array.isArray(value) && "count" in made) made.count = value.length;
   if (resolve(kind.properties?.pulse).anyOf && !made.pulse?.type) made.pulse = { type: "exponential", peak_pressure: kept.peak_pressure ?? HINTS.peak_pressure, decay_time: kept.decay_time ?? HINTS.decay_time };
   return made;
+}
+
+// An exponential pulse as a record to begin with.
+function sampled({ peak_pressure = HINTS.peak_pressure, decay_time = HINTS.decay_time }) {
+  const time = Array.from({ length: 61 }, (_, i) => Number(((i * decay_time) / 10).toPrecision(6)));
+  return { time, pressure: time.map((t) => Number((peak_pressure * Math.exp(-t / decay_time)).toPrecision(6))) };
 }
 
 function singles(ring, kind) {
@@ -241,7 +253,7 @@ function listed(text) {
 function quantity(schema, path, text, value, shared) {
   const unit = schema.unit ?? "";
   const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: editable(value, unit),
-    placeholder: schema.optional ? "material’s own" : null,
+    placeholder: schema.optional ? ({ field_limit: "material’s own", centre: "6 widths" }[path.split(".").at(-1)] ?? "none") : null,
     onchange: () => change(path, schema.optional && !input.value.trim() ? null : numeral(input.value)) });
   const field = el("div", { class: "field" }, text, input, path in MOST ? el("small", { class: "hint" }, MOST[path](world.limits)) : null);
   const range = rangeOf(path);

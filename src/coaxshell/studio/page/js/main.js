@@ -11,6 +11,7 @@ import { Slot, times } from "./live.js";
 import * as past from "./past.js";
 import { read, written } from "./paths.js";
 import * as peaks from "./peaks.js";
+import * as record from "./record.js";
 import * as section from "./section.js";
 import * as studies from "./studies.js";
 import * as tabs from "./tabs.js";
@@ -96,6 +97,7 @@ async function check({ since, path = "", whole = false, keepForm }) {
     return refuse(answer.problems, path);
   }
   page.metrics = answer.metrics ?? [];
+  record.understood(answer.records);
   const finer = resolution !== page.resolved;
   page.resolved = resolution;
   adopt(answer.system, { since, keepForm: keepForm && shape(answer.system) === page.shape });
@@ -154,6 +156,7 @@ function opened(answer, from) {
   if (view.unit in curves.UNITS) page.unit = by("unit").value = view.unit;
   if (view.tab && document.getElementById(`tab-${view.tab}`)) tabs.choose(view.tab);
   page.metrics = answer.metrics ?? page.metrics;
+  record.understood(answer.records);
   adopt(answer.system);
   return answer;
 }
