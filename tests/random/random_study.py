@@ -12,8 +12,8 @@ from true_errors import true_errors
 
 import coaxshell as cx
 
-RIGHT = 1e-9
-"""True errors below are not worth printing."""
+RIGHT, WRONG = 1e-9, 1.0
+"""True errors below are not worth printing; errors above, printed and true, say alike that the answer is of no use."""
 
 
 @dataclass
@@ -86,4 +86,4 @@ def printed(case: Case, response: cx.Response) -> Iterator[tuple[tuple[str, str]
         for quantity, name in enumerate(("displacement", "stress")):
             for one, said in zip(true[cause][:, quantity], values.sel(quantity=name).values, strict=True):
                 if np.isfinite(one) and one > RIGHT:
-                    yield (cause, name), float(one / max(said, 1e-300))
+                    yield (cause, name), 1.0 if min(one, said) >= WRONG else float(one / max(said, 1e-300))

@@ -111,6 +111,16 @@ class LaplaceGrid:
         result: npt.NDArray[np.float64] = histories * (np.exp(self.shift * self.time) / self.time_step)
         return result
 
+    def beyond(self, spectrum: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+        """Return what :meth:`invert` leaves out: the rest of the period after ``time``, of which wrap_around returns to its beginning.
+
+        Rounding is amplified there by up to 1/wrap_around.
+        """
+        histories = fft.irfft(spectrum * self.taper(), self.samples, axis=-1, workers=WORKERS, overwrite_x=True)[..., self.steps + 1 :]
+        rest = self.time_step * np.arange(self.steps + 1, self.samples)
+        result: npt.NDArray[np.float64] = histories * (np.exp(self.shift * rest) / self.time_step)
+        return result
+
     def transform(self, histories: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
         """Return dt * sum_n x(t_n) e^{-s t_n} at ``nodes`` (last axis): the transform of samples, the partner of ``invert``."""
         damped = histories * (np.exp(-self.shift * self.time) * self.time_step)

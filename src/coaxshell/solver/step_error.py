@@ -11,7 +11,9 @@ are the same wherever the source stands.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +28,7 @@ from coaxshell.solver.orders_left_out import relative
 from coaxshell.solver.prepared import ForcedParts, PreparedStructure
 
 FloatArray = npt.NDArray[np.float64]
+Array = npt.NDArray[Any]
 
 WIDE_ROLL_OFF = 0.4
 MOST = 10.0
@@ -41,24 +44,26 @@ def _some_orders(max_order: int, count: int) -> npt.NDArray[np.int64]:
     return np.unique(np.linspace(0, max_order, min(max_order + 1, count)).round().astype(np.int64))
 
 
-def _of_orders(
-    grid: LaplaceGrid, normal: ComplexArray, tangential: ComplexArray, orders: npt.NDArray[np.int64], window: FloatArray
-) -> FloatArray:
-    """Return the norms (shells, 2) of some orders of a motion, from its transforms (shells, halves, orders, nodes)."""
+def _of_orders(normal: Array, tangential: Array, orders: npt.NDArray[np.int64], history: Callable[[Array], FloatArray]) -> FloatArray:
+    """Return the norms (shells, 2) of some orders of a motion, from its transforms (shells, halves, orders, nodes) by way of histories."""
     share = np.where(orders == 0, 1.0, 0.5)
-    squares = [np.sum(grid.invert(x, window) ** 2, axis=(1, 3)) for x in (normal, orders[:, None] * tangential - normal)]
+    squares = [np.sum(history(x) ** 2, axis=(1, 3)) for x in (normal, orders[:, None] * tangential - normal)]
     return np.stack(squares, axis=1) @ share
 
 
 def band_limit(grid: LaplaceGrid, normal: ComplexArray, tangential: ComplexArray, whole: FloatArray) -> FloatArray:
-    """Return the relative error of displacement and stress by the band limit, shape (shells, 2), from all transforms of a run.
+    """Return the relative error of displacement and stress by the inverse transform, shape (shells, 2), from all transforms of a run.
 
-    ``whole`` are the norms of the run, (shells, 2, M + 1), summed over the instants of the grid.
+    The band limit, what comes back from later in the period, and rounding. ``whole`` are the norms of the run, (shells, 2, M + 1),
+    summed over the instants of the grid.
     """
     orders = _some_orders(normal.shape[2] - 1, _FEW)
-    change = _of_orders(grid, normal[:, :, orders], tangential[:, :, orders], orders, grid.taper() - grid.taper(WIDE_ROLL_OFF))
+    parts = normal[:, :, orders], tangential[:, :, orders], orders
+    wider = grid.taper() - grid.taper(WIDE_ROLL_OFF)
     total = whole.sum(axis=-1)
-    return relative(change * _spread(orders), total) + grid.wrap_around + rounding(grid, total)
+    change = relative(_of_orders(*parts, lambda x: grid.invert(x, wider)) * _spread(orders), total)
+    later = relative(_of_orders(*parts, grid.beyond) * _spread(orders), total)
+    return change + grid.wrap_around * (1.0 + later) + rounding(grid, total)
 
 
 def rounding(grid: LaplaceGrid, whole: FloatArray) -> FloatArray:
@@ -150,7 +155,7 @@ def march_difference(
         pressure += grid.transform_linear(_between(coarser, grid, coarse.correction[:, :, orders]) - correction[:, :, orders])
     normal = np.einsum("ijmk,jhmk->ihmk", structure.compliance[:, :, orders], pressure)
     tangential = structure.tangential_ratio[:, None, orders] * normal
-    change = _of_orders(grid, normal, tangential, orders, grid.taper()) * _spread(orders)
+    change = _of_orders(normal, tangential, orders, grid.invert) * _spread(orders)
     return np.minimum(relative(change, whole), MOST)
 
 
