@@ -11,7 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import Interrupted
-from coaxshell.cli.studying import study_options
+from coaxshell.cli.studying import study_options, tell_code
 
 
 def optimise(
@@ -42,6 +42,7 @@ def optimise(
         ),
     ] = None,
     resume: options.ResumeOption = False,
+    allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
     force: options.ForceOption = False,
@@ -57,7 +58,7 @@ def optimise(
     target = outputs.folder(output or Path(f"{study.stem}.optimum"), "--output", OPTIMUM_PARTS)
     outputs.figure(figure)
 
-    problem = read_study(study, OptimisationStudy).problem(study.parent)
+    problem = read_study(study, OptimisationStudy).problem(study.parent, allow_code=allow_code, tell=tell_code)
     folder = journal or Path(f"{study.stem}.journal")
     with study_options(folder, resume, workers, dask, quiet) as how:
         optimum = optimise_problem(problem, how)

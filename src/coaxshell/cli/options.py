@@ -39,4 +39,5 @@ StoreOption = Annotated[
         "--store", metavar="DIR", help="Keep every finished case here.", show_default="STUDY.store in this folder, removed when all is done"
     ),
 ]
+AllowCodeOption = Annotated[bool, typer.Option("--allow-code", help="Run Python files that the study names outside its folder too.")]
 ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with what has been kept.")]

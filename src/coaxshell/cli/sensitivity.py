@@ -11,7 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
-from coaxshell.cli.studying import study_options
+from coaxshell.cli.studying import study_options, tell_code
 
 
 def sensitivity(
@@ -24,6 +24,7 @@ def sensitivity(
     ] = None,
     store: options.StoreOption = None,
     resume: options.ResumeOption = False,
+    allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
     force: options.ForceOption = False,
@@ -41,7 +42,7 @@ def sensitivity(
     from coaxshell.studies import SensitivityStudy, read_study, uncertainty_of
     from coaxshell.studies.uncertainty.table import found_text, told
 
-    plan = read_study(study, SensitivityStudy).plan(study.parent)
+    plan = read_study(study, SensitivityStudy).plan(study.parent, allow_code=allow_code, tell=tell_code)
     folder = store or Path(f"{study.stem}.store")
     with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as how:
         found = uncertainty_of(plan, how)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -35,3 +36,8 @@ def study_options(store: Path, resume: bool, workers: str | None, dask: str | No
             with named_as_options(address="dask", dask="dask"):
                 executor = stack.enter_context(dask_executor(dask))
         yield How(executor, number, store, resume, stack.enter_context(progress(quiet, left=True)))
+
+
+def tell_code(functions: list[str]) -> None:
+    """Say which functions of the user's are about to be run."""
+    sys.stderr.write(f"runs code: {', '.join(functions)}\n")

@@ -11,7 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
-from coaxshell.cli.studying import study_options
+from coaxshell.cli.studying import study_options, tell_code
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ def sweep(
     ] = None,
     store: options.StoreOption = None,
     resume: options.ResumeOption = False,
+    allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
     force: options.ForceOption = False,
@@ -44,7 +45,7 @@ def sweep(
 
     from coaxshell.studies import SweepStudy, read_study, sweep_design
 
-    system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent)
+    system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent, allow_code=allow_code, tell=tell_code)
     if figure is not None and len(design.fields) > 2:
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")

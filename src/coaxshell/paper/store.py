@@ -6,34 +6,24 @@ import hashlib
 import json
 import zipfile
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-import coaxshell
 from coaxshell.numerics.files import replacing
+from coaxshell.numerics.identity import libraries, package_digest
 
 Array = npt.NDArray[Any]
 
-_NUMERICAL = ("model", "structure", "acoustics", "solver", "response", "paper/observed.py", "paper/fields.py", "paper/slips")
-"""What the numbers in the store come from."""
+_FURTHER = ("paper/observed.py", "paper/fields.py", "paper/slips")
+"""What the numbers in the store come from beside the solver and all that it builds on."""
 
 
-@cache
 def numerics_version() -> str:
-    """Return a digest of the source files that the numbers come from: what was stored by other code is not taken up again."""
-    root = Path(coaxshell.__file__).parent
-    digest = hashlib.sha256()
-    for name in _NUMERICAL:
-        place = root / name
-        for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
-            if path.suffix in (".py", ".toml"):
-                digest.update(path.relative_to(root).as_posix().encode())
-                digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    """Return a digest of the source files that the numbers come from, and the key libraries: what other code stored is not taken up."""
+    return f"{package_digest(*_FURTHER)}, {libraries()}"
 
 
 def key_of(*parts: object) -> str:

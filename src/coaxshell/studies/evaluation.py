@@ -82,7 +82,15 @@ def evaluate(batch: Batch) -> list[Outcome]:
 
     The same whoever evaluates it: BLAS is held to one thread (its sums depend on their number), and an answer depends on its own
     system alone. The kernels of the last structure are kept for the next batch of the same worker.
+
+    Raises
+    ------
+    OtherCodeError
+        A function of the user's is not the one here that it was where the study was begun.
     """
+    for metric in batch.metrics:
+        if metric.function is not None:
+            metric.function.require_same(metric.name)
     structures: Structures | None = getattr(_kept, "structures", None)
     if structures is None or structures.resolution != batch.resolution:
         structures = _kept.structures = Structures(batch.resolution)

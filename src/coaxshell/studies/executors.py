@@ -4,22 +4,54 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import platform
 import signal
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from typing import TypeVar
+from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.identity import difference, environment
 
 T = TypeVar("T")
 R = TypeVar("R")
 
 AHEAD = 2
 """Tasks handed out per worker: one in work and one waiting."""
+
+
+class OtherEnvironmentError(InputError):
+    """A process elsewhere has another coaxshell, Python or key library than the one that asks it."""
+
+
+@dataclass(frozen=True)
+class Alike:
+    """Work that a process does only if its code and key libraries are those of the process that asks; pickles.
+
+    Attributes
+    ----------
+    work : callable
+    expected : str
+        The environment of the process that asks.
+    """
+
+    work: Callable[[Any], Any]
+    expected: str
+
+    def __call__(self, task: Any) -> Any:
+        """Return the result of a task; OtherEnvironmentError says what differs."""
+        own = environment()
+        if own != self.expected:
+            where = f"process {os.getpid()} on {platform.node() or 'another machine'}"
+            remedy = "install the same coaxshell, Python, numpy and scipy everywhere, and start the workers again"
+            raise OtherEnvironmentError("executor", f"{where} is not like this one: {difference(own, self.expected)}", remedy)
+        return self.work(task)
 
 
 class WorkerDiedError(RuntimeError):
@@ -58,15 +90,16 @@ def completed(
     Raises
     ------
     InputError
-        The executor given is shut down or its workers cannot be reached.
+        The executor given is shut down, its workers cannot be reached or are not like this process; processes cannot be started.
     """
+    alike: Callable[[T], R] = Alike(work, environment())
     if executor is not None:
-        yield from _on(executor, tasks, work, AHEAD * capacity(executor, workers))
+        yield from _on(executor, tasks, alike, AHEAD * capacity(executor, workers))
     elif worker_count(workers) == 1:
         for task in tasks:
             yield task, _tried(work, task)
     else:
-        yield from _in_own_pool(tasks, work, worker_count(workers))
+        yield from _in_own_pool(tasks, alike, worker_count(workers))
 
 
 def _tried(work: Callable[[T], R], task: T) -> R | Exception:
@@ -80,9 +113,12 @@ def _in_own_pool(tasks: Iterable[T], work: Callable[[T], R], workers: int) -> It
     waiting, suspects = iter(tasks), deque[T]()
     while True:
         with process_pool(workers) as pool:
+            begun = pool.submit(os.getpid)
             lost = yield from _drained(pool, waiting, work, AHEAD * workers)
         if not lost:
             break
+        if isinstance(begun.exception(), BrokenProcessPool):  # none of them came to do anything
+            raise InputError("workers", *_NO_START)
         suspects += lost
     while suspects:  # one at a time, so that only the guilty one is blamed
         task = suspects.popleft()
@@ -124,8 +160,11 @@ def _drained(
                 error = future.exception()
                 if isinstance(error, BrokenProcessPool):
                     lost.append(task)
-                elif error is not None and not isinstance(error, Exception):
+                elif isinstance(error, OtherEnvironmentError) or (error is not None and not isinstance(error, Exception)):
                     raise error
+                elif error is not None and _unpacking(error):
+                    lacks = f"a worker cannot unpack the work ({type(error).__name__}: {error})"
+                    raise InputError("executor", lacks, "it needs the same coaxshell, and the modules that your functions come from")
                 else:
                     yield task, future.result() if error is None else error
     finally:
@@ -133,12 +172,41 @@ def _drained(
             future.cancel()
 
 
+_NO_START = (
+    "no process could be started: each runs the main program first, and that failed or began this study again",
+    'put what the program does under if __name__ == "__main__":, or use workers=1',
+)
+
+
+def _require_main() -> None:
+    """Raise InputError if processes cannot be started from this program: it has no file, or it is one of them and has no guard."""
+    main = sys.modules["__main__"]
+    file = getattr(main, "__file__", None)
+    if file is not None and getattr(main, "__spec__", None) is None and not os.path.isfile(file):
+        remedy = "save it as a file and run that, or use workers=1"
+        raise InputError("workers", f"processes cannot be started from a program without a file ({file})", remedy)
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise SystemExit(1)  # the process that started this one tells why
+
+
+def _unpacking(error: BaseException) -> bool:
+    """Return whether work failed before it began, for want of what it is made of."""
+    text = str(error)
+    return isinstance(error, ImportError) or "deserializ" in text or (isinstance(error, AttributeError) and "Can't get attribute" in text)
+
+
 @contextmanager
 def process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Yield a pool of processes that are started afresh (never forked from this one), and end it at once afterwards.
 
     Its processes leave Ctrl-C to the parent and end when the parent does, even by kill -9.
+
+    Raises
+    ------
+    InputError
+        This program has no file from which processes could start.
     """
+    _require_main()
     kind = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context = multiprocessing.get_context(kind)
     if kind == "forkserver":

@@ -21,10 +21,11 @@ from coaxshell.model.naming import shell_phrase, shell_places, suggestion
 from coaxshell.model.system import System
 from coaxshell.response import Response
 from coaxshell.studies.reading import DesignReading, Reading
-from coaxshell.studies.user_functions import UserFunction, from_callable, from_text
+from coaxshell.studies.user_functions import UserCode, UserFunction, from_callable, from_text
 
 MetricLike = str | Callable[[Response], float]
 Metrics = Sequence[MetricLike] | Mapping[str, MetricLike]
+ANYWHERE = UserCode()
 
 
 class Quantity(NamedTuple):
@@ -131,7 +132,7 @@ class Metric:
         return self.function.identity if self.function is not None else f"{self.place}.{self.quantity}"
 
 
-def metrics_of(asked: Metrics, system: System, folder: str | None = None) -> tuple[Metric, ...]:
+def metrics_of(asked: Metrics, system: System, code: UserCode = ANYWHERE) -> tuple[Metric, ...]:
     """Return the metrics of a study, checked against its base system.
 
     Parameters
@@ -139,7 +140,7 @@ def metrics_of(asked: Metrics, system: System, folder: str | None = None) -> tup
     asked : sequence, or mapping of name to metric
         Texts, and functions of a Response.
     system : System
-    folder : str, optional
+    code : UserCode
         Where the files of "file.py:function" lie; the current folder unless given.
 
     Raises
@@ -155,7 +156,7 @@ def metrics_of(asked: Metrics, system: System, folder: str | None = None) -> tup
     found: dict[str, Metric] = {}
     for number, (name, item) in enumerate(named):
         where = f"metrics[{number}]" if name is None else f"metrics.{name}"
-        metric = _metric(item, name, system, where, folder)
+        metric = _metric(item, name, system, where, code)
         if metric.name in found:
             raise InputError(where, f"{metric.name!r} is asked for twice", "give each metric once, or names of their own")
         found[metric.name] = metric
@@ -176,7 +177,7 @@ def metric_names(system: System) -> list[str]:
     return names + [f"{place}.{key}" for place, keys in WITHOUT_SHELL.items() for key in keys]
 
 
-def _metric(item: Any, name: str | None, system: System, where: str, folder: str | None) -> Metric:
+def _metric(item: Any, name: str | None, system: System, where: str, code: UserCode) -> Metric:
     if isinstance(item, Metric):
         return item
     if callable(item):
@@ -186,7 +187,7 @@ def _metric(item: Any, name: str | None, system: System, where: str, folder: str
     EXPRESSION.check(len(item), where)
     text = item.strip()
     if ":" in text:
-        return _of_function(from_text(text, where, folder), name)
+        return _of_function(from_text(text, where, code), name)
     place, quantity = _split(text)
     label = name or text
     if place in WITHOUT_SHELL and quantity in WITHOUT_SHELL[place]:

@@ -16,6 +16,7 @@ from coaxshell.studies.executors import capacity, completed
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import Store
+from coaxshell.studies.user_functions import OtherCodeError
 
 Report = Callable[[float, str], None]
 
@@ -143,6 +144,8 @@ def _still_needed(planned: Sequence[Batch], store: Store | None, keys: dict[int,
 
 
 def _told(result: list[Outcome] | Exception, batch: Batch) -> list[Outcome]:
+    if isinstance(result, OtherCodeError):
+        raise result
     if isinstance(result, Exception):
         reason = f"{type(result).__name__}: {result}"
         return [failure(batch.metrics, reason, expected=False) for _ in batch.cases]

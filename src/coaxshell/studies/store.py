@@ -18,6 +18,7 @@ from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.files import reason, write_text
+from coaxshell.numerics.identity import libraries, package_digest
 from coaxshell.numerics.scratch import reclaim, scratch
 from coaxshell.solver.settings import NUMERICS_VERSION
 from coaxshell.studies.evaluation import Outcome, failure
@@ -29,8 +30,13 @@ FORMAT_VERSION = 1
 
 
 def numerics() -> str:
-    """Return the version that a case's numbers depend on."""
+    """Return the version of the numerics, for a person."""
     return f"{__version__}, numerics {NUMERICS_VERSION}"
+
+
+def origin() -> str:
+    """Return all that a case's numbers depend on beside its study: version, code and key libraries, in words."""
+    return f"{numerics()}, code {package_digest()}, {libraries()}"
 
 
 def digest(data: Any) -> str:
@@ -40,9 +46,9 @@ def digest(data: Any) -> str:
 
 
 def case_key(system: System, metrics: Sequence[Metric], resolution: Resolution) -> str:
-    """Return the name under which a case is kept: the hash of its physics, metrics, resolution and the version of the numerics."""
+    """Return the name under which a case is kept: the hash of its physics, metrics, resolution and the code of all of them."""
     asked = {metric.name: metric.identity for metric in metrics}
-    return digest({"system": system.canonical(), "metrics": asked, "resolution": asdict(resolution), "numerics": numerics()})
+    return digest({"system": system.canonical(), "metrics": asked, "resolution": asdict(resolution), "numerics": origin()})
 
 
 class Store:
@@ -67,7 +73,7 @@ class Store:
 
     def __init__(self, folder: Path, study: Mapping[str, Any], metrics: Sequence[Metric], *, resume: bool = False) -> None:
         self.folder, self.metrics = Path(folder), tuple(metrics)
-        manifest = {"format": FORMAT_VERSION, "numerics": numerics(), "study": {key: digest(part) for key, part in study.items()}}
+        manifest = {"format": FORMAT_VERSION, "numerics": origin(), "study": {key: digest(part) for key, part in study.items()}}
         try:
             self._open({**manifest, "description": dict(study)}, resume=resume)
         except OSError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import deepcopy
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
@@ -19,8 +19,12 @@ from coaxshell.studies.design import Design, design_of
 from coaxshell.studies.metrics import Metric, metrics_of
 from coaxshell.studies.paths import varied
 from coaxshell.studies.resolution import Resolution
+from coaxshell.studies.user_functions import UserCode
 
 MetricTexts = list[str] | dict[str, str]
+SweepParts = tuple[System, Design, tuple[Metric, ...], Resolution]
+Tell = Callable[[list[str]], None]
+P = TypeVar("P")
 
 
 class ResolutionEntry(Described):
@@ -87,6 +91,38 @@ class Study(Described):
         except InputError as error:
             raise within("set", error) from None
 
+    def twice(
+        self,
+        make: Callable[[UserCode], P],
+        folder: Path,
+        metrics: Callable[[P], Iterable[Metric]],
+        *,
+        allow_code: bool = False,
+        tell: Tell | None = None,
+    ) -> P:
+        """Return what is made of the study, looked through before any code of the user's is run.
+
+        Parameters
+        ----------
+        make : callable
+            Makes it; with code that may not be run yet, then, if any metric is a function of the user's, with code that may.
+        folder : Path
+            That of the study: its files are relative to it.
+        metrics : callable
+            From what was made to its metrics.
+        allow_code : bool
+            Whether Python files outside the folder may be run.
+        tell : callable, optional
+            Called with "file.py:function" of all functions before any is run.
+        """
+        made = make(UserCode(str(folder), allow_code, run=False))
+        functions = [metric.function for metric in metrics(made) if metric.function is not None]
+        if not functions:
+            return made
+        if tell is not None:
+            tell(list(dict.fromkeys(f"{function.file}:{function.function}" for function in functions)))
+        return make(UserCode(str(folder), allow_code))
+
 
 class SweepStudy(Study):
     """Describe a sweep."""
@@ -104,11 +140,16 @@ class SweepStudy(Study):
     seed: int = 0
     """Makes sampled points repeatable."""
 
-    def parts(self, folder: Path) -> tuple[System, Design, tuple[Metric, ...], Resolution]:
-        """Return system, design, metrics and resolution, all checked; InputError names what is wrong."""
+    def parts(self, folder: Path, *, allow_code: bool = False, tell: Tell | None = None) -> SweepParts:
+        """Return system, design, metrics and resolution, all checked; InputError names what is wrong. Arguments as of :meth:`twice`."""
         system = self.system(folder)
+        resolution = self.resolution.checked(system)
         design = design_of(system, flat(self.over), self.points, self.samples, self.seed)
-        return system, design, metrics_of(self.metrics, system, str(folder)), self.resolution.checked(system)
+
+        def make(code: UserCode) -> SweepParts:
+            return system, design, metrics_of(self.metrics, system, code), resolution
+
+        return self.twice(make, folder, lambda parts: parts[2], allow_code=allow_code, tell=tell)
 
 
 S = TypeVar("S", bound=Study)

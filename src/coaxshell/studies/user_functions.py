@@ -7,17 +7,28 @@ import importlib.util
 import inspect
 import math
 import pickle
+import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
 from coaxshell.response import Response
+from coaxshell.studies.code_identity import code_identity, documented, own_files
+
+
+class OtherCodeError(InputError):
+    """A process has other code than the one that asks it."""
+
+
+_known: dict[str, Callable[[Response], float]] = {}
+"""Functions of this process by the identity that their code was found to have."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +40,7 @@ class UserFunction:
     name, units, long_name : str
         Its own name, its attribute ``units`` if it has one, and the first line of its docstring.
     identity : str
-        Changes with its source text.
+        Changes with any code that it depends on: see :mod:`coaxshell.studies.code_identity`.
     target : callable, optional
         The function itself, or None when it is read from a file.
     file : str
@@ -48,7 +59,7 @@ class UserFunction:
 
     def __call__(self, response: Response, metric: str) -> float:
         """Return its value for a response; InputError if it fails or gives anything but a finite number."""
-        function = self.target or getattr(_module(self.file), self.function)
+        function = self.found()
         try:
             value = float(function(response))
         except InputError:
@@ -58,6 +69,23 @@ class UserFunction:
         if not math.isfinite(value):
             raise InputError(metric, f"the function gave {value!r}", "it must return a finite number")
         return value
+
+    def found(self) -> Callable[[Response], float]:
+        """Return the function itself, read from its file if it comes from one and is not known here yet."""
+        if self.identity not in _known:
+            return self.target or getattr(_module(self.file, file_digest(self.file)), self.function)
+        return _known[self.identity]
+
+    def require_same(self, metric: str) -> None:
+        """Raise InputError if the code that would run in this process is not that which the study was begun with."""
+        if self.identity not in _known:
+            function = self.found()
+            if code_identity(function) != self.identity:
+                remedy = (
+                    "was a file changed meanwhile, or is another one found there? Start the study again, with the same files everywhere"
+                )
+                raise OtherCodeError(f"metrics.{metric}", "the code in a worker is not that of the process that began the study", remedy)
+            _known[self.identity] = function
 
     @property
     def pickles(self) -> bool:
@@ -71,49 +99,107 @@ class UserFunction:
         return True
 
 
+class UserCode(NamedTuple):
+    """Where files of the user's may lie, and whether they may be run yet.
+
+    Attributes
+    ----------
+    folder : str
+        That of the study: paths are relative to it.
+    anywhere : bool
+        Whether files outside that folder are allowed.
+    run : bool
+        False while a study is only looked through: its functions are then stand-ins without units.
+    """
+
+    folder: str = "."
+    anywhere: bool = True
+    run: bool = True
+
+
 def from_callable(function: Callable[[Response], float], where: str, name: str | None = None) -> UserFunction:
     """Return a callable as a metric; InputError if it has neither a name of its own nor is given one."""
     name = name or str(getattr(function, "__name__", ""))
     if not name or name == "<lambda>":
         raise InputError(where, f"{shown(function)} has no name", 'give it one: metrics={"name": function}')
-    try:
-        source = inspect.getsource(function)
-    except (OSError, TypeError):
-        source = f"{getattr(function, '__module__', '')}.{getattr(function, '__qualname__', name)}"
-    return _described(function, name, _digest(source), target=function)
+    return _described(function, name, target=function)
 
 
-def from_text(text: str, where: str, folder: str | None = None) -> UserFunction:
-    """Return the function named by "file.py:function"; InputError if there is no such file or function."""
+def from_text(text: str, where: str, code: UserCode) -> UserFunction:
+    """Return the function named by "file.py:function", whose file is run now if it may be.
+
+    Raises
+    ------
+    InputError
+        There is no such file or function, it lies outside the folder though it may not, or the file fails.
+    """
     file, _, name = text.rpartition(":")
-    path = Path(folder or ".", file)
-    if path.suffix != ".py" or not path.is_file():
-        raise InputError(where, f"there is no Python file {str(path)!r}", "write file.py:function, the file beside the study")
+    base = Path(code.folder)
+    path = base / file
+    if path.suffix != ".py" or "\0" in file or not path.is_file():
+        raise InputError(where, f"there is no Python file {str(path)[:200]!r}", "write file.py:function, the file beside the study")
+    path = path.resolve()
+    if not code.anywhere and not path.is_relative_to(base.resolve()):
+        remedy = "its code would be run: move it beside the study, or allow it (--allow-code, or allow_code=True)"
+        raise InputError(where, f"{file!r} lies outside the folder of the study", remedy)
+    if not code.run:
+        return UserFunction(name, "", name, "", file=str(path), function=name)
     try:
-        module = _module(str(path.resolve()))
+        module = _module(str(path), file_digest(str(path)))
     except Exception as error:
         raise InputError(where, f"{str(path)!r} raised {type(error).__name__}: {error}", "correct it") from error
     function = getattr(module, name, None)
     if not callable(function):
         known = [key for key, value in vars(module).items() if inspect.isfunction(value) and not key.startswith("_")]
         raise InputError(where, f"{str(path)!r} has no function {name!r}", suggestion(name, known))
-    return _described(function, name, _digest(path.read_text(encoding="utf-8") + name), file=str(path.resolve()), function=name)
+    return _described(function, name, file=str(path), function=name)
 
 
-def _described(found: Any, name: str, identity: str, **rest: Any) -> UserFunction:
-    first = (inspect.getdoc(found) or name).splitlines()[0].rstrip(".")
+def _described(found: Any, name: str, **rest: Any) -> UserFunction:
+    first = (documented(found) or name).splitlines()[0].rstrip(".")
+    identity = code_identity(found)
+    _known[identity] = found
     return UserFunction(name, str(getattr(found, "units", "")), first, identity, **rest)
 
 
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
+def file_digest(path: str) -> str:
+    """Return a digest of a file and of all own files that it imports, directly or not, as they are now."""
+    module = ModuleType(_name_of(path))
+    module.__file__ = path
+    digest = hashlib.sha256()
+    for file in sorted(own_files({module.__name__: module})):
+        digest.update(str(file).encode() + file.read_bytes())
+    return digest.hexdigest()
+
+
+def _name_of(path: str) -> str:
+    return f"coaxshell_user_{hashlib.sha256(path.encode()).hexdigest()[:12]}"
 
 
 @cache
-def _module(path: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"coaxshell_user_{_digest(path)[:12]}", path)
+def _module(path: str, digest: str) -> ModuleType:
+    """Return a file as a module; run anew, with what it imports of the user's, whenever any of their files has changed.
+
+    What it imports may lie beside it.
+    """
+    for name, imported in list(sys.modules.items()):  # with the text before the change
+        if getattr(imported, "__file__", None) in _files.get(path, ()):
+            del sys.modules[name]
+    spec = importlib.util.spec_from_file_location(_name_of(path), path)
     assert spec is not None  # the path ends in .py and exists
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    sys.modules[module.__name__] = module
+    folder = str(Path(path).parent)
+    sys.path.insert(0, folder)
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        with suppress(ValueError):
+            sys.path.remove(folder)
+    _files[path] = {str(file) for file in own_files({module.__name__: module})}
     return module
+
+
+_files: dict[str, set[str]] = {}
+"""Files of the user's that a file and all that it imports consist of, by its path."""

@@ -12,6 +12,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
+from coaxshell.studies.metrics import ANYWHERE
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
 from coaxshell.studies.optimisation.methods import Setting, chosen, search
@@ -23,6 +24,7 @@ from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import How, Report
 from coaxshell.studies.store import Store
 from coaxshell.studies.uncertainty.distributions import Uncertain, uncertain_of
+from coaxshell.studies.user_functions import UserCode
 
 
 @dataclass(frozen=True)
@@ -156,12 +158,12 @@ def problem_of(
     chance: tuple[Mapping[str, Any] | None, int],
     search_by: tuple[str, int, int | None, str, int],
     confirm: Mapping[str, Any] | None,
-    folder: str | None = None,
+    code: UserCode = ANYWHERE,
 ) -> Problem:
     """Return the parts of an optimisation, all checked; InputError names what is wrong.
 
     Arguments as those of :func:`optimise`: *chance* is (uncertain, samples), *search_by* (method, evaluations, population, start, seed).
-    Files that functions of the user's are read from are relative to *folder*.
+    *code* says where files of the user's lie, and whether they may be run.
     """
     (uncertain, samples), (method, evaluations, population, start, seed) = chance, search_by
     for name, number, least in (("evaluations", evaluations, 1), ("population", population, 4), ("seed", seed, 0)):
@@ -170,7 +172,7 @@ def problem_of(
     if start not in ("auto", "system"):
         raise InputError("start", f"{start!r} is not allowed", 'must be "auto" or "system"')
     space = space_of(system, variables)
-    targets = targets_of(objectives, constraints, space.base, folder)
+    targets = targets_of(objectives, constraints, space.base, code)
     if targets.statistics and not uncertain:
         raise InputError(
             "uncertain", "is missing, and a statistic over it is asked for", "give the uncertain properties, or a plain metric"

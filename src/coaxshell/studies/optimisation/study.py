@@ -7,9 +7,11 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from coaxshell.model.system import System
 from coaxshell.studies.optimisation.optimising import Problem, problem_of
-from coaxshell.studies.study_file import Study, flat
+from coaxshell.studies.study_file import Study, Tell, flat
 from coaxshell.studies.uncertainty.laws import LAWS
+from coaxshell.studies.user_functions import UserCode
 
 _ENTRIES = frozenset({"from", "to", "values"})
 
@@ -42,17 +44,22 @@ class OptimisationStudy(Study):
     confirm: dict[str, Any] = Field(default_factory=dict)
     """Settings of a finer resolution at which baseline and best are run."""
 
-    def problem(self, folder: Path) -> Problem:
-        """Return it with all parts checked; InputError names what is wrong. Files are relative to *folder*."""
-        system = self.system(folder)
+    def problem(self, folder: Path, *, allow_code: bool = False, tell: Tell | None = None) -> Problem:
+        """Return it with all parts checked; InputError names what is wrong. Arguments as of :meth:`Study.twice`."""
+        base = self.system(folder)
+        return self.twice(
+            lambda code: self._problem(base, code), folder, lambda problem: problem.targets.metrics, allow_code=allow_code, tell=tell
+        )
+
+    def _problem(self, base: System, code: UserCode) -> Problem:
         return problem_of(
-            system,
+            base,
             flat(self.variables, _ENTRIES),
             self.objectives,
             self.constraints,
-            self.resolution.checked(system),
+            self.resolution.checked(base),
             (flat(self.uncertain, LAWS), self.samples),
             (self.method, self.evaluations, self.population, self.start, self.seed),
             self.confirm,
-            str(folder),
+            code,
         )

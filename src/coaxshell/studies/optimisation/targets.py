@@ -16,8 +16,9 @@ from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, Dimension, to_si
 from coaxshell.response import Response
-from coaxshell.studies.metrics import Metric, metrics_of
+from coaxshell.studies.metrics import ANYWHERE, Metric, metrics_of
 from coaxshell.studies.uncertainty.statistics import ROBUST, statistic
+from coaxshell.studies.user_functions import UserCode
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -141,7 +142,7 @@ def energy(objective: FloatArray, violation: FloatArray) -> FloatArray:
     return np.where(violation > 0.0, 1e100 * (1.0 + violation), objective)
 
 
-def targets_of(objectives: Any, constraints: Any, system: System, folder: str | None = None) -> Targets:
+def targets_of(objectives: Any, constraints: Any, system: System, code: UserCode = ANYWHERE) -> Targets:
     """Return what is asked of a design, checked against the base system.
 
     Raises
@@ -152,8 +153,8 @@ def targets_of(objectives: Any, constraints: Any, system: System, folder: str | 
     asked = _listed(objectives, "objectives")
     if not asked:
         raise InputError("objectives", "there are none", "name at least one, such as inner.peak_stress")
-    goals = tuple(_goal(item, f"objectives[{k}]", system, folder) for k, item in enumerate(asked))
-    limits = tuple(_limit(item, f"constraints[{k}]", system, folder) for k, item in enumerate(_listed(constraints, "constraints")))
+    goals = tuple(_goal(item, f"objectives[{k}]", system, code) for k, item in enumerate(asked))
+    limits = tuple(_limit(item, f"constraints[{k}]", system, code) for k, item in enumerate(_listed(constraints, "constraints")))
     names = [goal.target.name for goal in goals]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
@@ -172,7 +173,7 @@ def _listed(given: Any, where: str) -> list[Any]:
     return list(given)
 
 
-def _goal(item: Any, where: str, system: System, folder: str | None) -> Goal:
+def _goal(item: Any, where: str, system: System, code: UserCode) -> Goal:
     if isinstance(item, Mapping):
         unknown = sorted(set(item) - {"metric", "maximise"})
         if unknown:
@@ -183,23 +184,23 @@ def _goal(item: Any, where: str, system: System, folder: str | None) -> Goal:
             raise InputError(f"{where}.maximise", f"{shown(item['maximise'])} is not allowed", "must be true or false")
         item = Objective(item["metric"], item.get("maximise", False))
     if isinstance(item, Objective):
-        return Goal(_target(item.metric, where, system, folder), item.maximise)
-    return Goal(_target(item, where, system, folder))
+        return Goal(_target(item.metric, where, system, code), item.maximise)
+    return Goal(_target(item, where, system, code))
 
 
-def _target(item: Any, where: str, system: System, folder: str | None) -> Target:
+def _target(item: Any, where: str, system: System, code: UserCode) -> Target:
     statistic = ""
     if isinstance(item, str):
         EXPRESSION.check(len(item), where)
     if isinstance(item, str) and (match := _STATISTIC.fullmatch(item.strip())):
         statistic, item = match.groups()
     try:
-        return Target(metrics_of([item], system, folder)[0], statistic)
+        return Target(metrics_of([item], system, code)[0], statistic)
     except InputError as error:
         raise InputError(error.where.replace("metrics[0]", where), error.problem, error.remedy) from None
 
 
-def _limit(item: Any, where: str, system: System, folder: str | None) -> Limit:
+def _limit(item: Any, where: str, system: System, code: UserCode) -> Limit:
     if isinstance(item, str):
         EXPRESSION.check(len(item), where)
     match = _LIMIT.fullmatch(item.strip()) if isinstance(item, str) else None
@@ -208,7 +209,9 @@ def _limit(item: Any, where: str, system: System, folder: str | None) -> Limit:
             where, f"{shown(item)} is not a constraint", 'write "METRIC <= LIMIT" or "METRIC >= LIMIT", as in "absorbers.mass <= 250 kg/m"'
         )
     name, sign, text = match.groups()
-    target = _target(name, where, system, folder)
+    target = _target(name, where, system, code)
+    if target.metric.function is not None and not code.run:
+        return Limit(target, 0.0, sign == ">=")  # its unit is not known yet
     try:
         limit = to_si(text, _dimension(target.metric.units))
     except InputError as error:

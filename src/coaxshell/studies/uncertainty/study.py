@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from coaxshell.studies.metrics import metrics_of
-from coaxshell.studies.study_file import MetricTexts, Study, flat
+from coaxshell.studies.study_file import MetricTexts, Study, Tell, flat
 from coaxshell.studies.uncertainty.laws import LAWS
 from coaxshell.studies.uncertainty.plan import Plan, plan_of
+from coaxshell.studies.user_functions import UserCode
 
 
 class SensitivityStudy(Study):
@@ -29,9 +30,14 @@ class SensitivityStudy(Study):
     confidence: float = 0.95
     """Of the intervals."""
 
-    def plan(self, folder: Path) -> Plan:
-        """Return it with all parts checked; InputError names what is wrong. Files are relative to *folder*."""
+    def plan(self, folder: Path, *, allow_code: bool = False, tell: Tell | None = None) -> Plan:
+        """Return it with all parts checked; InputError names what is wrong. Arguments as of :meth:`Study.twice`."""
         system = self.system(folder)
+        resolution = self.resolution.checked(system)
         sampling = (self.samples, self.seed, self.confidence)
-        metrics = metrics_of(self.metrics, system, str(folder))
-        return plan_of(system, flat(self.uncertain, LAWS), metrics, self.resolution.checked(system), sampling, indices=self.indices)
+
+        def make(code: UserCode) -> Plan:
+            metrics = metrics_of(self.metrics, system, code)
+            return plan_of(system, flat(self.uncertain, LAWS), metrics, resolution, sampling, indices=self.indices)
+
+        return self.twice(make, folder, lambda plan: plan.metrics, allow_code=allow_code, tell=tell)
