@@ -51,6 +51,7 @@ speed = float(translation[-1] - translation[-501]) / float(
 particle = 1e3 / (1000 * 1400)
 
 shell, water = empty.shells[0], empty.exterior
+assert isinstance(shell, cx.Shell)  # and not a rigid one
 mass = (
     2
     * 3.141592653589793

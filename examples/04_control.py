@@ -5,6 +5,8 @@ Piezoelectric feedback
 Sensor, control law, actuator; what the actuator stands; and gains that would be unstable.
 """
 
+from functools import partial
+
 import coaxshell as cx
 from coaxshell.plotting import figure_comparison
 
@@ -15,8 +17,8 @@ from coaxshell.plotting import figure_comparison
 # Each shell's sensor feeds its own actuator, u = k_p phi + k_d dphi/dt. Negative gains stiffen and damp.
 
 active = cx.presets.load("active")
-resolution = {"duration": 3.0, "time_step": 2e-3, "modes": 80}
-free = cx.simulate(active, **resolution)
+simulate = partial(cx.simulate, duration=3.0, time_step=2e-3, modes=80)
+free = simulate(active)
 for warning in free.warnings:
     print("warning:", warning)
 
@@ -26,11 +28,11 @@ for warning in free.warnings:
 #
 # The linear law asks for several times the field that the material stands. With saturation the voltage stops there.
 
-limited = cx.simulate(active.with_overrides({"control.saturation": True}), **resolution)
+limited = simulate(active.with_overrides({"control.saturation": True}))
 voltage = limited.actuator_voltage("outer", angle=range(0, 360, 2))
 print(f"largest {float(abs(voltage).max()):.0f} V, limit {voltage.attrs['limit']:.0f} V")
 
-bare = cx.simulate(cx.presets.load("bare"), **resolution)
+bare = simulate("bare")
 figure_comparison({"linear law": free, "saturating": limited, "no control": bare})
 
 # %%
@@ -40,6 +42,6 @@ figure_comparison({"linear law": free, "saturating": limited, "no control": bare
 # An unstable loop is refused before anything is computed, with the gain and the order.
 
 try:
-    cx.simulate(active.with_overrides({"control.derivative": 500.0}), **resolution)
+    simulate(active.with_overrides({"control.derivative": 500.0}))
 except cx.InputError as error:
     print(error)

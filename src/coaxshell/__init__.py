@@ -19,6 +19,7 @@ from coaxshell._version import __version__
 from coaxshell.errors import InputError, PhysicsWarning
 
 if TYPE_CHECKING:
+    from coaxshell import export, plotting
     from coaxshell.model import (
         EXPLOSIVES,
         VACUUM,
@@ -75,6 +76,7 @@ _ROOMS = {
     "coaxshell.response": "PreparedSystem Response load_response prepare simulate",
     "coaxshell.studies": "Choice Integer LogNormal Normal Objective Optimum Range Uniform optimise robustness sensitivity sweep",
 }
+_SUBPACKAGES = ("export", "plotting")
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
 
 __all__ = [
@@ -117,10 +119,12 @@ __all__ = [
     "Vacuum",
     "__version__",
     "absorber_ring",
+    "export",
     "fluids",
     "load_response",
     "materials",
     "optimise",
+    "plotting",
     "prepare",
     "presets",
     "robustness",
@@ -131,6 +135,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name in _SUBPACKAGES:
+        return import_module(f"coaxshell.{name}")
     home = _HOME.get(name)
     if home is None:
         raise AttributeError(f"module 'coaxshell' has no attribute {name!r}")

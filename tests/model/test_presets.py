@@ -17,7 +17,16 @@ def total_mass(system: cx.System) -> float:
 
 
 def test_names() -> None:
-    assert presets.names() == ("bare", "absorbers", "active", "hybrid", "iakovlev-evacuated", "iakovlev-filled", "iakovlev-double")
+    assert presets.names() == (
+        "bare",
+        "absorbers",
+        "active",
+        "hybrid",
+        "iakovlev-evacuated",
+        "iakovlev-filled",
+        "iakovlev-double",
+        "steel-tube",
+    )
 
 
 @pytest.mark.parametrize("name", ["bare", "absorbers", "active", "hybrid"])

@@ -25,7 +25,7 @@ def pulse_band(pulse: Pulse) -> float:
         case Gaussian():
             return float(erfinv(SHARE)) / (2.0 * math.pi * pulse.width)
         case Sampled():
-            return _sampled_band(np.asarray(pulse.time), np.asarray(pulse.pressure))
+            return _sampled_band(*pulse.curve)
         case Step():
             return 0.0
 
@@ -47,7 +47,7 @@ def pulse_end(pulse: Pulse) -> float:
         case Gaussian():
             return pulse.centre + math.sqrt(2.0 * math.log(100.0)) * pulse.width
         case Sampled():
-            return float(pulse.time[-1])
+            return float(pulse.curve[0][-1])
         case Step():
             return pulse.rise_time
 
@@ -62,7 +62,7 @@ def largest_after(pulse: Pulse, moment: float) -> float:
         case Step():
             return pulse.peak * max(0.0, 1.0 - moment / pulse.rise_time) if pulse.rise_time > moment else 0.0
         case Sampled():
-            times, values = np.asarray(pulse.time), np.abs(pulse.pressure)
+            times, values = pulse.curve[0], np.abs(pulse.curve[1])
             later = values[times > moment]
             if not later.size:
                 return 0.0

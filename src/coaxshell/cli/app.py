@@ -14,6 +14,7 @@ from coaxshell.cli.figure import figure
 from coaxshell.cli.info import info
 from coaxshell.cli.init import init
 from coaxshell.cli.optimise import optimise
+from coaxshell.cli.plot import plot
 from coaxshell.cli.presets import presets
 from coaxshell.cli.reproduce import reproduce
 from coaxshell.cli.response_function import response_function
@@ -58,6 +59,7 @@ for _command in (
     presets,
     init,
     info,
+    plot,
     figure,
     reproduce,
     snapshots,

@@ -32,9 +32,6 @@ from coaxshell.model import (
 _SOURCES: tuple[type[Described], ...] = (SphericalShock, PlaneShock, LineShock, UnderwaterExplosion, SphericalWave, PlaneWave, LineWave)
 _PULSES: tuple[type[Described], ...] = (Exponential, Step, Gaussian, Sampled)
 
-# A material without a name takes that of its table.
-_FILLED_IN = {(Elastic, "name"), (Piezoelectric, "name")}
-
 _HEAD = """\
 # A scenario for coaxshell; run it by: coaxshell run THIS_FILE
 # Numbers are in SI units, or texts with a unit of their own, such as "6 mm", "70 GPa" or "0.13 ms".
@@ -55,9 +52,9 @@ def _reference() -> Iterator[str]:
     yield "Every entry that this file may have; those in (parentheses) may be left out."
     yield ""
     yield "name: what the system is called"
-    yield f"fluids: a list of names ({', '.join(fluids.names())}) or of tables:"
+    yield f"fluids: a list of names ({', '.join([*fluids.names(), *fluids.ALIASES])}) or of tables:"
     yield from _entries(Fluid)
-    yield "[materials.NAME]: a material of your own; the library has " + ", ".join(materials.names())
+    yield "[materials.NAME]: a material of your own; the library has " + ", ".join([*materials.names(), *materials.ALIASES])
     yield "  elastic:"
     yield from _entries(Elastic)
     yield "  piezoelectric:"
@@ -90,5 +87,5 @@ def _entries(model: type[Described]) -> Iterator[str]:
     for name, field in model.model_fields.items():
         if name == "type":
             continue
-        shown = name if field.is_required() and (model, name) not in _FILLED_IN else f"({name})"
+        shown = name if field.is_required() else f"({name})"
         yield f"    {shown:<24} {' '.join((field.description or '').split())}"

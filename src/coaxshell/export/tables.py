@@ -12,41 +12,14 @@ import numpy.typing as npt
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell
-from coaxshell.model.naming import shell_name
 from coaxshell.numerics.files import replacing
 from coaxshell.plotting.saving import known_suffix
+from coaxshell.response.tables import UNITS, history_table, quantities_of
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
-
-_POINTS = (("head", 0.0), ("tail", 180.0))
-_UNITS = {"stress": "Pa", "displacement": "m", "sensor_voltage": "V", "actuator_voltage": "V"}
 _MAT_LIMIT = 2**31 - 1
-
-
-def history_table(response: Response) -> dict[str, FloatArray]:
-    """Return all histories at head and tail as columns: names with units, each of shape (T,).
-
-    Time in transits and in seconds; for each elastic shell hoop stress, inward displacement and, where it has them, sensor and
-    actuator voltage, at the head (the first source's direction) and at the tail; displacement of each absorber.
-    """
-    head = response.system.sources[0].angle
-    angles = [head + turn for _, turn in _POINTS]
-    columns = {
-        "time (a/c)": np.asarray(response.time, dtype=np.float64),
-        "time (s)": np.asarray(response.time_seconds, dtype=np.float64),
-    }
-    for shell, label in _elastic(response):
-        for quantity in _quantities(response, shell):
-            values = np.asarray(getattr(response, quantity)(shell, angle=angles), dtype=np.float64)
-            for column, (point, _) in enumerate(_POINTS):
-                columns[f"{label} {quantity.replace('_', ' ')} {point} ({_UNITS[quantity]})"] = values[:, column]
-    if response.system.absorber_list:
-        for number, row in enumerate(np.asarray(response.absorber_displacement(), dtype=np.float64)):
-            columns[f"absorber {number} displacement (m)"] = row
-    return columns
 
 
 def export_csv(response: Response, path: str | Path) -> Path:
@@ -109,8 +82,8 @@ def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
     structs = []
     for shell, described in enumerate(response.system.shells):
         struct: dict[str, Any] = {"radius": described.radius, "rigid": isinstance(described, RigidShell)}
-        quantities = [] if struct["rigid"] else _quantities(response, shell)
-        for quantity in _UNITS:
+        quantities = [] if struct["rigid"] else quantities_of(response, shell)
+        for quantity in UNITS:
             given = quantity in quantities
             struct[quantity] = np.asarray(getattr(response, quantity)(shell, angle=[head, head + 180.0])) if given else np.empty((0, 2))
         struct["modal_normal"] = np.asarray(response.modal(shell, "displacement"))
@@ -123,21 +96,3 @@ def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
         for name, value in struct.items():
             table[name][0, number] = value
     return table
-
-
-def _elastic(response: Response) -> list[tuple[int, str]]:
-    """Return number and name of each elastic shell."""
-    shells = response.system.shells
-    return [(i, shell_name(i, len(shells))) for i, shell in enumerate(shells) if not isinstance(shell, RigidShell)]
-
-
-def _quantities(response: Response, shell: int) -> list[str]:
-    """Return what an elastic shell has: stress and displacement always, voltages where it has the layers and the control."""
-    described = response.system.shells[shell]
-    roles = set() if isinstance(described, RigidShell) else {layer.role for layer in described.layers}
-    found = ["stress", "displacement"]
-    if "sensor" in roles:
-        found.append("sensor_voltage")
-    if shell in response.system.controlled_shells and {"sensor", "actuator"} <= roles:
-        found.append("actuator_voltage")
-    return found

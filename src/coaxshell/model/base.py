@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -53,7 +53,15 @@ WORDS = {
 MOST_TOLD = 30
 """Further problems that an error carries: a form has few fields, a list of numbers may have thousands."""
 
-UNSTATED: Any = object()
+
+class _Unstated:
+    """What stands in a signature where an argument is required."""
+
+    def __repr__(self) -> str:
+        return "<required>"
+
+
+UNSTATED: Any = _Unstated()
 """Default of an argument that is required, so that its absence is told like every other problem."""
 
 
@@ -62,7 +70,27 @@ def stated(arguments: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in arguments.items() if value is not UNSTATED}
 
 
-class Described(BaseModel):
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+_THEIRS = frozenset(dir(BaseModel))
+"""What pydantic brings to every description: of no use to those who describe shells."""
+
+
+class _Readable(ModelMetaclass):
+    """Show in ``dir`` and ``help`` the methods of a description, and nothing of pydantic's.
+
+    Type checkers that know nothing of pydantic take the entries as any keywords, texts with units among them: this class does not
+    promise them the types that are kept.
+    """
+
+    def __dir__(self) -> list[str]:
+        return ["__doc__", "__init__", *(name for name in super().__dir__() if name not in _THEIRS and not name.startswith("_"))]
+
+
+class Described(BaseModel, metaclass=_Readable):
     """A part of a description: immutable, unknown keys refused, every problem told as one :class:`InputError`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
@@ -71,6 +99,7 @@ class Described(BaseModel):
     """What errors call it, where its users do not know the name of the class."""
 
     def __init__(self, /, **data: Any) -> None:
+        """Build it from its entries as keywords, numbers in SI or texts with a unit; InputError names the entry that is wrong."""
         try:
             super().__init__(**data)
         except ValidationError as error:
@@ -83,6 +112,15 @@ class Described(BaseModel):
             return super().model_validate(obj, **options)
         except ValidationError as error:
             raise _told(error, cls) from None
+
+    def __dir__(self) -> list[str]:
+        return sorted({*type(self).model_fields, *(name for name in dir(type(self)) if not name.startswith("_"))})
+
+    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
+        """Yield what was given, but for the kind, which the class tells, and the source of constants."""
+        for name in type(self).model_fields:
+            if name in self.model_fields_set and name not in ("type", "reference"):
+                yield name, getattr(self, name)
 
     def replace(self, **changes: Any) -> Self:
         """Return a copy with the given fields changed, checked as a whole again; derived defaults follow the change."""

@@ -145,6 +145,15 @@ _LIBRARY: dict[str, Elastic | Piezoelectric] = {
 }  # fmt: skip
 
 
+ALIASES: dict[str, str] = {
+    "steel": "structural-steel",
+    "stainless steel": "stainless-steel-316l",
+    "316L": "stainless-steel-316l",
+    "titanium": "titanium-ti6al4v",
+}
+"""Names that people type, and what they stand for."""
+
+
 def names() -> tuple[str, ...]:
     """Return the names of the library's materials."""
     return tuple(_LIBRARY)
@@ -152,4 +161,4 @@ def names() -> tuple[str, ...]:
 
 def get(name: str) -> Elastic | Piezoelectric:
     """Return the library's material of that name (case and punctuation ignored); InputError with a suggestion otherwise."""
-    return lookup(_LIBRARY, name, "material")
+    return lookup({**_LIBRARY, **{alias: _LIBRARY[meant] for alias, meant in ALIASES.items()}}, name, "material")

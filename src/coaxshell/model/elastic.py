@@ -12,8 +12,8 @@ class Elastic(Described):
     """Describe an isotropic, linearly elastic material; in plane strain its modulus is E/(1 - nu^2)."""
 
     type: Literal["elastic"] = "elastic"
-    name: str
-    """What the material is called."""
+    name: str = "elastic"
+    """What the material is called; in a file the name of its table."""
     density: Density
     """Mass per volume (kg/m^3)."""
     youngs_modulus: Modulus

@@ -47,6 +47,9 @@ _LIBRARY: dict[str, Fluid | Vacuum] = {
     **{fluid.name: fluid for fluid in (WATER_1400, WATER_1470, FRESHWATER, SEAWATER, AIR, OIL, GLYCERIN)},
 }
 
+ALIASES: dict[str, str] = {"water": "freshwater", "sea water": "seawater", "castor oil": "oil", "glycerol": "glycerin", "none": "vacuum"}
+"""Names that people type, and what they stand for."""
+
 _KINSLER = "Kinsler, Frey, Coppens, Sanders, Fundamentals of Acoustics, App. A10"
 # Kept beside the fluids, so that a file naming three fluids stays short.
 REFERENCES: dict[str, str] = {
@@ -68,7 +71,7 @@ def names() -> tuple[str, ...]:
 
 def get(name: str) -> Fluid | Vacuum:
     """Return the library's fluid of that name (case and punctuation ignored); InputError with a suggestion otherwise."""
-    return lookup(_LIBRARY, name, "fluid")
+    return lookup({**_LIBRARY, **{alias: _LIBRARY[meant] for alias, meant in ALIASES.items()}}, name, "fluid")
 
 
 def as_fluid(value: Any) -> Fluid | Vacuum:

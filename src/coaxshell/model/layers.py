@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
@@ -36,6 +36,10 @@ class Layer(Described):
     ) -> None:
         given = {"material": material, "thickness": thickness, "role": UNSTATED if role is None else role}
         super().__init__(**stated(given), **unknown)
+
+    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
+        """Name the material instead of its constants."""
+        yield from ((name, self.material.name if name == "material" else value) for name, value in super().__repr_args__())
 
     @model_validator(mode="after")
     def _role_fits(self) -> Self:

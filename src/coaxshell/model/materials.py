@@ -10,6 +10,7 @@ from pydantic import BeforeValidator
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.catalogue import (
+    ALIASES,
     ALUMINIUM,
     ALUMINIUM_STRUCTURAL,
     BRASS,
@@ -32,6 +33,7 @@ from coaxshell.model.naming import lookup
 from coaxshell.model.piezoelectric import Piezoelectric
 
 __all__ = [
+    "ALIASES",
     "ALUMINIUM",
     "ALUMINIUM_STRUCTURAL",
     "BRASS",

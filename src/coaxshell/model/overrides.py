@@ -95,7 +95,8 @@ def _index(token: str, count: int, where: str) -> int:
 
 def _with_materials(system: S, tree: Tree | _Leaf) -> S:
     """Change a material in every layer made of it."""
-    found = {slug(layer.material.name): layer.material for shell in system.shells if isinstance(shell, Shell) for layer in shell.layers}
+    layers = [layer for shell in system.shells if isinstance(shell, Shell) for layer in shell.layers]
+    found = {slug(layer.material.name): layer.material for layer in layers}
     if isinstance(tree, _Leaf):
         raise InputError(
             "materials", "cannot be replaced as a whole", suggestion("materials", [f"materials.{key}.density" for key in found])
@@ -105,6 +106,8 @@ def _with_materials(system: S, tree: Tree | _Leaf) -> S:
         key = next((key for key in found if plain(key) == plain(token)), None)
         if key is None:
             raise InputError(f"materials.{token}", "is not a material of this system", suggestion(token, found))
+        if len({layer.material for layer in layers if slug(layer.material.name) == key}) > 1:
+            raise InputError(f"materials.{token}", "is the name of two different materials", "give each a name of its own")
         fresh[key] = branch.value if isinstance(branch, _Leaf) else _grown(found[key], branch, f"materials.{key}")
 
     def changed(layer: Layer) -> Layer:

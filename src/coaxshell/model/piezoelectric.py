@@ -24,8 +24,8 @@ class Piezoelectric(Described):
     """
 
     type: Literal["piezoelectric"] = "piezoelectric"
-    name: str
-    """What the material is called."""
+    name: str = "piezoelectric"
+    """What the material is called; in a file the name of its table."""
     density: Density
     """Mass per volume (kg/m^3)."""
     c22: Modulus

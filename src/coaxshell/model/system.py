@@ -148,6 +148,13 @@ class System(Described):
             return tuple(range(len(self.shells)))
         return tuple(sorted(self.shell_index(shell) for shell in self.control.shells))
 
+    def __repr__(self) -> str:
+        from coaxshell.model.display.line import system_line
+
+        return system_line(self)
+
+    __str__ = __repr__
+
     def _repr_html_(self) -> str:
         from coaxshell.model.display import system_card
 

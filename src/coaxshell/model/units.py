@@ -53,7 +53,7 @@ DIMENSIONS: dict[str, Dimension] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Quantity:
     """A field of one dimension with limits: the marker in ``Annotated[float, quantity(...)]``."""
 
@@ -63,6 +63,9 @@ class Quantity:
     below: float | None = None
     most: float | None = None
     nonzero: bool = False
+
+    def __repr__(self) -> str:
+        return f"{self.dimension.name} in {self.dimension.unit}" if self.dimension.unit else self.dimension.name
 
     def validate(self, value: object) -> float:
         """Return *value* as a finite float in SI within the limits; InputError otherwise."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from coaxshell.plotting.bare_histories import figure_bare_histories
 from coaxshell.plotting.comparison import figure_comparison, plot_comparison
+from coaxshell.plotting.curves import figure_curves, plot_curves
 from coaxshell.plotting.energy import figure_energy, plot_energy
 from coaxshell.plotting.field import plot_field
 from coaxshell.plotting.field_scales import PRESSURE_UNITS, check_units
@@ -35,6 +36,7 @@ __all__ = [
     "check_units",
     "figure_bare_histories",
     "figure_comparison",
+    "figure_curves",
     "figure_energy",
     "figure_named_curves",
     "figure_optimum",
@@ -45,6 +47,7 @@ __all__ = [
     "mark_peak",
     "plot_comparison",
     "plot_convergence",
+    "plot_curves",
     "plot_distribution",
     "plot_energy",
     "plot_field",

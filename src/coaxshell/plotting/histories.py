@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -39,6 +39,8 @@ class PlottedQuantity:
         Drawn units per SI unit.
     colour : str
         Colour of the curve.
+    options : mapping
+        What the method is given beside shell and angle.
     """
 
     method: str
@@ -46,13 +48,21 @@ class PlottedQuantity:
     unit: str
     per_si: float
     colour: str
+    options: Mapping[str, Any] = field(default_factory=dict)
 
 
 QUANTITIES: Mapping[str, PlottedQuantity] = MappingProxyType(
     {
         "stress": PlottedQuantity("stress", "hoop stress (MPa)", "MPa", 1e-6, COLOURS["blue"]),
         "displacement": PlottedQuantity("displacement", "inward displacement (µm)", "µm", 1e6, COLOURS["orange"]),
+        "relative_displacement": PlottedQuantity(
+            "displacement", "inward displacement, relative (µm)", "µm", 1e6, COLOURS["orange"], {"relative": True}
+        ),
+        "tangential_displacement": PlottedQuantity(
+            "displacement", "tangential displacement (µm)", "µm", 1e6, COLOURS["orange"], {"component": "tangential"}
+        ),
         "sensor_voltage": PlottedQuantity("sensor_voltage", "sensor voltage (V)", "V", 1.0, COLOURS["green"]),
+        "actuator_voltage": PlottedQuantity("actuator_voltage", "actuator voltage (kV)", "kV", 1e-3, COLOURS["purple"]),
     }
 )
 """Quantities that :func:`plot_history` draws, by name."""
@@ -76,7 +86,7 @@ class History:
 def history(response: Response, quantity: str, shell: int | str, angle: float) -> History:
     """Return one curve of a response in drawn units; InputError for an unknown quantity."""
     drawn = _quantity(quantity)
-    array: Any = getattr(response, drawn.method)(shell, angle=[angle]).isel(angle=0)
+    array: Any = getattr(response, drawn.method)(shell, angle=[angle], **drawn.options).isel(angle=0)
     time = np.asarray(array["time"], dtype=np.float64)
     seconds = np.asarray(array["time_seconds"], dtype=np.float64)
     milliseconds = 1e3 * float(seconds[-1] / time[-1]) if time[-1] > 0 else 1.0

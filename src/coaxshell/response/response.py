@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.response import absorbers, errors, fields, histories, storage, voltages
+from coaxshell.response import absorbers, arguments, errors, fields, histories, storage, voltages
 from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
+from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
 from coaxshell.response.translation import translation
 from coaxshell.solver.electrodes import Segment
@@ -223,6 +225,26 @@ class Response:
         the whole history and are refused. See :func:`coaxshell.response.thinning.thinned`.
         """
         return Response(thinned(self.solution, every, window))
+
+    def plot(
+        self, quantity: str = "stress", shell: int | str | Sequence[int | str] | None = None, angle: npt.ArrayLike = HEAD_AND_TAIL
+    ) -> Any:
+        """Return a figure of a quantity against time: "stress", "relative_displacement", "actuator_voltage", ...; all shells unless named.
+
+        Show it as the last line of a cell, or ``figure.savefig(path)``. See :func:`coaxshell.plotting.figure_curves`.
+        """
+        # Drawing lives floors below and must not come with every response: found by its name, as pandas finds its plotting backends.
+        return import_module("coaxshell.plotting.curves").figure_curves(self, quantity, shell, arguments.angles(angle))
+
+    def to_dataframe(self) -> Any:
+        """Return all histories at head and tail as a pandas DataFrame, one row an instant, indexed by time in transits.
+
+        Columns carry their units; they are those of :func:`coaxshell.export.export_csv`.
+        """
+        columns = history_table(self)
+        time = columns.pop("time (a/c)")
+        rows = xr.Dataset({name: ("time (a/c)", values) for name, values in columns.items()}, coords={"time (a/c)": time})
+        return rows.to_dataframe()
 
     def save(self, path: str | Path, *, compression: bool = False) -> Path:
         """Write everything to one self-describing NetCDF file, whole or not at all, and return its path.

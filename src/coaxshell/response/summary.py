@@ -12,7 +12,7 @@ from coaxshell.response import arguments
 from coaxshell.response.errors import error_table
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
-from coaxshell.response.summary_text import summary_text
+from coaxshell.response.summary_text import summary_html, summary_text
 from coaxshell.response.translation import relative_gain, still_grows
 from coaxshell.response.voltages import actuator_limit, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.solver.electrodes import Segment, segment_length
@@ -106,6 +106,9 @@ class Summary:
         """Return all of it as nested plain dicts, lists and numbers, ready for JSON."""
         plain = asdict(self)
         return {**plain, "window": list(self.window), "shells": list(plain["shells"]), "warnings": list(self.warnings)}
+
+    def _repr_html_(self) -> str:
+        return summary_html(self.to_dict())
 
     def __str__(self) -> str:
         """Return the aligned table."""

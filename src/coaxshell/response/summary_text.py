@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from html import escape
 from typing import Any
 
 from coaxshell.model.prefixes import engineering
@@ -22,6 +23,7 @@ ROWS = (
 )
 """Fields of a shell's summary, with their labels and units, in the order of the tables."""
 
+_HEADING = ("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]")
 GROWING = "still growing"
 """Said of a largest value beyond which the quantity goes on when the window ends."""
 
@@ -39,21 +41,37 @@ def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
 
 def summary_text(summary: Mapping[str, Any]) -> str:
     """Return the table of a summary in its plain-dict form."""
+    rows = [row for shell in summary["shells"] for row in _shell_rows(shell)]
+    warnings = (f"warning: {text}" for text in summary["warnings"])
+    return "\n".join([*_title(summary), "", *aligned([_HEADING, *rows], left=2), "", *notes(summary), *warnings])
+
+
+def summary_html(summary: Mapping[str, Any]) -> str:
+    """Return the same as an HTML table for a notebook."""
+    title, run = (escape(line) for line in _title(summary))
+    rows = [row for shell in summary["shells"] for row in _shell_rows(shell)]
+    left, right = (f'style="text-align:{side}; padding:0 0.8em 0 0; font-variant-numeric:tabular-nums"' for side in ("left", "right"))
+
+    def cells(row: Sequence[str], tag: str) -> str:
+        return "".join(f"<{tag} {left if number < 2 else right}>{escape(cell)}</{tag}>" for number, cell in enumerate(row))
+
+    body = "".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows)
+    below = f"<pre>{escape(chr(10).join(notes(summary)))}</pre>"
+    below += "".join(f"<div>warning: {escape(text)}</div>" for text in summary["warnings"])
+    head = f"<thead><tr>{cells(_HEADING, 'th')}</tr></thead>"
+    table = f'<table style="border-collapse:collapse; margin:0.5em 0">{head}<tbody>{body}</tbody></table>'
+    return f"<div><b>{title}</b><br>{run}</div>{table}{below}"
+
+
+def _title(summary: Mapping[str, Any]) -> tuple[str, str]:
     settings = summary["settings"]
     start, end = summary["window"]
-    lines = [
+    return (
         summary["title"] or "unnamed system",
         f"{settings['engine']} engine, {settings['modes']} modes, time step {settings['time_step']:g}, "
         f"t = {start:g} to {end:g} transits ({engineering(start * summary['transit_time'], 's')} to "
         f"{engineering(end * summary['transit_time'], 's')})",
-        "",
-    ]
-    rows: list[tuple[str, ...]] = [("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]")]
-    for shell in summary["shells"]:
-        rows += _shell_rows(shell)
-    lines += aligned(rows, left=2)
-    lines += ["", *notes(summary), *(f"warning: {text}" for text in summary["warnings"])]
-    return "\n".join(lines)
+    )
 
 
 def notes(summary: Mapping[str, Any]) -> list[str]:

@@ -9,7 +9,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.naming import lookup
 from coaxshell.model.system import System
 
-NAMES = ("bare", "absorbers", "active", "hybrid", "iakovlev-evacuated", "iakovlev-filled", "iakovlev-double")
+NAMES = ("bare", "absorbers", "active", "hybrid", "iakovlev-evacuated", "iakovlev-filled", "iakovlev-double", "steel-tube")
 
 
 def names() -> tuple[str, ...]:

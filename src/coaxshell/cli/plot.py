@@ -1,0 +1,62 @@
+"""``coaxshell plot``: any quantity of any run against time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coaxshell.cli import field_options, options, values
+from coaxshell.cli.answers import answers, tell_all_warnings
+from coaxshell.cli.files import Outputs
+from coaxshell.cli.solving import Request, with_resolution
+
+
+@with_resolution
+def plot(
+    context: typer.Context,
+    source: field_options.SourceArgument,
+    quantity: Annotated[
+        str,
+        typer.Option(
+            "--quantity",
+            metavar="NAME",
+            help="stress, relative_displacement, displacement, tangential_displacement, sensor_voltage or actuator_voltage.",
+        ),
+    ] = "stress",
+    shell: Annotated[
+        list[str] | None,
+        typer.Option("--shell", metavar="NAME", help="inner, outer or a number from 0 inside. May be repeated.", show_default="all"),
+    ] = None,
+    angle: Annotated[str, typer.Option("--angle", metavar="DEG,...", help="Degrees from the source, as in 0,90,180.")] = "0,180",
+    compare: field_options.CompareOption = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="QUANTITY.png")
+    ] = None,
+    changes: options.SetOption = None,
+    *,
+    request: Request,
+    force: options.ForceOption = False,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Draw a quantity of a run against time.
+
+    The run is a saved one, or a preset or a .toml file that is solved; with --compare, two of them. The paper's own figures: coaxshell
+    figure.
+    """
+    from coaxshell.cli.comparison import labels
+    from coaxshell.plotting import FIGURE_SUFFIXES, QUANTITIES, figure_curves, save_figure
+    from coaxshell.response.arguments import one_of
+
+    chosen = one_of("--quantity", quantity.replace("-", "_"), QUANTITIES)
+    target = Outputs(force).file(output or Path(f"{chosen}.png"), "--output", FIGURE_SUFFIXES)
+    angles = [values.number("--angle", each) for each in angle.split(",")]
+    sources = [source, *([compare] if compare else [])]
+    responses = answers(context, sources, changes, request, quiet=quiet)
+    names = labels(*(response.system for response in responses)) if compare else (responses[0].system.name or Path(source).stem,)
+    with values.named_as_options(shells="shell", responses="compare"):
+        drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)
+    save_figure(drawn, target)
+    tell_all_warnings(responses)
+    typer.echo(f"wrote {target}")

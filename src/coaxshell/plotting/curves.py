@@ -1,0 +1,126 @@
+"""Any quantity against time: one panel a shell, one curve an angle and a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.model import Shell
+from coaxshell.model.naming import shell_phrase
+from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from coaxshell.response import Response
+
+_COLOURS = ("blue", "orange", "green", "purple", "grey")
+_DASHES: tuple[Any, ...] = ("solid", (0, (5.0, 1.6)), (0, (1.5, 1.5)), "dashdot")
+Curves = dict[tuple[str, float], History]
+
+
+def figure_curves(
+    responses: Mapping[str, Response] | Response,
+    quantity: str = "stress",
+    shells: Sequence[int | str] | int | str | None = None,
+    angle: Sequence[float] | float = (0.0, 180.0),
+) -> Figure:
+    """Draw one quantity of one run or several at some angles of some shells.
+
+    Parameters
+    ----------
+    responses : Response, or mapping of name to Response
+        At most four; each has its own kind of line.
+    quantity : str
+        One of :data:`QUANTITIES`.
+    shells : list of int or str, optional
+        Shells by name or number; all that are elastic unless given. Runs that lack one of them leave its panel.
+    angle : list of float
+        Degrees from the direction theta = 0, at most five; each has its own colour.
+
+    Returns
+    -------
+    Figure
+
+    Raises
+    ------
+    InputError
+        There is nothing to draw, or more than can be told apart.
+    """
+    runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
+    angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
+    for where, count, most in (("responses", len(runs), len(_DASHES)), ("angle", len(angles), len(_COLOURS))):
+        if not 1 <= count <= most:
+            raise InputError(where, f"{count} cannot be drawn", f"give 1 to {most}, so that they can be told apart")
+    panels = {title: curves for title, curves in _panels(runs, quantity, shells, angles).items() if curves}
+    if not panels:
+        raise InputError("shells", f"no run has the {quantity.replace('_', ' ')} of these shells", "choose others, or another quantity")
+    in_transits = len({round(curve.milliseconds, 9) for curves in panels.values() for curve in curves.values()}) == 1
+    with style():
+        figure = new_figure(PAGE_WIDTH, 0.9 + 2.2 * len(panels))
+        axes = figure.subplots(len(panels), 1, squeeze=False, sharex=True)[:, 0]
+        for ax, (title, curves) in zip(axes, panels.items(), strict=True):
+            plot_curves(curves, ax, in_transits=in_transits)
+            ax.set_title(title, loc="left", fontweight="bold")
+            ax.set_ylabel(QUANTITIES[quantity].label)
+        axes[-1].set_xlabel(TIME_LABEL if in_transits else "time (ms)")
+        handles = _legend([name for name in runs if name], angles)
+        figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 6))
+    return figure
+
+
+def plot_curves(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Axes:
+    """Draw curves by (run, angle): an angle's colour, a run's kind of line, a circle around each largest magnitude.
+
+    Returns
+    -------
+    Axes
+    """
+    runs, angles = (list(dict.fromkeys(key[part] for key in curves)) for part in (0, 1))
+    longest = 0.0
+    for (run, angle), curve in curves.items():
+        shown = curve if in_transits else History(curve.time * curve.milliseconds, curve.values, 1.0)
+        colour = COLOURS[_COLOURS[angles.index(angle)]]
+        ax.plot(shown.time, shown.values, color=colour, linestyle=_DASHES[runs.index(run)], linewidth=1.1)
+        mark_peak(shown, ax, color=colour)
+        longest = max(longest, float(shown.time[-1]))
+    ax.axhline(0.0, color=COLOURS["grey"], linewidth=0.6, zorder=1)
+    ax.set_xlim(0.0, longest)
+    return ax
+
+
+def _panels(
+    runs: Mapping[str, Response], quantity: str, shells: Sequence[int | str] | int | str | None, angles: Sequence[float]
+) -> dict[str, Curves]:
+    """Return the curves of each shell by its name within a sentence."""
+    panels: dict[str, Curves] = {}
+    for run, response in runs.items():
+        walls = response.system.shells
+        wanted = range(len(walls)) if shells is None else [shells] if isinstance(shells, int | str) else shells
+        for index in (response.system.shell_index(shell) for shell in wanted):
+            if shells is None and not isinstance(walls[index], Shell):
+                continue
+            title = shell_phrase(index, len(walls))
+            panel = panels.setdefault(title[:1].upper() + title[1:], {})
+            for angle in angles:
+                try:
+                    panel[run, angle] = history(response, quantity, index, angle)
+                except InputError:
+                    if (len(runs) == 1 and shells is not None) or quantity not in QUANTITIES:
+                        raise
+    return panels
+
+
+def _legend(names: Sequence[str], angles: Sequence[float]) -> list[Any]:
+    from matplotlib.lines import Line2D
+
+    grey = COLOURS["grey"]
+    lines = [Line2D([], [], color=COLOURS[colour], label=f"{angle:g}°") for colour, angle in zip(_COLOURS, angles, strict=False)]
+    kinds = [Line2D([], [], color=grey, linestyle=dash, label=name) for dash, name in zip(_DASHES, names, strict=False)]
+    circle = Line2D([], [], color=grey, marker="o", markerfacecolor="none", linestyle="none", label="largest magnitude")
+    return [*lines, *kinds, circle]
