@@ -21,7 +21,7 @@ def test_the_march_is_the_same_whether_steps_are_taken_together(monkeypatch, cub
     found = []
     original = Relaxation.solve
     monkeypatch.setattr(Relaxation, "solve", lambda self, known: found.append(original(self, known)) or found[-1])
-    monkeypatch.setattr(estimates, "march_difference", lambda *run: np.zeros_like(run[-1]))  # it marches too
+    monkeypatch.setattr(estimates, "march_error", lambda *run: np.zeros_like(run[-1]))  # it marches too
     several = prepared.simulate(system.absorbers)
     assert found
     assert (found[-1] is not None) == together

@@ -20,13 +20,12 @@ from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.sampled_orders import SampledOrders
 from coaxshell.solver.solution import Estimates
-from coaxshell.solver.step_error import band_limit, march_difference
+from coaxshell.solver.step_error import band_limit, march_error
 
 FloatArray = npt.NDArray[np.float64]
 
 ORDERS_FACTOR = 2.0
 STEP_FACTOR = 2.0
-MARCH_FACTOR = 0.2
 
 
 def estimated_errors(
@@ -53,5 +52,5 @@ def estimated_errors(
     orders = ORDERS_FACTOR * left_out(structure, above, spectra, whole * grid.time_step, interface)
     march = np.zeros_like(orders)
     if interface is not None and interface.marched:
-        march = march_difference(structure, interface.links, interface.force, interface.correction, whole.sum(axis=-1))
-    return Estimates(orders, STEP_FACTOR * band_limit(grid, *spectra, whole), MARCH_FACTOR * march)
+        march = march_error(structure, interface.links, interface.force, interface.correction, whole.sum(axis=-1))
+    return Estimates(orders, STEP_FACTOR * band_limit(grid, *spectra, whole), march)
