@@ -57,6 +57,15 @@ SAVED_TEXT = Limit(16_000_000, "bytes", "a text in a saved run")
 SAVED_STRUCTURE = Limit(250_000_000, "bytes", "what a saved run holds beside its arrays")
 SAVED_ARRAYS = Limit(16_000_000_000, "bytes", "the arrays of a saved run")
 SAVED_CHUNK = Limit(64_000_000, "bytes", "a chunk of a compressed array")
+RING = Limit(10_000, "absorbers", "a ring")
+STUDIO_BODY = Limit(1_000_000, "bytes", "a request to the studio")
+STUDIO_UPLOAD = Limit(64_000_000, "bytes", "a run opened in the studio")
+STUDIO_NESTING = Limit(24, "levels", "the nesting of a request to the studio")
+STUDIO_SHELLS = Limit(6, "shells", "a system in the studio")
+STUDIO_LAYERS = Limit(12, "layers", "a shell in the studio")
+STUDIO_ABSORBERS = Limit(200, "absorbers", "a system in the studio")
+STUDIO_SOURCES = Limit(8, "sources", "a system in the studio")
+STUDIO_SAMPLES = Limit(20_000, "samples", "a record in the studio")
 
 TABLE: tuple[Limit, ...] = (
     QUANTITY,
@@ -75,5 +84,14 @@ TABLE: tuple[Limit, ...] = (
     SAVED_STRUCTURE,
     SAVED_ARRAYS,
     SAVED_CHUNK,
+    RING,
+    STUDIO_BODY,
+    STUDIO_UPLOAD,
+    STUDIO_NESTING,
+    STUDIO_SHELLS,
+    STUDIO_LAYERS,
+    STUDIO_ABSORBERS,
+    STUDIO_SOURCES,
+    STUDIO_SAMPLES,
 )
 """All bounds, in the order in which the documentation lists them."""

@@ -10,9 +10,10 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from coaxshell.model import presets
-from coaxshell.studio import limits, worker, workers
+from coaxshell.studio import limits, memory, worker, workers
 from coaxshell.studio.arrays import decoded
 
+PORT, KEY = 8765, "a-key-of-the-tests-and-of-no-one-else"
 SMALL = {"duration": 2.0, "time_step": 0.02, "modes": 12}
 """A resolution that takes hundredths of a second."""
 
@@ -58,6 +59,14 @@ def reporting(seconds):
         time.sleep(seconds / 10)
         worker.report(number / 10, "at it")
     return "done"
+
+
+def taking(size):
+    """Hold some memory for good, in a worker."""
+    worker._Here.held = getattr(worker._Here, "held", bytearray()) or bytearray(size)
+    for place in range(0, size, 4096):
+        worker._Here.held[place] = 1
+    return memory.held()
 
 
 def carried_out(story, **seconds):

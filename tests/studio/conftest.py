@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import pytest
+from asking import KEY, PORT
 from starlette.testclient import TestClient
 
 from coaxshell.studio.app import create_app
 
-PORT = 8765
-
 
 @pytest.fixture(scope="session")
 def client():
-    with TestClient(create_app(PORT), base_url=f"http://127.0.0.1:{PORT}") as client:
+    app = create_app(PORT, KEY, ("lab.example.org",))
+    with TestClient(app, base_url=f"http://127.0.0.1:{PORT}", cookies={f"coaxshell-{PORT}": KEY}) as client:
         yield client

@@ -1,4 +1,4 @@
-"""Bodies that a careless or hostile program might send: a thousand and more, the same ones every time."""
+"""Bodies that a careless or hostile program might send: two thousand and more, the same ones every time."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import copy
 import json
 import random
 
+import grave
 from asking import SMALL, described
 
 from coaxshell.model import System, presets
@@ -56,6 +57,14 @@ VALUES = [
     {"type": "spherical-shock"},
     {"count": 1},
     {"count": 10**12},
+    {"count": 1e9, "mass": 1},
+    {"count": "1000000", "mass": "1 kg"},
+    [{"mass": 1}] * 300,
+    float("inf"),
+    "1e9999999999 kg",
+    "1e-9999999999 m",
+    "1" + " " * 4000 + "y",
+    "\udc80name",
     {"__proto__": 1},
     {"rigid": True},
     {"file": "/dev/zero"},
@@ -78,6 +87,11 @@ RAW = [
     b'{"system": NaN}',
     b'{"system": {"a": Infinity}}',
     b'{"a": 1e999999}',
+    b'{"v": 1, "system": {"name": 1e999}}',
+    b'{"v": 1, "view": [-1e999]}',
+    b'{"v": 1, "view": "\\udfff"}',
+    b'{"\\ud83d": 1}',
+    b'{"client": "tab", "kind": "solve", "slot": "fuzz", "revision": 1, "title": "\\ud800", "system": {}}',
     b"[" * 100_000,
     b'{"a":' * 100_000,
     b'{"a":' * 30 + b"1" + b"}" * 30,
@@ -171,13 +185,15 @@ def from_schema(random_, schema, definitions, depth=0):
 
 
 def requests(seed=1, count=1100):
-    """Yield (method, path, body as bytes) of *count* requests and the raw ones."""
+    """Yield (method, path, body as bytes) of *count* requests, the raw ones and the grave ones."""
     random_ = random.Random(seed)
     schema = System.model_json_schema()
     systems = [described(name) for name in presets.names()]
     for raw in RAW:
         for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open"):
             yield "POST", path, raw
+    for path, body in grave.requests(random_, systems, VALUES):
+        yield "POST", path, encoded(body)
     for number in range(count):
         base = random_.choice(systems)
         if number % 3 == 0:

@@ -25,7 +25,7 @@ def test_many_clients_moving_sliders(client):
 def test_what_is_kept_is_bounded():
     import numpy as np
 
-    from coaxshell.studio.cache import Cache, held_bytes
+    from coaxshell.numerics.cache import Cache, held_bytes
 
     cache = Cache(1000, held_bytes)
     for number in range(50):
@@ -38,8 +38,8 @@ def test_what_is_kept_is_bounded():
 
 def test_structures_are_weighed_by_their_arrays():
     from coaxshell.model import presets
+    from coaxshell.numerics.cache import held_bytes
     from coaxshell.response import prepare
-    from coaxshell.studio.cache import held_bytes
 
     prepared = prepare(presets.load("absorbers"), duration=2.0, time_step=0.02, modes=12)
     before = held_bytes(prepared)

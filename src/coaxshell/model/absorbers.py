@@ -8,6 +8,7 @@ from typing import Annotated, Any, Self
 from pydantic import model_validator
 
 from coaxshell.errors import InputError
+from coaxshell.limits import RING
 from coaxshell.model.base import Described
 from coaxshell.model.units import Angle, Count, quantity
 
@@ -56,6 +57,11 @@ class AbsorberRing(_Link):
     """How many; 0 is an empty ring."""
     offset: Angle = 0.0
     """Angle of the first one (degrees)."""
+
+    @model_validator(mode="after")
+    def _bounded(self) -> Self:
+        RING.check(self.count, "count")  # it will be written out
+        return self
 
     @property
     def absorbers(self) -> tuple[Absorber, ...]:

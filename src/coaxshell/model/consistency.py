@@ -83,7 +83,7 @@ def _sources(system: System) -> None:
 def _absorbers(system: System) -> None:
     single = isinstance(system.absorbers, tuple)
     listed: tuple[Absorber | AbsorberRing, ...] = system.absorbers if isinstance(system.absorbers, tuple) else (system.absorbers,)
-    if len(system.shells) < 2 and not system.absorber_list:
+    if len(system.shells) < 2 and len(system.absorbers) == 0:
         return  # an empty ring fits any system
     for number, absorber in enumerate(listed):
         where = f"absorbers[{number}]" if single else "absorbers"

@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+import asyncio
+from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
 
 from anyio import to_thread
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.requests import Request
-from starlette.responses import Response
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import JSONResponse, Response
 
 from coaxshell.studio import job_routes, refusals, routes, statics, study_routes
-from coaxshell.studio.guard import Guard
+from coaxshell.studio.guard import NAMES, Guard
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.state import Studio
 
 
-def create_app(port: int) -> Guard:
-    """Return the ASGI application of a server that listens on a port of 127.0.0.1."""
+def create_app(port: int, key: str, names: Collection[str] = ()) -> Guard:
+    """Return the ASGI application of a server that listens on a port of 127.0.0.1.
+
+    Parameters
+    ----------
+    port : int
+    key : str
+        What every request must carry.
+    names : collection of str
+        Names of hosts, beside those of this machine, under which it may be reached.
+    """
     application = Starlette(
         routes=[*statics.routes(), *routes.routes(), *job_routes.routes(), *study_routes.routes()],
         lifespan=_alive,
-        exception_handlers={RefusedError: _refused, HTTPException: _plain},
+        exception_handlers={RefusedError: _refused, HTTPException: _plain, ClientDisconnect: _gone, Exception: _failed},
     )
-    return Guard(application, hosts=(f"127.0.0.1:{port}", f"localhost:{port}"))
+    return Guard(application, port, key, (*NAMES, *names))
 
 
 @asynccontextmanager
@@ -32,15 +42,25 @@ async def _alive(app: Starlette) -> AsyncIterator[None]:
     # Descriptions are read in threads; more of them at once would only take the event loop's turns.
     to_thread.current_default_thread_limiter().total_tokens = 4
     app.state.studio = studio = Studio()
+    resting = asyncio.get_running_loop().create_task(studio.rest())
     try:
         yield
     finally:
+        resting.cancel()
         studio.close()
 
 
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, RefusedError)
     return error.response
+
+
+async def _gone(request: Request, error: Exception) -> Response:
+    return Response(status_code=408)  # to nobody
+
+
+async def _failed(request: Request, error: Exception) -> Response:
+    return JSONResponse(refusals.internal(request.url.path[:120]), 500)  # and it is raised again, for the guard to log
 
 
 async def _plain(request: Request, error: Exception) -> Response:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import math
 from typing import Any, NoReturn
 
 from starlette.concurrency import run_in_threadpool
@@ -23,11 +25,15 @@ async def read_body(request: Request, most: int = limits.BODY_BYTES) -> bytes:
     if announced.isdigit() and int(announced[:20]) > most:
         raise _too_large(most)
     parts, total = [], 0
-    async for part in request.stream():
-        total += len(part)
-        if total > most:
-            raise _too_large(most)
-        parts.append(part)
+    try:
+        async with asyncio.timeout(limits.BODY_SECONDS):
+            async for part in request.stream():
+                total += len(part)
+                if total > most:
+                    raise _too_large(most)
+                parts.append(part)
+    except TimeoutError:
+        raise RefusedError(408, "too-slow", "body", f"has not come within {limits.BODY_SECONDS:g} s", "send it again") from None
     return b"".join(parts)
 
 
@@ -44,7 +50,9 @@ def parse_table(body: bytes) -> dict[str, Any]:
     try:
         if depth_of(body) > limits.NESTING:
             raise ValueError(f"nested deeper than {limits.NESTING} levels")
-        data = json.loads(body.decode("utf-8"), parse_constant=_constant)
+        data = json.loads(body.decode("utf-8"), parse_constant=_constant, parse_float=_finite)
+        if b"\\u" in body:
+            json.dumps(data, ensure_ascii=False).encode("utf-8")  # half a surrogate pair is no character: nothing could send it back
     except (ValueError, RecursionError) as error:
         raise RefusedError(400, "malformed", "body", f"is not JSON: {str(error)[:120]}", "send one JSON object in UTF-8") from None
     if not isinstance(data, dict):
@@ -117,6 +125,13 @@ def one_of(data: dict[str, Any], entry: str, allowed: tuple[str, ...], default: 
 def bad(where: str, value: object, remedy: str) -> RefusedError:
     """Return the refusal of an entry."""
     return RefusedError(400, "bad-request", where, f"{value!r:.60} is not allowed" if value is not None else "is missing", remedy)
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(f"{text:.20} is not a finite number")
+    return number
 
 
 def _constant(text: str) -> NoReturn:

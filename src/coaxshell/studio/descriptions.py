@@ -10,7 +10,7 @@ from coaxshell.model import RigidShell, Shell, System
 from coaxshell.model.naming import shell_phrase
 from coaxshell.model.toml import loads
 from coaxshell.studies.metrics import metric_names
-from coaxshell.studio import limits
+from coaxshell.studio import limits, refusals
 from coaxshell.studio.record_views import viewed
 
 
@@ -27,12 +27,8 @@ def system_of(data: dict[str, Any]) -> System:
 
 def _checked(table: dict[str, Any]) -> System:
     limits.check_raw(table)
-    try:
+    with refusals.readable("system"):
         system = System.model_validate(table)
-    except InputError:
-        raise
-    except (OverflowError, ValueError, RecursionError, ArithmeticError) as error:
-        raise InputError("system", f"cannot be read ({type(error).__name__})", "give finite numbers of usual size") from None
     limits.check_system(system)
     return system
 

@@ -11,7 +11,7 @@ from coaxshell.model import System
 from coaxshell.model.naming import slug
 from coaxshell.response.storage import scenario
 from coaxshell.solver.settings import Settings
-from coaxshell.studio import worker
+from coaxshell.studio import refusals, worker
 
 TYPES = {
     "toml": "application/toml",
@@ -75,7 +75,8 @@ def movie(runs: list[Run], frames: int, fps: float, size: int, path: Path) -> No
 def described(path: Path) -> tuple[str, dict[str, Any]]:
     """Return description and settings of an uploaded NetCDF file; its arrays are never read."""
     try:
-        return scenario(path)
+        with refusals.readable("file"):
+            return scenario(path)
     except InputError as error:
         raise InputError("file", error.problem, error.remedy) from None
 

@@ -49,9 +49,8 @@ async def _solve(studio: Studio, job: Job, data: dict[str, Any]) -> None:
         other.kind == "solve" and other.slot == job.slot and (other.revision or 0) > job.revision for other in studio.jobs.of(job.client)
     ):
         raise RefusedError(409, "cancelled", "revision", f"{job.revision} is older than what was asked for since", "ask with a newer one")
-    kept = studio.curves.get(run.name)
-    if kept is not None:
-        studio.jobs.done(job, kept)
+    if studio.curves.get(run.name) is not None:
+        studio.jobs.done(job)
         return
     studio.jobs.start(job, worker.solve, *run.pair, place=run.place)
     assert job.work is not None

@@ -87,9 +87,9 @@ class Jobs:
         self._changed(job)
         return job
 
-    def done(self, job: Job, result: Any) -> Job:
+    def done(self, job: Job) -> Job:
         """Keep a job that was done before it began."""
-        job.state, job.fraction, job.stage, job.result = DONE, 1.0, "done", result
+        job.state, job.fraction, job.stage = DONE, 1.0, "done"
         self._jobs[job.id] = job
         self._tidy()
         self._changed(job)
@@ -189,8 +189,10 @@ class Jobs:
             job.error = {"where": bad.where, "problem": bad.problem, "remedy": bad.remedy}
             self._end(job, FAILED)
         else:
-            job.result, job.fraction, job.stage = work.future.result(), 1.0, "done"
+            # The curves of a run are kept by their own name, by size.
+            job.result, job.fraction, job.stage = None if job.kind == "solve" else work.future.result(), 1.0, "done"
             self._end(job, DONE)
+        job.work = None  # with all that it was given
 
     def _began(self, job: Job) -> None:
         if job.state == WAITING:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.cache import Cache
 from coaxshell.studio import limits
-from coaxshell.studio.cache import Cache
 
 COLUMNS = ("time", "pressure")
 

@@ -6,24 +6,39 @@ from collections.abc import Mapping
 from typing import Any
 
 from coaxshell.errors import InputError
-from coaxshell.model import Sampled, Shell, System
+from coaxshell.limits import (
+    STUDIO_ABSORBERS,
+    STUDIO_BODY,
+    STUDIO_LAYERS,
+    STUDIO_NESTING,
+    STUDIO_SAMPLES,
+    STUDIO_SHELLS,
+    STUDIO_SOURCES,
+    STUDIO_UPLOAD,
+)
+from coaxshell.model import AbsorberRing, Sampled, Shell, System
 from coaxshell.model.base import shown
 from coaxshell.model.durations import transits
+from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.memory import words_of
+from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
 
-BODY_BYTES = 1_000_000
-UPLOAD_BYTES = 64_000_000
-NESTING = 24
-
-SHELLS, LAYERS, ABSORBERS, SOURCES, SAMPLES = 6, 12, 200, 8, 20_000
+BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUDIO_NESTING.value
+SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABSORBERS.value
+SOURCES, SAMPLES = STUDIO_SOURCES.value, STUDIO_SAMPLES.value
 PREVIEW = {"duration": 5.0, "time_step": 4e-3, "modes": 60, "refinement": 1}
 FULL = {"duration": 5.0, "time_step": 1e-3, "modes": 150, "refinement": 1}
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
 MODES, STEPS, REFINEMENT = 300, 20_000, 8
 MODE_STEPS = 3_000_000
-"""Orders times steps times refinement: memory and time of a run grow with it."""
+"""Orders times steps times refinement."""
+LIVE_COST, FULL_COST = Cost(600e6, 60.0), Cost(2.5e9, 900.0)
+"""Memory and time of one run, with all that they depend on: shells, absorbers, orders, steps, samples."""
 
 FIELD_VALUES, FRAME_VALUES, FIELD_BYTES = 30_000_000, 8_000_000, 500_000_000
+HEAD_SECONDS, BODY_SECONDS = 20.0, 120.0
+"""How long the head of a request, and its body, may take to come."""
 LIVE_WAITING, JOBS_WAITING, JOBS_OF_CLIENT, JOBS_KEPT, STREAMS = 120, 24, 6, 64, 200
 SWEPT, CASES = 4, 400
 VARIED, COORDINATES, CONSTRAINTS = 8, 64, 12
@@ -35,7 +50,10 @@ TABS = 100
 """Tabs of a browser that share a stream of events."""
 TEXT = 200
 """Letters of a value, a constraint or a title."""
-RUNS, SLOTS = 4_000, 4_000
+RUN_BYTES, CURVE_BYTES, SLOTS = 60_000_000, 100_000_000, 4_000
+"""Bytes of the runs that the server knows, and of the curves that it keeps; pages and places that it remembers."""
+REST_SECONDS, REST_GROWTH, WORKER_BYTES = 120.0, 1.15, 1_500_000_000
+"""After how long without work memory is given back, by workers that have grown so much; bytes from which on one is renewed at once."""
 SILENT_SECONDS, DROPPED_SECONDS = 180.0, 15.0
 """How long a task may go without reporting progress, and how long it may go on once nobody wants it."""
 GONE_SECONDS = 10.0
@@ -70,12 +88,6 @@ def table() -> dict[str, int]:
 
 def check_raw(data: Mapping[str, Any]) -> None:
     """Raise InputError for a description that is too large to be read, or that names a file of this machine."""
-    absorbers = data.get("absorbers")
-    for index, item in enumerate(absorbers if isinstance(absorbers, list) else [absorbers]):
-        count = item.get("count") if isinstance(item, dict) else None
-        if isinstance(count, int) and count > ABSORBERS:
-            path = f"absorbers[{index}].count" if isinstance(absorbers, list) else "absorbers.count"
-            raise _above(path, count, ABSORBERS, "absorbers")
     for name, most in (("absorbers", ABSORBERS), ("shells", SHELLS), ("source", SOURCES)):
         value = data.get(name)
         if isinstance(value, list) and len(value) > most:
@@ -95,14 +107,24 @@ def check_system(system: System) -> None:
     for index, shell in enumerate(system.shells):
         if isinstance(shell, Shell) and len(shell.layers) > LAYERS:
             raise _above(f"shells[{index}].layers", len(shell.layers), LAYERS, "layers")
-    if len(system.absorber_list) > ABSORBERS:
-        raise _above("absorbers", len(system.absorber_list), ABSORBERS, "absorbers")
+    ring = isinstance(system.absorbers, AbsorberRing)  # counted, not written out: that would take the memory which is not granted
+    if len(system.absorbers) > ABSORBERS:
+        raise _above("absorbers.count" if ring else "absorbers", len(system.absorbers), ABSORBERS, "absorbers")
     if len(system.sources) > SOURCES:
         raise _above("source", len(system.sources), SOURCES, "sources")
     for index, source in enumerate(system.sources):
         if isinstance(source.pulse, Sampled) and len(source.pulse.time) > SAMPLES:
             path = f"source[{index}]" if isinstance(system.source, tuple) else "source"
             raise _above(f"{path}.pulse.time", len(source.pulse.time), SAMPLES, "samples")
+
+
+def check_cost(system: System, settings: Settings, *, live: bool) -> None:
+    """Raise InputError for a run that takes more memory or time than one request may, whatever it is that makes it large."""
+    cost, most = run_cost(system, settings), LIVE_COST if live else FULL_COST
+    if cost.memory > most.memory or cost.seconds > most.seconds:
+        found = f"a run of this system at this resolution takes about {words_of(cost.memory)} and {cost.duration}"
+        remedy = f"at most {words_of(most.memory)} and {most.duration} here: fewer orders, absorbers or shells, or a coarser time step"
+        raise InputError("resolution", found, remedy)
 
 
 def check_values(where: str, values: object) -> None:

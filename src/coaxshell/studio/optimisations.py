@@ -131,7 +131,7 @@ class Hand:
     """
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        prepared = None
+        prepared, self._settings = None, settings
         with suppress(InputError):  # an unstable feedback is the baseline's own failure
             prepared = worker.structure(problem.space.base, settings)
         self._structures = Structures(problem.resolution, prepared, worker.report)
@@ -159,6 +159,7 @@ class Hand:
 
     def _solved(self, system: System) -> Response:
         limits.check_system(system)
+        limits.check_cost(system, self._settings, live=False)
         return self._structures.response(system)
 
 

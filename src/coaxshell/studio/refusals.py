@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from starlette.responses import JSONResponse
@@ -43,6 +45,23 @@ def told(error: InputError) -> dict[str, Any]:
     """Return the answer to a description with problems, which is part of the conversation: the first, and all of them."""
     problems = [{"where": one.where, "problem": one.problem, "remedy": one.remedy} for one in (error, *error.also)]
     return {"ok": False, "problem": problems[0], "problems": problems}
+
+
+def internal(where: str) -> dict[str, Any]:
+    """Return the answer to a request at which the server failed."""
+    told = {"code": "internal", "where": where, "problem": "the server failed", "remedy": "its log in the terminal tells more"}
+    return {"error": told}
+
+
+@contextmanager
+def readable(where: str) -> Iterator[None]:
+    """Turn what numbers far out of the usual do to those who read them into an InputError."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (ArithmeticError, LookupError, MemoryError, RecursionError, TypeError, ValueError) as error:
+        raise InputError(where, f"cannot be read ({type(error).__name__})", "give finite numbers of usual size") from None
 
 
 def not_found(what: str) -> RefusedError:

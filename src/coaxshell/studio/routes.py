@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -74,7 +75,10 @@ def _described(data: dict[str, Any]) -> System:
 def wanted(data: dict[str, Any], *, live: bool) -> tuple[System, Settings]:
     """Return system and settings of a request; InputError when they are not allowed."""
     system = descriptions.system_of(data)
-    return system, limits.settings_of(data.get("resolution", "preview"), live=live, system=system)
+    settings = limits.settings_of(data.get("resolution", "preview"), live=live, system=system)
+    with refusals.readable("system"):
+        limits.check_cost(system, settings, live=live)
+    return system, settings
 
 
 async def solve(request: Request) -> Response:
@@ -189,7 +193,7 @@ async def upload(request: Request) -> Response:
         return JSONResponse(refusals.told(error))
     finally:
         path.unlink(missing_ok=True)
-    resolution = {name: settings[name] for name in limits.PREVIEW if name in settings}
+    resolution = {name: value for name in limits.PREVIEW if isinstance(value := settings.get(name), int | float) and math.isfinite(value)}
     return await conversation({"toml": text}, resolution=resolution)
 
 

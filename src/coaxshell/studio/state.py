@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
+import os
 import secrets
-import shutil
+import stat
 import tempfile
 from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from coaxshell.model import System
+from coaxshell.numerics.cache import Cache
+from coaxshell.numerics.scratch import scratch
 from coaxshell.solver.settings import Settings
-from coaxshell.studio import limits, worker
+from coaxshell.studio import limits, memory, worker
 from coaxshell.studio.arrays import Packed
-from coaxshell.studio.cache import Cache
 from coaxshell.studio.jobs import Jobs
 from coaxshell.studio.kept_records import KeptRecords
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.workers import Work, Workers
 
-CURVE_BYTES = 100_000_000
+_LETTER = 6
+"""Bytes that a description takes for each letter of its text, about."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +37,7 @@ class Run:
     name: str
     system: System
     settings: Settings
+    bytes: int
 
     @property
     def pair(self) -> tuple[System, Settings]:
@@ -57,13 +64,14 @@ class Studio:
 
     def __init__(self) -> None:
         self.id = secrets.token_urlsafe(9)
-        self.folder = Path(tempfile.mkdtemp(prefix="coaxshell-studio-"))
+        self._ending = ExitStack()
+        self.folder = self._ending.enter_context(temporary())
         self.workers = Workers()
         self.jobs = Jobs(self.workers)
-        self.curves: Cache[Packed] = Cache(CURVE_BYTES, lambda content: len(content.data) + 4_000)
         self.records = KeptRecords()
+        self.curves: Cache[Packed] = Cache(limits.CURVE_BYTES, lambda content: len(content.data) + 4_000)
         self.closing = False
-        self._runs: OrderedDict[str, Run] = OrderedDict()
+        self._runs: Cache[Run] = Cache(limits.RUN_BYTES, lambda run: run.bytes)
         self._slots: OrderedDict[tuple[str, str], Slot] = OrderedDict()
         self._secret = secrets.token_bytes(32)
 
@@ -71,11 +79,11 @@ class Studio:
         """Return the run of a system at a resolution; its name cannot be guessed, so that no other site can ask for it."""
         text = f"{system.model_dump_json()}{settings}".encode()
         name = hashlib.blake2b(text, key=self._secret, digest_size=16).hexdigest()
-        run = self._runs.setdefault(name, Run(name, system, settings))
-        self._runs.move_to_end(name)
-        if len(self._runs) > limits.RUNS:
-            self._runs.popitem(last=False)
-        return run
+        found = self._runs.get(name)
+        if found is None:
+            found = Run(name, system, settings, _LETTER * len(text) + 4_000)
+            self._runs.put(name, found)
+        return found
 
     def run(self, name: str) -> Run:
         """Return a run by its name; RefusedError when it is not known."""
@@ -115,4 +123,30 @@ class Studio:
         """End the workers and remove the folder."""
         self.close_streams()
         self.workers.close()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        self._ending.close()
+
+    async def rest(self) -> None:
+        """Give memory back whenever nothing has been asked for in a while, as long as the server runs."""
+        rested = True
+        while True:
+            await asyncio.sleep(limits.REST_SECONDS / 8)
+            resting = self.workers.rest(limits.REST_SECONDS)
+            if resting and not rested:
+                self.curves.clear()
+                memory.give_back()
+            rested = resting
+
+
+@contextmanager
+def temporary() -> Iterator[Path]:
+    """Yield a folder of one's own for files; what servers that were killed have left of theirs is removed first."""
+    base = Path(tempfile.gettempdir(), f"coaxshell-studio-{getattr(os, 'getuid', lambda: '')()}")
+    try:
+        base.mkdir(mode=0o700, exist_ok=True)
+        state = base.lstat()
+        if os.name == "posix" and (state.st_uid != os.getuid() or stat.S_IMODE(state.st_mode) != 0o700 or not stat.S_ISDIR(state.st_mode)):
+            raise PermissionError("somebody else's")
+    except OSError:
+        base = Path(tempfile.mkdtemp(prefix="coaxshell-studio-"))
+    with scratch(base) as folder:
+        yield folder

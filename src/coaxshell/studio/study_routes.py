@@ -43,7 +43,8 @@ class Asked(NamedTuple):
 
 def asked(kind: str, data: dict[str, Any]) -> Asked:
     """Return the study that a request asks for; InputError or RefusedError when it cannot start."""
-    return {"sweep": _sweep, "optimise": _optimisation}[kind](data)
+    with refusals.readable(kind):
+        return {"sweep": _sweep, "optimise": _optimisation}[kind](data)
 
 
 def _sweep(data: dict[str, Any]) -> Asked:

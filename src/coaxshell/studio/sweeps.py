@@ -76,6 +76,7 @@ def sweep(system: System, settings: Settings, design: Design, metrics: tuple[Met
 def _case(system: System, settings: Settings, changes: dict[str, Any], metrics: tuple[Metric, ...]) -> Outcome:
     def solved(case: System) -> Response:
         limits.check_system(case)
+        limits.check_cost(case, settings, live=False)
         return worker.answer(case, settings)
 
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import signal
 import threading
@@ -16,15 +17,15 @@ from threadpoolctl import ThreadpoolController
 
 from coaxshell.errors import InputError
 from coaxshell.model import System
+from coaxshell.numerics.cache import Cache, held_bytes
 from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.resolution import Resolution
-from coaxshell.studio import limits
-from coaxshell.studio.cache import Cache, held_bytes
+from coaxshell.studio import limits, memory
 
 STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
-STOP, FRACTION = 0, 1
-"""Places on the shared board: the number of the task to be stopped, and how far the present one is."""
+STOP, FRACTION, HELD, FIRST = range(4)
+"""Places on the shared board: the task to be stopped, how far the present one is, bytes of memory after the last one, and before all."""
 
 
 class Stopped(BaseException):
@@ -50,8 +51,10 @@ class _Here:
 
 
 def begin(board: Any, stage: Any, niceness: int) -> None:
-    """Set up a worker process: Ctrl-C is the server's to handle, and a worker whose server is gone goes too."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Set up a worker process: Ctrl-C and a closed terminal are the server's to handle, and a worker whose server is gone goes too."""
+    for name in ("SIGINT", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     _Here.board, _Here.stage = board, stage
     os.nice(niceness)
     ThreadpoolController().limit(limits=1, user_api="blas")  # the workers share the cores
@@ -69,6 +72,8 @@ def ready() -> int:
     """Import what every task needs, and return the process's number."""
     import coaxshell.plotting.frames  # noqa: F401 - so that the first request need not wait for it
 
+    _Here.board[HELD] = memory.held()
+    _Here.board[FIRST] = _Here.board[FIRST] or _Here.board[HELD]
     return os.getpid()
 
 
@@ -77,6 +82,13 @@ def perform(number: int, task: Callable[..., Any], arguments: tuple[Any, ...]) -
     _Here.number, _Here.part = number, None
     _Here.board[FRACTION] = 0.0
     _Here.stage.value = b""
+    try:
+        return _outcome(task, arguments)
+    finally:
+        _Here.board[HELD] = memory.held()
+
+
+def _outcome(task: Callable[..., Any], arguments: tuple[Any, ...]) -> Outcome:
     try:
         return Outcome("done", task(*arguments))
     except Stopped:
@@ -112,9 +124,14 @@ def part(number: int, count: int, stage: str) -> Iterator[None]:
         _Here.part = None
 
 
-def structure_key(system: System, settings: Settings) -> tuple[str, Settings]:
+def structure_key(system: System, settings: Settings) -> str:
     """Return what names all that does not depend on the absorbers."""
-    return system.replace(absorbers=()).model_dump_json(), settings
+    return answer_key(system.replace(absorbers=()), settings)
+
+
+def answer_key(system: System, settings: Settings) -> str:
+    """Return what names a system at a resolution; short, since a description with a record has hundreds of kilobytes."""
+    return hashlib.blake2b(f"{system.model_dump_json()}{settings}".encode(), digest_size=16).hexdigest()
 
 
 def resolution_of(settings: Settings) -> Resolution:
@@ -124,7 +141,7 @@ def resolution_of(settings: Settings) -> Resolution:
 
 def answer(system: System, settings: Settings) -> Response:
     """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``."""
-    key = (system.model_dump_json(), settings)
+    key = answer_key(system, settings)
     found = _Here.answers.get(key)
     if found is not None:
         return found

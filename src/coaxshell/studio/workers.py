@@ -66,12 +66,18 @@ class _Process:
     executor: ProcessPoolExecutor
     study: bool = False
     work: Work | None = None
+    since: float = field(default_factory=time.monotonic)
     recent: OrderedDict[Hashable, None] = field(default_factory=OrderedDict)
 
     @property
     def told(self) -> tuple[float, bytes]:
         """What the task last reported."""
         return float(self.board[worker.FRACTION]), bytes(self.stage.value)
+
+    @property
+    def grown(self) -> bool:
+        """Whether it holds noticeably more memory than when it was new."""
+        return bool(self.board[worker.HELD] > limits.REST_GROWTH * self.board[worker.FIRST] > 0)
 
     def kill(self) -> None:
         """End it at once, whatever it is at."""
@@ -98,7 +104,7 @@ class Workers:
         self._closed = False
 
     def _started(self, study: bool = False) -> _Process:
-        board, stage = self._context.RawArray("d", [0.0, 0.0]), self._context.RawArray("c", 64)
+        board, stage = self._context.RawArray("d", 4), self._context.RawArray("c", 64)
         executor = ProcessPoolExecutor(
             1, mp_context=self._context, initializer=worker.begin, initargs=(board, stage, STUDY_NICENESS if study else NICENESS)
         )
@@ -147,6 +153,22 @@ class Workers:
         fraction, stage = work.process.told
         return fraction, stage.decode(errors="replace")
 
+    def rest(self, seconds: float) -> bool:
+        """Renew what has been idle for so long and has grown, since a process keeps memory that it has freed; tell whether all rest."""
+        idle = [one for one in self._processes if one.work is None and time.monotonic() - one.since > seconds]
+        for process in idle:
+            if process.grown:
+                self._renew(process, again=not process.study)
+        return len(idle) == len(self._processes)
+
+    def _renew(self, process: _Process, again: bool = True) -> None:
+        """End a process that is at nothing, and start another in its place."""
+        process.executor.shutdown(wait=False)
+        if self._closed or process not in self._processes:
+            return
+        place = self._processes.index(process)
+        self._processes[place : place + 1] = [self._started(process.study)] if again else []
+
     def _feed(self) -> None:
         if self._closed:
             return
@@ -184,9 +206,7 @@ class Workers:
             silent = await _watched(process, work, future)
             outcome: worker.Outcome = await future
         except BrokenProcessPool:
-            process.executor.shutdown(wait=False)
-            if not self._closed and process in self._processes:
-                self._processes[self._processes.index(process)] = self._started(process.study)
+            self._renew(process)
             if work.dropped:
                 work.future.cancel()
             _settle(work, _lost(silent))
@@ -206,7 +226,9 @@ class Workers:
             else:
                 work.future.cancel()
         finally:
-            process.work = None
+            process.work, process.since = None, time.monotonic()
+            if process in self._processes and process.board[worker.HELD] > limits.WORKER_BYTES:
+                self._renew(process)
             self._feed()
 
     def close(self) -> None:

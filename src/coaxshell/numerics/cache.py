@@ -25,6 +25,7 @@ class Cache(Generic[T]):
     def __init__(self, most: int, size: Callable[[T], int]) -> None:
         self.most, self.size = most, size
         self._held: OrderedDict[Hashable, tuple[T, int]] = OrderedDict()
+        self._bytes = 0
 
     def get(self, key: Hashable) -> T | None:
         """Return a value, or None."""
@@ -37,13 +38,18 @@ class Cache(Generic[T]):
     def put(self, key: Hashable, value: T) -> None:
         """Keep a value, or weigh it again; the oldest others leave for it. One that is too large alone is not kept, and they stay."""
         size = self.size(value)
+        self._bytes -= self._held.pop(key, (value, 0))[1]
         if size > self.most:
-            self._held.pop(key, None)
             return
         self._held[key] = (value, size)
-        self._held.move_to_end(key)
-        while self.bytes > self.most:
-            self._held.popitem(last=False)
+        self._bytes += size
+        while self._bytes > self.most:
+            self._bytes -= self._held.popitem(last=False)[1][1]
+
+    def clear(self) -> None:
+        """Let go of everything."""
+        self._held.clear()
+        self._bytes = 0
 
     def latest(self, fits: Callable[[T], bool]) -> T | None:
         """Return the value used last among those that fit, or None."""
@@ -52,7 +58,7 @@ class Cache(Generic[T]):
     @property
     def bytes(self) -> int:
         """Bytes of all that is kept."""
-        return sum(size for _, size in self._held.values())
+        return self._bytes
 
     def __len__(self) -> int:
         return len(self._held)
