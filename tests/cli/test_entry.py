@@ -18,7 +18,7 @@ from coaxshell.cli.app import app
 from coaxshell.cli.progress import progress
 
 COMMANDS = (
-    *("run", "presets", "init", "info", "figure", "snapshots", "animate", "export", "verify", "response-function"),
+    *("run", "presets", "init", "info", "record", "figure", "snapshots", "animate", "export", "verify", "response-function"),
     *("sweep", "optimise", "sensitivity", "reproduce", "studio"),
 )
 

@@ -93,7 +93,7 @@ def test_only_regular_files_are_opened(tmp_path):
         (tmp_path / "pipe.toml", "a pipe or a device"),
         ("/dev/zero", "a pipe or a device"),
         (tmp_path, "a folder"),
-        (large, "at most 16,000,000"),
+        (large, "at most 32,000,000"),
         (tmp_path / "none.toml", "no such file"),
         ("nul\0.toml", "cannot be read"),
         (tmp_path / "latin.toml", "not text in UTF-8"),

@@ -23,6 +23,7 @@ SMALLER = {
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
     "animate": ["--frames", "2", "--size", "80", "--quiet"],
+    "record": ["--force"],
     "export": ["--points", "11", "--quiet"],
     "response-function": ["--duration", "1", "--time-step", "1e-2"],
     "verify": ["--quick", "--only", "disc-limit", "--quiet"],
@@ -67,6 +68,7 @@ def test_the_python_is_ten_lines():
 
 def test_the_commands_run(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "gauge.csv").write_text("time (ms),pressure (kPa)\n0,250\n0.1,120\n1,2\n")
     seen = set()
     for words in commands():
         if words[0] in ONLY_PARSED:

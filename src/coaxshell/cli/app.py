@@ -16,6 +16,7 @@ from coaxshell.cli.init import init
 from coaxshell.cli.optimise import optimise
 from coaxshell.cli.plot import plot
 from coaxshell.cli.presets import presets
+from coaxshell.cli.record import record
 from coaxshell.cli.reproduce import reproduce
 from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
@@ -59,6 +60,7 @@ for _command in (
     presets,
     init,
     info,
+    record,
     plot,
     figure,
     reproduce,

@@ -32,6 +32,16 @@ from coaxshell.model import (
 _SOURCES: tuple[type[Described], ...] = (SphericalShock, PlaneShock, LineShock, UnderwaterExplosion, SphericalWave, PlaneWave, LineWave)
 _PULSES: tuple[type[Described], ...] = (Exponential, Step, Gaussian, Sampled)
 
+_OF_A_RECORD = {
+    "file": "A measured record beside this file: CSV or other text, .mat, .wav; see coaxshell record FILE.",
+    "(time_column)": "Its heading, or its number from 1 on.",
+    "(pressure_column)": "The same; needed where there are several.",
+    "(time_unit)": "Instead of the one in the heading.",
+    "(pressure_unit)": "The same.",
+    "(interval)": "Time between samples where there is no column of times (s).",
+    "(sha256)": "Checksum of the file, verified when it is read.",
+}
+
 _HEAD = """\
 # A scenario for coaxshell; run it by: coaxshell run THIS_FILE
 # Numbers are in SI units, or texts with a unit of their own, such as "6 mm", "70 GPa" or "0.13 ms".
@@ -72,6 +82,9 @@ def _reference() -> Iterator[str]:
     yield "[source.pulse]: the free-field pressure at the head point, for sources that have a pulse"
     for pulse in _PULSES:
         yield from _kind(pulse)
+    yield "    instead of time and pressure:"
+    for name, meaning in _OF_A_RECORD.items():
+        yield f"    {name:<24} {meaning}"
     yield "[absorbers]: a ring of equal absorbers between two shells; or [[absorbers]], one table each, with an angle instead of count"
     yield from _entries(AbsorberRing)
     yield "[control]: piezoelectric feedback from each shell's sensor layer to its actuator layer"

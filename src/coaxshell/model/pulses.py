@@ -11,7 +11,6 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import UNSTATED, Described, shown, stated
-from coaxshell.model.history import read_history
 from coaxshell.model.naming import lookup
 from coaxshell.model.samples import Samples, Series, not_increasing
 from coaxshell.model.units import AnyPressure, AnyTime, Delay, Pressure, Time, quantity, to_si
@@ -190,8 +189,8 @@ class Sampled(Described):
 
     @property
     def _fields(self) -> tuple[Any, ...]:
-        """What the record is: its fields, without what is computed from them."""
-        return tuple(getattr(self, name) for name in type(self).model_fields)
+        """What the record is: its fields, without what is computed from them; where it comes from makes it no other."""
+        return tuple(getattr(self, name) for name in type(self).model_fields if name != "reference")
 
     def __getstate__(self) -> dict[Any, Any]:
         """Travel between processes without what is computed from the fields."""
@@ -207,10 +206,39 @@ class Sampled(Described):
         return cls.model_fields[name].default
 
     @classmethod
-    def from_csv(cls, path: str | Path) -> Self:
-        """Read two columns, time (s) and pressure (Pa), with or without a header line; InputError names the file and line."""
-        time, pressure = read_history(Path(path))
-        return cls(time=time, pressure=pressure)
+    def from_file(cls, path: str | Path, **options: Any) -> Sampled:
+        """Read a record from a CSV or other text file, a MATLAB file (up to version 7) or a sound file.
+
+        Parameters
+        ----------
+        path : str or Path
+        **options
+            ``time_column``, ``pressure_column`` (heading, or number from 1 on), ``time_unit``, ``pressure_unit`` (instead of those in the
+            headings), ``interval`` (s, without a column of times), ``sha256`` of the file, and the other entries of this class.
+
+        Raises
+        ------
+        InputError
+            Naming the file and the line, the column or the option.
+        """
+        from coaxshell.model.records.reader import read_file
+
+        return read_file(path, options)
+
+    @classmethod
+    def from_csv(cls, path: str | Path, **options: Any) -> Sampled:
+        """Read a record from a text file; the same as :meth:`from_file`."""
+        return cls.from_file(path, **options)
+
+    @classmethod
+    def from_data(cls, data: Any, **options: Any) -> Sampled:
+        """Read a record from a pandas Series or DataFrame, an xarray DataArray or Dataset (units in ``attrs``), or an array (n, 2).
+
+        Options as those of :meth:`from_file`; times are the index, or a column called time; InputError says what does not fit.
+        """
+        from coaxshell.model.records.reader import read_data
+
+        return read_data(data, options)
 
 
 Pulse = Exponential | Step | Gaussian | Sampled
@@ -221,20 +249,38 @@ PULSES: dict[str, type[Exponential] | type[Step] | type[Gaussian] | type[Sampled
     "sampled": Sampled,
 }
 
+OF_A_FILE = 'a measured one is {type = "sampled", file = "gauge.csv"}'
+
 
 def as_pulse(value: Any) -> Pulse:
-    """Return a pulse from an instance or a mapping whose ``type`` names it; ``file`` names a CSV of a sampled one."""
+    """Return a pulse from an instance or a mapping whose ``type`` names it; ``file`` names the record of a sampled one."""
     if isinstance(value, Exponential | Step | Gaussian | Sampled):
         return value
     if isinstance(value, Mapping):
         data = dict(value)
         if "type" not in data:
-            raise InputError("type", "is missing", "must be one of " + ", ".join(PULSES))
+            raise InputError("type", "is missing", f"must be one of {', '.join(PULSES)}; {OF_A_FILE}")
         kind = lookup(PULSES, str(data["type"]), "kind of pulse", "type")
-        if kind is Sampled and "file" in data:
-            return Sampled.from_csv(str(data["file"]))
+        if kind is Sampled and ("file" in data or "samples" in data):
+            return _stored(data)
         return kind.model_validate({**data, "type": kind.model_fields["type"].default})
-    raise InputError("", f"{shown(value)} is not a pulse", "give an Exponential, a Step, a Gaussian or a Sampled")
+    raise InputError("", f"{shown(value)} is not a pulse", f"give an Exponential, a Step, a Gaussian or a Sampled; {OF_A_FILE}")
+
+
+def _stored(data: Mapping[str, Any]) -> Sampled:
+    """Return the record of a table that names a file, or holds its samples as one text."""
+    from coaxshell.model.records.reader import read_file
+    from coaxshell.model.records.storing import from_text
+
+    options = {key: value for key, value in data.items() if key not in ("type", "file", "samples")}
+    if "file" not in data:
+        return from_text(data["samples"], options)
+    for key in ("samples", "time", "pressure"):
+        if key in data:
+            raise InputError(key, "has no effect beside file", "give the samples, or the file that holds them")
+    if not isinstance(data["file"], str | Path):
+        raise InputError("file", f"{shown(data['file'])} is no file", "give its name")
+    return read_file(data["file"], options)
 
 
 AnyPulse = Annotated[Exponential | Step | Gaussian | Sampled, BeforeValidator(as_pulse)]

@@ -185,8 +185,11 @@ class System(Described):
         return toml.dumps(self)
 
     def to_toml(self, path: str | Path) -> Path:
-        """Write the system to a TOML file, whole or not at all, and return its path; InputError if it cannot be written."""
-        write_text(path, self.to_toml_string())
+        """Write the system to a TOML file, whole or not at all, and return its path; InputError if it cannot be written.
+
+        A record of more than a thousand samples goes to a CSV file beside it, named in the TOML with its checksum.
+        """
+        write_text(path, toml.dumps(self, beside=Path(path)))
         return Path(path)
 
     @classmethod

@@ -11,6 +11,8 @@ from coaxshell.limits import TOML_BYTES
 from coaxshell.model.base import within
 from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
+from coaxshell.model.pulses import Sampled
+from coaxshell.model.sources import LineWave, PlaneWave, Source, SphericalWave
 from coaxshell.model.toml_text import parsed
 from coaxshell.numerics.reading import decoded, regular_bytes
 
@@ -54,16 +56,32 @@ def resolved(data: dict[str, Any], folder: Path | None = None) -> dict[str, Any]
     return data
 
 
-def dumps(system: System) -> str:
-    """Return TOML text from which an equal system can be read; numbers are plain SI, floats exact."""
+def dumps(system: System, beside: Path | None = None) -> str:
+    """Return TOML text from which an equal system can be read; numbers are plain SI, floats exact.
+
+    The samples of a long record are packed into one text, or, with *beside*, the path of the TOML file to be, written to a file in its
+    folder that the text names with its checksum.
+    """
     import tomli_w
 
-    return tomli_w.dumps(tables(system))
+    data = tables(system, beside)
+    packed: dict[str, str] = {}
+    for source in data["source"] if isinstance(data["source"], list) else [data["source"]]:
+        pulse = source.get("pulse", {})
+        if "samples" in pulse:  # put in afterwards, between marks that spare writer and reader the look at every letter
+            mark = f"samples of {pulse['sha256']}"
+            packed[mark], pulse["samples"] = pulse["samples"], mark
+    text = tomli_w.dumps(data)
+    for mark, samples in packed.items():
+        text = text.replace(f'samples = "{mark}"', f"samples = '{samples}'")
+    return text
 
 
-def tables(system: System) -> dict[str, Any]:
+def tables(system: System, beside: Path | None = None) -> dict[str, Any]:
     """Return what :func:`dumps` writes, as nested tables."""
     data = _plain(system)
+    written = [_source(source, beside) for source in system.sources]
+    data["source"] = written if isinstance(system.source, tuple) else written[0]
     keys: dict[str, Material] = {}
     for shell, written in zip(system.shells, data["shells"], strict=True):
         for layer, entry in zip(getattr(shell, "layers", ()), written.get("layers", ()), strict=True):
@@ -77,7 +95,7 @@ def tables(system: System) -> dict[str, Any]:
 def canonical(system: System) -> dict[str, Any]:
     """Return the physics of a system as plain data: no names, no references, a ring written out as its absorbers."""
     data = _plain(system)
-    data["source"] = [_plain(source) for source in system.sources]
+    data["source"] = [_source(source, None, hashed=True) for source in system.sources]
     data["absorbers"] = [_plain(absorber) for absorber in system.absorber_list]
     if system.control is not None:
         data["control"]["shells"] = list(system.controlled_shells)
@@ -86,7 +104,23 @@ def canonical(system: System) -> dict[str, Any]:
 
 def _plain(model: System | Material | Any) -> dict[str, Any]:
     """Return a model as plain data without what is unset or empty; ``type`` stays, since it tells the kind."""
+    from coaxshell.model.system import System
+
+    if isinstance(model, System):  # sources are written by themselves: their records may be long
+        return _pruned({**model.model_dump(mode="json", exclude={"source"}), "source": {}})  # type: ignore[no-any-return]
     return _pruned(model.model_dump(mode="json"))  # type: ignore[no-any-return]
+
+
+def _source(source: Source, beside: Path | None, *, hashed: bool = False) -> dict[str, Any]:
+    """Return a source as plain data, its record as a table of its own: for a hash no more than what it means."""
+    if not (isinstance(source, SphericalWave | PlaneWave | LineWave) and isinstance(source.pulse, Sampled)):
+        return _plain(source)
+    data: dict[str, Any] = _pruned(source.model_dump(mode="json", exclude={"pulse"}))
+    if hashed:
+        return {**data, "pulse": {"type": "sampled", "curve": source.pulse.digest}}
+    from coaxshell.model.records import storing
+
+    return {**data, "pulse": storing.table(source.pulse, *(storing.write(source.pulse, beside) if beside is not None else ()))}
 
 
 def _pruned(value: Any) -> Any:

@@ -170,9 +170,11 @@ _LONGEST_UNIT = 64
 # pint computes the numbers in a unit exactly: "9**9**9**9" would take it for ever. Units need no powers of numbers, nor large exponents.
 _ENDLESS = re.compile(r"[\d⁰¹²³⁴-⁹]{3,}|[\d⁰¹²³⁴-⁹]\s*\)*\s*(\*\*|\^)")
 
+_STRANGE = re.compile(r"[,;:=!?@#$&|~<>{}\[\]\"'\\`]")  # the parser of units passes over some of these
+
 
 def _parsed(unit: str) -> Any | None:
-    if len(unit) > _LONGEST_UNIT or _ENDLESS.search(unit):
+    if len(unit) > _LONGEST_UNIT or _ENDLESS.search(unit) or _STRANGE.search(unit):
         return None
     try:
         return _registry().parse_units(_tidied(unit), as_delta=True)

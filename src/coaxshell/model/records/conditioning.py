@@ -36,7 +36,8 @@ def conditioned(record: Sampled) -> tuple[FloatArray, FloatArray]:
         An option leaves nothing of the record, or does not fit it.
     """
     time = np.asarray(record.time)
-    pressure = record.scale * np.asarray(record.pressure) - record.offset
+    with np.errstate(over="ignore"):  # told below
+        pressure = record.scale * np.asarray(record.pressure) - record.offset
     if not np.isfinite(pressure).all():
         raise InputError("scale", f"{record.scale!r} makes pressures that are not finite", "give a smaller one")
     if record.baseline is not None:
