@@ -53,7 +53,7 @@ def test_version(run):
 def test_unknown_command(refused):
     message = refused("solve")
     assert "'solve'" in message
-    assert "allowed: run, presets, init, info, figure" in message
+    assert "allowed: run, presets, init, info, record, figure" in message
 
 
 def test_unknown_option(refused):
