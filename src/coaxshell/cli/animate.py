@@ -12,6 +12,7 @@ from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
+from coaxshell.cli.streams import echo
 
 
 @with_resolution
@@ -67,4 +68,4 @@ def animate(
             progress=report,
         )
     tell_all_warnings(responses)
-    typer.echo(f"wrote {target}: {frames} frames, {frames / fps:.3g} s")
+    echo(f"wrote {target}: {frames} frames, {frames / fps:.3g} s")

@@ -22,6 +22,7 @@ from coaxshell.cli.response_function import response_function
 from coaxshell.cli.run import run
 from coaxshell.cli.sensitivity import sensitivity
 from coaxshell.cli.snapshots import snapshots
+from coaxshell.cli.streams import echo
 from coaxshell.cli.studio import studio
 from coaxshell.cli.sweep import sweep
 from coaxshell.cli.verify import verify
@@ -35,7 +36,7 @@ app = typer.Typer(
 
 def _print_version(asked: bool) -> None:
     if asked:
-        typer.echo(f"coaxshell {__version__}")
+        echo(f"coaxshell {__version__}")
         raise typer.Exit
 
 
@@ -52,7 +53,7 @@ def coaxshell(
     Start with: coaxshell run bare
     """
     if context.invoked_subcommand is None:
-        typer.echo(context.get_help())
+        typer.echo(context.get_help())  # its colours are our own
 
 
 for _command in (

@@ -6,9 +6,8 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-import typer
-
 from coaxshell.cli.scenario import load_system
+from coaxshell.cli.streams import echo, printable
 from coaxshell.cli.tables import tell_warnings
 
 if TYPE_CHECKING:
@@ -48,7 +47,7 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
     """Print two named runs side by side on stdout and their warnings on stderr."""
     (first, second), summaries = responses, [response.summary() for response in responses.values()]
     rows = comparison_rows(*summaries)
-    title = f"{first} against {second}"
+    title = printable(f"{first} against {second}")
     header = ("shell", "largest magnitude", first, second, "reduction")
     notes = [f"{name}: {_run(summary)}" for name, summary in zip(responses, summaries, strict=True)]
     if sys.stdout.isatty():
@@ -58,15 +57,15 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
 
         table = Table(title=escape(title), title_justify="left", title_style="bold", box=None, pad_edge=False)
         for number, heading in enumerate(header):
-            table.add_column(escape(heading), justify="left" if number < 2 else "right", no_wrap=number > 1)
+            table.add_column(escape(printable(heading)), justify="left" if number < 2 else "right", no_wrap=number > 1)
         for row in rows:
             table.add_row(*map(escape, row))
         Console().print(table)
     else:
         from coaxshell.response.summary_text import aligned
 
-        typer.echo("\n".join([title, "", *aligned([header, *rows], left=2)]))
-    typer.echo("\n" + "\n".join(notes))
+        echo("\n".join([title, "", *aligned([header, *rows], left=2)]))
+    echo("\n" + "\n".join(notes))
     for name, summary in zip(responses, summaries, strict=True):
         tell_warnings(f"{name}: {text}" for text in summary.warnings)
 

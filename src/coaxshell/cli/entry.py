@@ -1,21 +1,24 @@
 """From the arguments of the process to its exit code: every failure becomes one line on stderr.
 
-Exit codes: 0 done, 2 bad input, 130 interrupted, 1 anything else.
+Exit codes: 0 done, 2 bad input, 130 interrupted, 141 nobody reads what is printed (as with ``| head``), 1 anything else.
 """
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 import traceback
 from collections.abc import Sequence
 from typing import Any
 
 from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.streams import give_up_stdout, prepare_streams, printable
 from coaxshell.cli.usage import is_usage_error, usage_text
 from coaxshell.cli.warnings import plain_physics_warnings
 from coaxshell.errors import InputError
 
-DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+DONE, FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS = 0, 1, 2, 130, 141
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -26,14 +29,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv : sequence of str, optional
         The arguments without the program's name; those of the process when left out.
     """
+    prepare_streams()
     arguments = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in arguments
     arguments = [argument for argument in arguments if argument != "--debug"]
     try:
         with plain_physics_warnings():
             code = _invoke(arguments)
+        sys.stdout.flush()
     except KeyboardInterrupt:
         code = INTERRUPTED
+    except BrokenPipeError:
+        give_up_stdout()
+        return NOBODY_READS
     except BaseException as error:  # noqa: BLE001  (the last stop before the user's terminal)
         return _explain(error, debug)
     if code == INTERRUPTED:
@@ -53,6 +61,9 @@ def _invoke(arguments: list[str]) -> int:
 def _explain(error: BaseException, debug: bool) -> int:
     if debug:
         traceback.print_exception(error)
+    if isinstance(error, SystemExit) and isinstance(error.__context__, BrokenPipeError):  # the argument parser's way
+        give_up_stdout()
+        return NOBODY_READS
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else FAILED
     if isinstance(error, Interrupted):
@@ -67,10 +78,14 @@ def _explain(error: BaseException, debug: bool) -> int:
     if type(error).__name__ == "Abort":
         _complain("interrupted; nothing was left behind")
         return INTERRUPTED
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EBADF, errno.EIO) and error.filename is None:
+        give_up_stdout()  # every writer of files has its own words: this was the text
+        _complain(f"cannot print: {os.strerror(error.errno).lower()}")
+        return FAILED
     hint = "" if debug else " (run again with --debug to see where)"
     _complain(f"unexpected {type(error).__name__}: {error}{hint}")
     return FAILED
 
 
 def _complain(text: str) -> None:
-    sys.stderr.write("error: " + " ".join(text.split()) + "\n")
+    sys.stderr.write("error: " + printable(" ".join(text.split())) + "\n")

@@ -12,6 +12,7 @@ from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
+from coaxshell.cli.streams import echo
 from coaxshell.cli.times import times as read_times
 from coaxshell.errors import InputError
 
@@ -61,7 +62,7 @@ def export(
         else:
             {"csv": export_csv, "mat": export_mat}[to](response, target)
     tell_all_warnings([response])
-    typer.echo(f"wrote {target}" + (": open field.pvd and shells.pvd in ParaView" if to == "paraview" else ""))
+    echo(f"wrote {target}" + (": open field.pvd and shells.pvd in ParaView" if to == "paraview" else ""))
 
 
 def _target(source: str, to: str, output: Path | None, force: bool) -> Path:

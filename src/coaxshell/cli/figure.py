@@ -13,6 +13,7 @@ from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
+from coaxshell.cli.streams import echo
 from coaxshell.cli.tables import tell_warnings
 from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
@@ -67,7 +68,7 @@ def figure(
             drawn = recipe.draw(responses, report)
         save_figure(drawn, target)
         tell_all_warnings(responses)
-    typer.echo(f"wrote {target}: {recipe.title}")
+    echo(f"wrote {target}: {recipe.title}")
 
 
 def _draw_study(

@@ -7,13 +7,15 @@ from typing import Annotated
 
 import typer
 
+from coaxshell.cli.streams import echo
+
 
 def info(file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="A run saved by coaxshell run --output.")]) -> None:
     """Tell what a saved run holds."""
     from coaxshell import response
 
-    typer.echo(response.info(file).rstrip())
-    typer.echo("")
+    echo(response.info(file).rstrip())
+    echo()
 
     from coaxshell.cli.tables import print_summary
 

@@ -9,6 +9,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
+from coaxshell.cli.streams import echo
 from coaxshell.cli.values import named_as_options
 from coaxshell.numerics.files import write_text
 
@@ -25,4 +26,4 @@ def init(
         text = scenario_text(preset)
     target = Outputs(force).file(file, "FILE", (".toml",))
     write_text(target, text, "FILE")
-    typer.echo(f"wrote {target}; next: coaxshell run {target}")
+    echo(f"wrote {target}; next: coaxshell run {target}")

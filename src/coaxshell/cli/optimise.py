@@ -11,6 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.streams import echo
 from coaxshell.cli.studying import study_options, tell_code
 
 
@@ -67,8 +68,8 @@ def optimise(
         from coaxshell.plotting import figure_optimum, save_figure
 
         save_figure(figure_optimum(optimum), figure)
-    typer.echo(str(optimum))
-    typer.echo(f"wrote {target}" + (f", {figure}" if figure is not None else ""))
+    echo(str(optimum))
+    echo(f"wrote {target}" + (f", {figure}" if figure is not None else ""))
     if not optimum.complete:
         done = len(optimum.history)
         raise Interrupted(

@@ -11,6 +11,7 @@ from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.solving import Request, with_resolution
+from coaxshell.cli.streams import echo
 
 
 @with_resolution
@@ -59,4 +60,4 @@ def plot(
         drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)
     save_figure(drawn, target)
     tell_all_warnings(responses)
-    typer.echo(f"wrote {target}")
+    echo(f"wrote {target}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-import typer
+from coaxshell.cli.streams import echo
 
 
 def presets() -> None:
@@ -13,7 +13,7 @@ def presets() -> None:
 
     width = max(len(name) for name in library.names())
     for name in library.names():
-        typer.echo(f"{name:<{width}}  {description(library.text(name))}")
+        echo(f"{name:<{width}}  {description(library.text(name))}")
 
 
 def description(text: str) -> str:

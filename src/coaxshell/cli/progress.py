@@ -7,6 +7,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from coaxshell.cli.streams import printable
+
 Report = Callable[[float, str], None]
 
 _LINES = 10
@@ -41,7 +43,7 @@ def _bar(left: bool) -> Iterator[Report]:
         task = bar.add_task("solving", total=1.0)
 
         def report(fraction: float, stage: str) -> None:
-            bar.update(task, completed=fraction, description=stage)
+            bar.update(task, completed=fraction, description=printable(stage))
 
         yield report
 
@@ -58,7 +60,7 @@ def _lines(left: bool) -> Report:
         if tenth > last.get(name, 0):
             last[name] = tenth
             told = f", {_time_left(*begun[name], fraction)} left" if left and fraction > begun[name][1] else ""
-            sys.stderr.write(f"{name}: {100 * tenth // _LINES} %{told}{f', {news}' if news else ''}\n")
+            sys.stderr.write(printable(f"{name}: {100 * tenth // _LINES} %{told}{f', {news}' if news else ''}\n"))
             sys.stderr.flush()
 
     return report

@@ -11,6 +11,7 @@ import typer
 from coaxshell.cli import options, values
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.progress import progress
+from coaxshell.cli.streams import echo
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def reproduce(
         raise Interrupted(f"interrupted; finished parts are kept in {str(output)!r}: the same command goes on") from None
     paths = write(found, output)
     _tell(found)
-    typer.echo("wrote " + ", ".join(str(path) for path in paths))
+    echo("wrote " + ", ".join(str(path) for path in paths))
 
 
 def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Resolution:
@@ -87,5 +88,5 @@ def _tell(found: Results) -> None:
 
     for name in VARIANTS if found.judged else ():
         tally = found.tally(name)
-        typer.echo(f"claims, {name}: " + ", ".join(f"{count} {verdict}" for verdict, count in tally.items()))
-    typer.echo(f"{len(found.figures)} figures, {len(found.seconds)} parts in {found.elapsed:.0f} s")
+        echo(f"claims, {name}: " + ", ".join(f"{count} {verdict}" for verdict, count in tally.items()))
+    echo(f"{len(found.figures)} figures, {len(found.seconds)} parts in {found.elapsed:.0f} s")

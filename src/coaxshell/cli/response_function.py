@@ -9,6 +9,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
+from coaxshell.cli.streams import echo
 from coaxshell.cli.values import named_as_options, number
 from coaxshell.errors import InputError
 
@@ -64,7 +65,7 @@ def response_function(
         from coaxshell.plotting.saving import save_figure
 
         save_figure(figure_response_functions(found, orders), target)
-    typer.echo(f"wrote {target}: {region} response function, orders {', '.join(map(str, orders))}")
+    echo(f"wrote {target}: {region} response function, orders {', '.join(map(str, orders))}")
 
 
 def _orders(text: str, most: int | None) -> list[int]:

@@ -11,6 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.solving import Request, with_resolution
+from coaxshell.cli.streams import echo
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -72,7 +73,7 @@ def run(
         print_summary(responses[0])
     for word, path in (("saved", output), ("wrote", figure), ("wrote", energy)):
         if path is not None:
-            typer.echo(f"{word} {path}")
+            echo(f"{word} {path}")
 
 
 def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:

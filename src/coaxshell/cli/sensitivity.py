@@ -11,6 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
+from coaxshell.cli.streams import echo
 from coaxshell.cli.studying import study_options, tell_code
 
 
@@ -53,5 +54,5 @@ def sensitivity(
         save_figure(figure_sensitivity(found), figure)
     if store is None and told(found):
         shutil.rmtree(folder, ignore_errors=True)
-    typer.echo(found_text(found))
-    typer.echo(f"wrote {target}" + (f", {figure}" if figure is not None and told(found) else ""))
+    echo(found_text(found))
+    echo(f"wrote {target}" + (f", {figure}" if figure is not None and told(found) else ""))

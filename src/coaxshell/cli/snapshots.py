@@ -12,6 +12,7 @@ from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
+from coaxshell.cli.streams import echo
 from coaxshell.cli.times import times as read_times
 from coaxshell.errors import InputError
 
@@ -67,4 +68,4 @@ def snapshots(
         )
     save_figure(figure, target)
     tell_all_warnings(responses)
-    typer.echo(f"wrote {target}")
+    echo(f"wrote {target}")

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from coaxshell.cli.streams import echo
 from coaxshell.errors import InputError
 
 PORT = 8765
@@ -40,7 +41,7 @@ def studio(
     from coaxshell.studio.server import serve
 
     def ready(address: str) -> None:
-        typer.echo(f"coaxshell studio: {address}  (Ctrl-C ends it)")
+        echo(f"coaxshell studio: {address}  (Ctrl-C ends it)")
         if not no_browser and _has_display():
             import webbrowser
 

@@ -11,6 +11,7 @@ import typer
 from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
+from coaxshell.cli.streams import echo
 from coaxshell.cli.studying import study_options, tell_code
 from coaxshell.errors import InputError
 
@@ -74,5 +75,5 @@ def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | N
 def _tell(dataset: xr.Dataset, *paths: Path | None) -> None:
     from coaxshell.studies.table import best_cases
 
-    typer.echo(best_cases(dataset))
-    typer.echo("wrote " + ", ".join(str(path) for path in paths if path is not None))
+    echo(best_cases(dataset))
+    echo("wrote " + ", ".join(str(path) for path in paths if path is not None))

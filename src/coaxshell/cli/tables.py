@@ -8,8 +8,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-import typer
-
+from coaxshell.cli.streams import echo, printable
 from coaxshell.errors import PhysicsWarning
 
 if TYPE_CHECKING:
@@ -31,9 +30,9 @@ def print_summary(response: Response) -> None:
 
         console = Console()
         console.print(summary_table(summary))
-        console.print("\n".join(notes(summary.to_dict())), markup=False, highlight=False)
+        console.print("\n".join(printable(note) for note in notes(summary.to_dict())), markup=False, highlight=False)
     else:
-        typer.echo(str(summary).rstrip())
+        echo(str(summary).rstrip())
     tell_warnings(whole.warnings)
 
 
@@ -51,7 +50,7 @@ def summary_table(summary: Summary) -> Table:
 
     from coaxshell.response.summary_text import ROWS
 
-    title, run, *_ = str(summary).splitlines()
+    title, run, *_ = printable(str(summary)).splitlines()
     table = Table(title=f"{escape(title)}\n[not bold]{escape(run)}[/]", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
     table.add_column("shell", style="bold")
     table.add_column("largest magnitude")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options, values
+from coaxshell.cli.streams import echo
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def _list() -> None:
     known = checks()
     width = max(len(one.name) for one in known)
     for one in known:
-        typer.echo(f"{one.name:{width}}  {one.title}")
+        echo(f"{one.name:{width}}  {one.title}")
 
 
 def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet: bool) -> None:
@@ -104,7 +105,7 @@ def _template(case: str, path: Path, modes: int, force: bool) -> None:
     system = load_system(case, where="--case")
     Outputs(force).file(path, "--template", (".csv",))
     template(system, path, modes=modes)
-    typer.echo(f"wrote {path}")
+    echo(f"wrote {path}")
 
 
 def _folder(output: Path, force: bool) -> Path:
@@ -136,7 +137,7 @@ def _tell(found: Report, output: Path) -> None:
 
         Console().print(*drawn(found), sep="\n")
     else:
-        typer.echo(plain(found))
-    typer.echo("wrote " + ", ".join(str(path) for path in paths))
+        echo(plain(found))
+    echo("wrote " + ", ".join(str(path) for path in paths))
     if found.failed:
         raise typer.Exit(1)

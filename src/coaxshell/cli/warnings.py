@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+from coaxshell.cli.streams import printable
 from coaxshell.errors import PhysicsWarning
 
 
@@ -27,7 +28,7 @@ def plain_physics_warnings() -> Iterator[None]:
             text = " ".join(str(message).split())
             if text not in said:
                 said.add(text)
-                sys.stderr.write(f"warning: {text}\n")
+                sys.stderr.write(printable(f"warning: {text}\n"))
 
         warnings.simplefilter("always", PhysicsWarning)
         warnings.showwarning = show

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.scales import common_scales
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -120,12 +121,15 @@ def _wall(responses: Mapping[str, Response], end: str) -> str:
 
 def _title(names: list[str], quantity: str) -> str:
     what = QUANTITIES[quantity].label.partition(" (")[0].capitalize()
-    return f"{what}: {names[0]}" + (f" against {' and '.join(names[1:])}" if len(names) > 1 else "")
+    return f"{what}: {literal(names[0])}" + (f" against {' and '.join(map(literal, names[1:]))}" if len(names) > 1 else "")
 
 
 def _legend(names: list[str]) -> list[Any]:
     from matplotlib.lines import Line2D
 
-    lines = [Line2D([], [], color=COLOURS[colour], linestyle=dash, label=name) for (colour, dash), name in zip(_LOOKS, names, strict=False)]  # type: ignore[arg-type]
+    lines = [
+        Line2D([], [], color=COLOURS[colour], linestyle=dash, label=literal(name))  # type: ignore[arg-type]
+        for (colour, dash), name in zip(_LOOKS, names, strict=False)
+    ]
     circle = Line2D([], [], color=COLOURS["grey"], marker="o", markerfacecolor="none", linestyle="none", label="largest magnitude")
     return [*lines, circle]

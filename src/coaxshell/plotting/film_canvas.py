@@ -19,6 +19,7 @@ from coaxshell.plotting.field_scales import (
     stress_unit,
 )
 from coaxshell.plotting.frames import FieldView, Frames
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import style
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ class Canvas:
             size = 9.0 * self._zoom
             for left, name in zip(self._left, names, strict=True):
                 right, height = (left + self.view.pixels) / self.width, 1.0 - 0.5 * self._top / self.height
-                figure.text(right, height, _shortened(name), ha="right", va="center", fontsize=1.15 * size, fontweight="bold")
+                figure.text(right, height, literal(_shortened(name)), ha="right", va="center", fontsize=1.15 * size, fontweight="bold")
             bars = (
                 (self.scales.pressure, pressure_unit(responses[0], units, self.scales.pressure), PRESSURE_COLOURS),
                 (self.scales.stress, stress_unit(self.scales.stress), STRESS_COLOURS),

@@ -6,11 +6,14 @@ from io import BytesIO
 
 from matplotlib.figure import Figure
 
+from coaxshell.plotting.style import style
+
 
 class NotebookFigure(Figure):
     """A matplotlib figure outside pyplot: as the last line of a notebook's cell it appears as an image."""
 
     def _repr_png_(self) -> bytes:
         target = BytesIO()
-        self.savefig(target, format="png", dpi=self.dpi)
+        with style():
+            self.savefig(target, format="png", dpi=self.dpi)
         return target.getvalue()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 from coaxshell.plotting.units import scale
 
@@ -70,7 +71,7 @@ def plot_convergence(optimum: Optimum, ax: Axes) -> Axes:
         ax.set_ylim(bottom - 0.06 * (top - bottom or 1), top + 0.08 * (top - bottom or 1))
     ax.set_xlim(0, len(numbers))
     ax.set_xlabel("evaluations")
-    ax.set_ylabel(f"{goal.name} ({unit})" if unit else goal.name)
+    ax.set_ylabel(f"{literal(goal.name)} ({unit})" if unit else literal(goal.name))
     _legend(ax)
     return ax
 
@@ -102,7 +103,7 @@ def plot_front(optimum: Optimum, ax: Axes) -> Axes:
         bottom = float(best[:, 1].min())
         ax.set_ylim(bottom - 0.06 * (top - bottom or 1), top + 0.06 * (top - bottom or 1))
     for axis, target, (_, unit) in ((ax.xaxis, across, scales[0]), (ax.yaxis, up, scales[1])):
-        axis.set_label_text(f"{target.name} ({unit})" if unit else target.name)
+        axis.set_label_text(f"{literal(target.name)} ({unit})" if unit else literal(target.name))
     _legend(ax)
     return ax
 
@@ -126,7 +127,7 @@ def plot_parallel(optimum: Optimum, ax: Axes) -> Axes:
     ax.plot(where, shares(optimum.best), color=COLOURS["blue"], linewidth=1.8, marker="o", markersize=4, label="best")
     ax.plot(where, shares(optimum.baseline), color=COLOURS["orange"], linestyle="none", marker="*", markersize=8, label="baseline")
     few = len(variables) <= 8
-    names = [_interval(v) if few else v.name for v in variables]
+    names = [literal(_interval(v) if few else v.name) for v in variables]
     ax.set_xticks(where, names, rotation=0 if few else 45, ha="center" if few else "right", fontsize=7 if few else 6)
     ax.set_xlim(-0.4, len(variables) - 0.6)
     ax.set_ylim(-0.04, 1.04)

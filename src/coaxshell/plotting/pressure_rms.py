@@ -9,6 +9,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.plotting.histories import TIME_LABEL
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.snapshots import headings
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -53,7 +54,8 @@ def figure_pressure_rms(*responses: Response, radius: float = 3.0, names: Sequen
             _panel(ax, [response.pressure_rms(region, within) for response in responses])
             ax.set_title(title, loc="left", fontweight="bold")
         lines = axes[0].lines
-        figure.legend(handles=lines, labels=headings(responses, names), loc="outside lower center", ncols=len(lines))
+        labels = [literal(name) for name in headings(responses, names)]
+        figure.legend(handles=lines, labels=labels, loc="outside lower center", ncols=len(lines))
     return figure
 
 

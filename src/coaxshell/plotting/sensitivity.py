@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 from coaxshell.plotting.units import scale
 
@@ -60,6 +61,7 @@ def figure_sensitivity(dataset: xr.Dataset, metrics: Sequence[str] = ()) -> Figu
     return figure
 
 
+@style()
 def plot_sensitivity(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes:
     """Draw the first- and total-order indices of one metric as bars with their intervals, and return the axes.
 
@@ -74,24 +76,24 @@ def plot_sensitivity(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -
             "metric", f"{metric!r} has no indices", "give one that varies, of a study with indices none of whose runs has failed"
         )
     if ax is None:
-        with style():
-            ax = new_figure(0.72 * PAGE_WIDTH, 1.2 + 0.3 * dataset.sizes["field"]).subplots()
+        ax = new_figure(0.72 * PAGE_WIDTH, 1.2 + 0.3 * dataset.sizes["field"]).subplots()
     places = np.arange(dataset.sizes["field"])
     for name, label, colour, side in _ORDERS:
         value, low, high = dataset[name].sel(metric=metric).to_numpy().T
         reach = np.maximum(np.stack([value - low, high - value]), 0.0)
         bars = {"ecolor": "#333333", "capsize": 2.0, "error_kw": {"elinewidth": 0.8, "capthick": 0.8}}
         ax.barh(places + side * _HALF, value, _HALF, xerr=reach, color=COLOURS[colour], label=label, **bars)  # type: ignore[arg-type]
-    ax.set_yticks(places, [str(path) for path in dataset["field"].to_numpy()])
+    ax.set_yticks(places, [literal(str(path)) for path in dataset["field"].to_numpy()])
     ax.set_ylim(len(places) - 0.4, -0.6)  # the first field on top
     ax.set_xlim(min(0.0, ax.get_xlim()[0]), max(1.0, ax.get_xlim()[1]))
     ax.axvline(0.0, color="#333333", linewidth=0.6)
     ax.grid(visible=False, axis="y")
     ax.set_xlabel("share of the variance")
-    ax.set_title(f"{metric}", loc="left")
+    ax.set_title(literal(metric), loc="left")
     return ax
 
 
+@style()
 def plot_distribution(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes:
     """Draw how one metric is distributed over the runs, with its mean and percentiles and their intervals; return the axes.
 
@@ -107,8 +109,7 @@ def plot_distribution(dataset: xr.Dataset, metric: str, ax: Axes | None = None) 
             "metric", f"{metric!r} has no distribution, since runs have failed", "see the variable failure for why, and resume the study"
         )
     if ax is None:
-        with style():
-            ax = new_figure(0.62 * PAGE_WIDTH, 2.6).subplots()
+        ax = new_figure(0.62 * PAGE_WIDTH, 2.6).subplots()
     factor, unit = scale(values, str(dataset[metric].attrs.get("units", "")))
     shares = (np.arange(values.size) + 0.5) / values.size
     ax.step(factor * np.sort(values), 100 * shares, where="mid", color=COLOURS["blue"], label="runs")
@@ -120,9 +121,9 @@ def plot_distribution(dataset: xr.Dataset, metric: str, ax: Axes | None = None) 
     mean = float(factor * dataset[metric].sel(statistic="mean", estimate="value"))
     ax.axvline(mean, color=COLOURS["grey"], linestyle=(0, (4, 1.5)), label="mean")
     ax.set_ylim(0, 100)
-    ax.set_xlabel(f"{metric} ({unit})" if unit else metric)
+    ax.set_xlabel(f"{literal(metric)} ({unit})" if unit else literal(metric))
     ax.set_ylabel("runs below (%)")
-    ax.set_title(textwrap.fill(str(dataset[metric].attrs.get("long_name", "")), _TITLE), loc="left")
+    ax.set_title(textwrap.fill(literal(str(dataset[metric].attrs.get("long_name", ""))), _TITLE), loc="left")
     ax.legend(loc="lower right")
     return ax
 

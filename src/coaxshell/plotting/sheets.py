@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import new_figure
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class Sheet:
         for column in range(self.columns):
             for member, name in enumerate(names):
                 centre = _LEFT + column * self.pitch + member * (PANEL + _GAP) + 0.5 * PANEL
-                self._text(figure, centre, height, name, weight="bold")
+                self._text(figure, centre, height, literal(name), weight="bold")
 
     def bars(self, figure: Figure) -> list[Axes]:
         """Add and return the axes of two horizontal colour bars: one above the other in the free cells, or side by side below."""

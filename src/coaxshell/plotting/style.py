@@ -57,10 +57,12 @@ _SETTINGS: Mapping[str, object] = MappingProxyType(
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Draw in the package's style inside a ``with`` block; the caller's settings are as before afterwards."""
+    """Draw in the package's style inside a ``with`` block, whatever the user's own settings are; they are as before afterwards."""
     import matplotlib as mpl
 
-    with mpl.rc_context(dict(_SETTINGS)):  # type: ignore[arg-type]
+    with mpl.rc_context():
+        mpl.rcdefaults()  # a matplotlibrc may ask for TeX, other fonts, a transparent ground
+        mpl.rcParams.update(_SETTINGS)  # type: ignore[arg-type]
         yield
 
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 from coaxshell.plotting.units import pretty, scale
 
@@ -54,6 +55,7 @@ def figure_sweep(dataset: xr.Dataset, metrics: Sequence[str] = ()) -> Figure:
     return figure
 
 
+@style()
 def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes:
     """Draw one metric of a sweep and return the axes: a curve or points over one field, a map or coloured points over two.
 
@@ -72,11 +74,10 @@ def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes
     if not 1 <= len(fields) <= 2:
         raise InputError("sweep", f"{len(fields)} fields vary", "one or two can be drawn: take a slice, as in dataset.sel(...)")
     if ax is None:
-        with style():
-            ax = new_figure(0.62 * PAGE_WIDTH, 2.9).subplots()
+        ax = new_figure(0.62 * PAGE_WIDTH, 2.9).subplots()
     factor, unit = scale(values.to_numpy(), str(values.attrs.get("units", "")))
     scaled = factor * values.to_numpy()
-    label = f"{metric} ({unit})" if unit else metric
+    label = f"{literal(metric)} ({unit})" if unit else literal(metric)
     if len(fields) == 1:
         x = _axis(ax.xaxis, dataset[fields[0]])
         order = np.argsort(x, kind="stable")
@@ -85,7 +86,7 @@ def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes
         ax.set_ylabel(label)
     else:
         _two(ax, dataset, fields, scaled, label, mapped=values.dims != (CASE,))
-    ax.set_title(textwrap.fill(str(values.attrs.get("long_name", "")), _TITLE), loc="left")
+    ax.set_title(textwrap.fill(literal(str(values.attrs.get("long_name", ""))), _TITLE), loc="left")
     return ax
 
 
@@ -119,15 +120,15 @@ def _edges(centres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 def _axis(axis: object, coordinate: xr.DataArray) -> npt.NDArray[np.float64]:
     """Label an axis with a field; return its values, those that are no numbers as 0, 1, ... with their names at the ticks."""
-    unit = pretty(str(coordinate.attrs.get("units", "1")))
+    name, unit = literal(str(coordinate.name)), pretty(str(coordinate.attrs.get("units", "1")))
     raw = coordinate.to_numpy()
     if raw.dtype.kind in "OUb":
         names = list(dict.fromkeys(str(value) for value in raw))
-        axis.set_ticks(range(len(names)), names)  # type: ignore[attr-defined]
-        axis.set_label_text(str(coordinate.name))  # type: ignore[attr-defined]
+        axis.set_ticks(range(len(names)), [literal(name) for name in names])  # type: ignore[attr-defined]
+        axis.set_label_text(name)  # type: ignore[attr-defined]
         return np.array([names.index(str(value)) for value in raw], dtype=np.float64)
     values = raw.astype(np.float64)
-    axis.set_label_text(str(coordinate.name) if unit == "1" else f"{coordinate.name} ({unit})")  # type: ignore[attr-defined]
+    axis.set_label_text(name if unit == "1" else f"{name} ({unit})")  # type: ignore[attr-defined]
     if _logarithmic(values):
         axis._set_axes_scale("log")  # type: ignore[attr-defined]
     return values

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, new_figure, style
 from coaxshell.verification.rows import Curve, Panel, Sheet
 
@@ -58,7 +59,7 @@ def draw(ax: Axes, panel: Panel, *, legend: bool = True) -> Axes:
         for curve in panel.curves:
             ax.plot(curve.x, curve.y, ".", color="#444444", markersize=2.5)
     if panel.title:
-        ax.set_title(panel.title)
+        ax.set_title(literal(panel.title))
     ax.set_xlabel(panel.x_label)
     ax.set_ylabel(panel.y_label)
     if legend and any(curve.label for curve in panel.curves) and len(panel.curves) > 1:
@@ -67,7 +68,7 @@ def draw(ax: Axes, panel: Panel, *, legend: bool = True) -> Axes:
 
 
 def _curve(ax: Axes, curve: Curve, colour: str, dashes: str) -> None:
-    label = curve.label or "_nolegend_"
+    label = literal(curve.label) or "_nolegend_"
     if curve.style == "points":
         ax.plot(curve.x, curve.y, "o", color=COLOURS[colour], markersize=4, markerfacecolor="white", markeredgewidth=0.9, label=label)
     else:

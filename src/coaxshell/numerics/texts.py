@@ -1,0 +1,17 @@
+"""Texts from elsewhere, made fit to be shown."""
+
+from __future__ import annotations
+
+import unicodedata
+
+_TURNING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+"""What turns the direction of writing, and so can make a name look like another."""
+
+
+def visible(text: str, keep: str = "") -> str:
+    """Return a text with � for every character that is a command rather than a letter, but for those to *keep*."""
+    return "".join(letter if letter in keep or _is_seen(letter) else "�" for letter in text)
+
+
+def _is_seen(letter: str) -> bool:
+    return unicodedata.category(letter) not in ("Cc", "Cs") and letter not in _TURNING
