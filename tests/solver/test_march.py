@@ -159,7 +159,7 @@ class TestForceLaw:
 
 
 class TestDiscreteLaws:
-    """A marched run put back into its own equations: forces by the law of the links, corrections by that of the actuators."""
+    """A marched run put back into its own equations: forces by the law of the links, voltages by that of the actuators."""
 
     @staticmethod
     def answers(structure: PreparedStructure, pressure: np.ndarray) -> np.ndarray:
@@ -181,20 +181,21 @@ class TestDiscreteLaws:
         found = march(structure, links, saturate=True)
         answers = self.answers(structure, found.modal_pressure)
         self.check_actuators(structure, links, found, answers[2:])
-        self.check_links(structure, links, found, answers[:2])
+        self.check_links(structure.open_loop, links, found, answers[:2])
 
     def check_actuators(self, structure: PreparedStructure, links: AbsorberSet, found: MarchResult, asked: np.ndarray) -> None:
         evaluate, project = circle(structure.max_order + 1, links.halves)
-        linear = structure.linear_voltage
+        linear = structure.voltage_without_actuators
         asked[:, : linear.shape[1]] += linear
-        assert found.correction is not None
+        assert found.saturated
+        assert found.actuation is not None
         for row, shell in enumerate(structure.controlled):
             limit = voltage_limit(structure.problem, shell)
             volts = evaluate @ asked[row].reshape(evaluate.shape[1], -1)
             assert abs(volts).max() > 5 * limit
-            lacking = structure.problem.actuator_pressure(shell) * (project @ (np.clip(volts, -limit, limit) - volts))
-            given = found.correction[shell].reshape(lacking.shape)
-            np.testing.assert_allclose(given[:, 1:], lacking[:, 1:], rtol=0, atol=1e-9 * abs(given).max())
+            expected = structure.problem.actuator_pressure(shell) * (project @ np.clip(volts, -limit, limit))
+            given = found.actuation[shell].reshape(expected.shape)
+            np.testing.assert_allclose(given[:, 1:], expected[:, 1:], rtol=0, atol=1e-9 * abs(given).max())
 
     def check_links(self, structure: PreparedStructure, links: AbsorberSet, found: MarchResult, velocity: np.ndarray) -> None:
         points, n = InterfacePoints(structure.problem, links, structure.max_order), links.count

@@ -27,7 +27,7 @@ def test_to_the_circle_and_back(halves: int) -> None:
 
 
 @pytest.mark.parametrize("halves", [1, 2])
-def test_what_limited_voltages_lack(halves: int) -> None:
+def test_what_limited_voltages_give(halves: int) -> None:
     given = amplitudes(halves)
     theta = np.linspace(0.0, 2.0 * np.pi, 20_001)
     shapes = np.stack([np.cos, np.sin][:halves], dtype=object)
@@ -35,16 +35,20 @@ def test_what_limited_voltages_lack(halves: int) -> None:
     volts = np.einsum("hm,hmt->t", given, basis)
     assert volts.max() > 1.5
     assert volts.min() < -1.5
-    lack = np.where(volts > 1.0, 1.0 - volts, np.where(volts < -1.0, -1.0 - volts, 0.0))
-    expected = np.trapezoid(lack * basis, theta, axis=-1) / np.pi
+    cut = np.where(volts > 1.0, 1.0, np.where(volts < -1.0, -1.0, volts))
+    expected = np.trapezoid(cut * basis, theta, axis=-1) / np.pi
     expected[:, 0] /= 2.0
-    found = LimitedVoltages(1, halves, MODES).excess(given.ravel()).reshape(halves, MODES)
+    law = LimitedVoltages(1, halves, MODES)
+    found = law.excess(given.ravel()).reshape(halves, MODES)
+    assert law.saturated
     # Corners of the clipped voltage lie between the points of the circle: second order in their distance, 2 degrees or less.
     np.testing.assert_allclose(found, expected, rtol=0, atol=6e-4 * np.abs(expected).max())
 
 
-def test_voltages_within_the_limit_lack_nothing() -> None:
-    assert not LimitedVoltages(1, 1, MODES).excess(np.full(MODES, 0.99 / MODES)).any()
+def test_voltages_within_the_limit_are_given() -> None:
+    law, volts = LimitedVoltages(1, 1, MODES), np.full(MODES, 0.99 / MODES)
+    np.testing.assert_array_equal(law.excess(volts), volts)
+    assert not law.saturated
 
 
 def test_the_limit_is_field_times_thickness() -> None:

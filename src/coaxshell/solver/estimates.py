@@ -41,6 +41,7 @@ def estimated_errors(
     Parameters
     ----------
     structure : PreparedStructure
+        Without feedback where saturating actuators acted as forces.
     above : SampledOrders
         Orders above M.
     spectra, histories : pair of ndarray
@@ -52,5 +53,5 @@ def estimated_errors(
     orders = ORDERS_FACTOR * left_out(structure, above, spectra, whole * grid.time_step, interface)
     march = np.zeros_like(orders)
     if interface is not None and interface.marched:
-        march = march_error(structure, interface.links, interface.force, interface.correction, whole.sum(axis=-1))
+        march = march_error(structure, interface, whole.sum(axis=-1))
     return Estimates(orders, STEP_FACTOR * band_limit(grid, *spectra, whole), march)

@@ -83,7 +83,7 @@ def require_finite_stages(structure: PreparedStructure, linked: LinkedSpectra | 
         results: list[Array] = [structure.linear.normal, structure.linear.tangential]
     else:
         results = [linked.normal, linked.tangential, linked.force, linked.displacement]
-        results += [] if linked.correction is None else [linked.correction]
+        results += [] if linked.actuation is None else [linked.actuation]
     if all(first_bad(array) is None for array in results):
         return
     for stage in _stages(structure, linked):
@@ -96,8 +96,9 @@ def _stages(structure: PreparedStructure, linked: LinkedSpectra | None) -> Itera
     """Yield what the stages made, in their order."""
     pair, shells = ("answering shell", "loaded shell", "order"), ("shell", "half", "order")
     extreme = "look for a layer, fluid or gap of extreme size, density or stiffness"
-    if structure.forced.compliance is not None:
-        yield Stage("shells", "the answer of shells and fluids to forces", structure.forced.compliance, pair, False, extreme)
+    for parts in (structure.forced, structure.forced.open_loop):
+        if parts is not None and parts.compliance is not None:
+            yield Stage("shells", "the answer of shells and fluids to forces", parts.compliance, pair, False, extreme)
     source = "look for a source extremely near or far, an extreme pulse, or extreme layers and fluids"
     yield Stage("source", "the answer of shells and fluids to the source", structure.linear.normal, shells, False, source)
     yield Stage("source", "the answer of shells and fluids to the source", structure.linear.tangential, shells, False, source)
@@ -110,8 +111,8 @@ def _stages(structure: PreparedStructure, linked: LinkedSpectra | None) -> Itera
         softer = f"{FINER}, or softer, less damped absorbers"
         yield Stage("absorbers", "the force of the absorbers", linked.force, ("absorber", "side"), True, softer)
         yield Stage("absorbers", "the displacement of the absorbers", linked.displacement, ("absorber",), True, softer)
-        if linked.correction is not None:
-            yield Stage("control", "what saturated actuators lack", linked.correction, shells, True, f"{FINER}, or lower the gains")
+        if linked.actuation is not None:
+            yield Stage("control", "what saturating actuators give", linked.actuation, shells, True, f"{FINER}, or lower the gains")
         yield Stage("absorbers", "the motion with absorbers and limits", linked.normal, shells, False, softer)
         yield Stage("absorbers", "the motion with absorbers and limits", linked.tangential, shells, False, softer)
 

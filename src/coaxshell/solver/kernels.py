@@ -68,29 +68,48 @@ def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArr
     return np.asarray((gains.proportional + gains.derivative * s) * (sensor_v * ratio + sensor_w), dtype=np.complex128)
 
 
-def voltage_weights(
+def sensor_rate_weights(
     problem: Problem, grid: LaplaceGrid, compliance: ComplexArray, ratio: ComplexArray, controlled: list[int]
 ) -> FloatArray:
-    """Return the step weights of modal pressures in the voltages asked for, shape (controlled, shells, M + 1, T).
+    """Return the step weights of modal pressures in the rates of the sensors' voltages, shape (controlled, shells, M + 1, T).
 
-    The leading term of the derivative feedback, k_d times the sensor's gain on W times (1/M)/(s + b), is inverted in closed form.
+    The leading term, the sensor's gain on W times (1/M)/(s + b), is inverted in closed form. ``ratio`` is V/W of the shells, shape
+    (shells, M + 1, nodes).
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
     weights = np.empty((len(controlled), count, max_order + 1, grid.time.size))
-    hat = grid.hat * grid.time_step
+    hat, orders = grid.hat * grid.time_step, all_orders(max_order)[:, None]
     for row, i in enumerate(controlled):
-        law = voltage_law(problem, i, grid.nodes, ratio[i])
-        shell = problem.shells[i]
-        assert shell.gains is not None
-        decay = initial_decay(problem, i, max_order)
-        leading = shell.gains.derivative * problem.sensor_gain(i, all_orders(max_order)[:, None])[1] / shell.mass
+        sensor_v, sensor_w = problem.sensor_gain(i, orders)
+        sensed = grid.nodes * (sensor_v * ratio[i] + sensor_w)
+        decay, leading = initial_decay(problem, i, max_order), sensor_w / problem.shells[i].mass
         for j in range(count):
             if i == j:
-                weights[row, j] = grid.invert((law * compliance[i, j] - leading / (grid.nodes + decay)) * hat)
+                weights[row, j] = grid.invert((sensed * compliance[i, j] - leading / (grid.nodes + decay)) * hat)
                 weights[row, j] += leading * exponential_weights(decay, grid)
             else:
-                weights[row, j] = grid.invert(law * compliance[i, j] * hat)
+                weights[row, j] = grid.invert(sensed * compliance[i, j] * hat)
     return weights
+
+
+def voltage_weights(problem: Problem, rates: FloatArray, controlled: list[int], time_step: float) -> FloatArray:
+    """Return the step weights of modal pressures in the voltages asked for from those in the rates of the sensors' (Eq. 17).
+
+    k_d times those of the rates, and k_p times their trapezoidal sums: the rates' weights keep the positive real part of their kernel and
+    the trapezoidal rule keeps energy, where weights of the sensors' voltages themselves, displacements, would do neither.
+    """
+    weights = np.empty_like(rates)
+    for row, i in enumerate(controlled):
+        gains = problem.shells[i].gains
+        assert gains is not None
+        weights[row] = gains.derivative * rates[row] + gains.proportional * trapezoidal_sums(rates[row], time_step)
+    return weights
+
+
+def trapezoidal_sums(rate: FloatArray, time_step: float) -> FloatArray:
+    """Return the step weights of a quantity from those of its rate (last axis), x_n = x_{n-1} + (dt/2)(dx_n + dx_{n-1})."""
+    sums = np.cumsum(rate, axis=-1)
+    return np.asarray((sums - 0.5 * rate) * time_step)
 
 
 def exponential_weights(decay: FloatArray, grid: LaplaceGrid) -> FloatArray:

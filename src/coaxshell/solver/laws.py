@@ -21,6 +21,7 @@ class CubicSprings:
 
     tolerance = 1e-11
     patience = 0.1
+    most_iterations = 60
 
     def __init__(self, cubic: FloatArray, lent: FloatArray) -> None:
         self._cubic, self._lent = cubic, lent
@@ -63,6 +64,7 @@ class SpringsAndActuators:
     tolerance = 1e-10
     patience = 0.3
     """Renewal costs as much as many iterations here."""
+    most_iterations = 12
 
     def __init__(self, springs: CubicSprings, links: int, voltages: LimitedVoltages) -> None:
         self._springs, self._links, self._voltages = springs, links, voltages

@@ -13,7 +13,7 @@ from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.ingredients import point_force_shares
 from coaxshell.solver.linear_absorbers import solve_linear
 from coaxshell.solver.linear_ring import is_ring, solve_ring
-from coaxshell.solver.march import march
+from coaxshell.solver.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.spectral import Progress
@@ -31,8 +31,8 @@ class LinkedSpectra:
         Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
     displacement : ndarray, shape (N, T)
         q of every absorber of the description.
-    correction : ndarray, shape (shells, halves, M + 1, T), or None
-        Modal pressure of what saturated actuators lack.
+    actuation : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressure that saturating actuators gave, None where the linear law held throughout.
     iterations : int
         Of all steps, 0 if solved exactly.
     """
@@ -41,7 +41,7 @@ class LinkedSpectra:
     tangential: ComplexArray
     force: FloatArray
     displacement: FloatArray
-    correction: FloatArray | None
+    actuation: FloatArray | None
     iterations: int
 
 
@@ -56,24 +56,39 @@ def solve_linked(
     """Return the response with absorbers, and with saturating actuators if asked for.
 
     ``exact`` None chooses: linear absorbers in the Laplace domain, anything nonlinear by the march. False marches linear ones
-    too, for comparison.
+    too, for comparison. Actuators that nowhere reach their limit leave the linear law, and so the answer without saturation.
     """
     grid = structure.grid
-    correction: FloatArray | None = None
-    if (absorbers.is_linear and not saturate) if exact is None else exact:
+    if saturate:
+        result = march(structure, absorbers, saturate=True, progress=progress)
+        if not result.saturated:
+            return solve_linked(structure, absorbers, progress, exact=exact)
+        return _marched(structure.open_loop, absorbers, result)
+    if absorbers.count == 0:
+        linear = structure.linear
+        return LinkedSpectra(linear.normal, linear.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0)
+    if absorbers.is_linear if exact is None else exact:
         if is_ring(absorbers) and structure.problem.ingredients.point_force_shares is point_force_shares:
-            linear = solve_ring(structure, absorbers)
+            found = solve_ring(structure, absorbers)
         else:
-            linear = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
-        pressure, iterations = linear.modal_pressure, 0
-        force, displacement = grid.invert(linear.force), grid.invert(linear.mass_displacement)
-    else:
-        result = march(structure, absorbers, saturate=saturate, progress=progress)
-        pressure, iterations, correction = grid.transform_linear(result.modal_pressure), result.iterations, result.correction
-        force, displacement = result.force, result.mass_displacement
-    normal, tangential = structure.forced_spectra(pressure)
-    sides = force.reshape(2, absorbers.count, grid.time.size).swapaxes(0, 1)
-    return LinkedSpectra(normal, tangential, sides[absorbers.member], displacement[absorbers.member], correction, iterations)
+            found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
+        normal, tangential = structure.forced_spectra(found.modal_pressure)
+        force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
+        return LinkedSpectra(normal, tangential, force, displacement, None, 0)
+    return _marched(structure, absorbers, march(structure, absorbers, progress=progress))
+
+
+def _marched(structure: PreparedStructure, absorbers: AbsorberSet, result: MarchResult) -> LinkedSpectra:
+    """Return the answer of a structure to the forces of a march."""
+    normal, tangential = structure.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
+    force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
+    return LinkedSpectra(normal, tangential, force, displacement, result.actuation, result.iterations)
+
+
+def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return forces (N, 2, T) and displacements (N, T) of every absorber of the description from those carried."""
+    sides = force.reshape(2, absorbers.count, force.shape[-1]).swapaxes(0, 1)
+    return sides[absorbers.member], displacement[absorbers.member]
 
 
 def interface_of(structure: PreparedStructure, absorbers: AbsorberSet, linked: LinkedSpectra) -> Interface:
@@ -84,9 +99,9 @@ def interface_of(structure: PreparedStructure, absorbers: AbsorberSet, linked: L
     if absorbers.count and not absorbers.is_linear:
         points = InterfacePoints(structure.problem, absorbers, structure.max_order)
         stretch = linked.displacement[first] - structure.grid.invert(points.evaluate(linked.normal)).reshape(force.shape)
-    return Interface(
-        absorbers, force.reshape(2 * absorbers.count, structure.grid.time.size), stretch, linked.correction, linked.iterations > 0
-    )
+    force = force.reshape(2 * absorbers.count, structure.grid.time.size)
+    saturating = None if linked.actuation is None else structure
+    return Interface(absorbers, force, stretch, linked.actuation, linked.iterations > 0, saturating)
 
 
 def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:

@@ -6,7 +6,9 @@ enter through their velocity kernels,
     dw/dt = (dw/dt)_linear + k * p,
 
 summed by product integration; springs and masses are stepped by the trapezoidal rule. The step weights keep the positive real
-part of the kernel and the trapezoidal rule keeps energy, so no step is unstable, however stiff or damped the absorbers.
+part of the kernel and the trapezoidal rule keeps energy, so no step is unstable, however stiff or damped the absorbers. Where
+actuators saturate the kernels are those without feedback, and the voltages given, clip(u), are forces like those of the links: a
+law between 0 and 1 times that of the linear feedback, on a passive structure.
 
 Time is worked through in blocks of a few steps. What came before a block, and what is linear in it, is summed for all its steps at
 once; step by step remains z_n = z_known + sum_l Z_l n(z_{n-l}), n(z) what the nonlinear laws add to the linear ones. Where springs are
@@ -25,7 +27,7 @@ from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.block_response import LinkConstants, block_response, over_block
 from coaxshell.solver.history import HistorySum
 from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
-from coaxshell.solver.newton import MAX_ITERATIONS, ConvergenceError, ImplicitStep
+from coaxshell.solver.newton import ConvergenceError, ImplicitStep
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.relaxation import Relaxation
 from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
@@ -47,9 +49,11 @@ class MarchResult:
     mass_displacement : ndarray, shape (N, T)
         q.
     modal_pressure : ndarray, shape (shells, halves, M + 1, T)
-        Of forces and corrections together, on every shell.
-    correction : ndarray, same shape, or None
-        Of what saturated actuators lack.
+        Of links and saturating actuators together, on every shell.
+    actuation : ndarray, same shape, or None
+        Of the actuators' share in it, where they saturate.
+    saturated : bool
+        Whether any actuator reached its limit.
     iterations : int
         Of all steps, each step's own.
     """
@@ -57,7 +61,8 @@ class MarchResult:
     force: FloatArray
     mass_displacement: FloatArray
     modal_pressure: FloatArray
-    correction: FloatArray | None
+    actuation: FloatArray | None
+    saturated: bool
     iterations: int
 
 
@@ -70,7 +75,7 @@ def march(structure: PreparedStructure, absorbers: AbsorberSet, *, saturate: boo
     absorbers : AbsorberSet
         May be empty.
     saturate : bool
-        Whether actuators stop at their field limit.
+        Whether actuators stop at their field limit. The motion that the forces are added to is then that without feedback.
     progress : callable, optional
 
     Raises
@@ -85,20 +90,21 @@ class _March:
     """State and constants of one march. Block arrays run over (step, row)."""
 
     def __init__(self, structure: PreparedStructure, absorbers: AbsorberSet, saturate: bool) -> None:
-        self.structure, self.count, self.halves = structure, absorbers.count, absorbers.halves
+        self.structure = structure.open_loop if saturate else structure
+        self.count, self.halves = absorbers.count, absorbers.halves
         self.shells, self.controlled = len(structure.problem.shells), structure.controlled if saturate else []
         self.points = InterfacePoints(structure.problem, absorbers, structure.max_order)
         self.table = structure.kernels_with_voltage if saturate else structure.kernels
         self.history = HistorySum(self.table, self.halves)
         self.modes = structure.max_order + 1
         self.limits = np.array([voltage_limit(structure.problem, i) for i in self.controlled])
-        self.full_lack = np.array([structure.problem.actuator_pressure(i) for i in self.controlled]) * self.limits
+        self.full_pressure = np.array([structure.problem.actuator_pressure(i) for i in self.controlled]) * self.limits
         unknowns = 2 * self.count + len(self.controlled) * self.halves * self.modes
         self.length = _LONGEST_BLOCK
         while self.length > 1 and self.length * unknowns > _BLOCK_UNKNOWNS:
             self.length //= 2
         self._links(absorbers)
-        self._linear_motion()
+        self._linear_motion(structure)
 
     def _links(self, absorbers: AbsorberSet) -> None:
         """Prepare the answers within a block and the implicit step."""
@@ -106,57 +112,54 @@ class _March:
         of_forces = np.stack([self.points.immediate(kernels[..., lag]) for lag in range(kernels.shape[-1])])
         step = self.structure.grid.time_step
         self.links = LinkConstants.of(absorbers, np.diag(of_forces[0]), step)
-        lacks = self._lacks_to_pressure(np.eye(len(self.controlled) * self.halves * self.modes))
-        moved = np.stack([self.points.evaluate(_answer(kernels[..., lag], lacks)) for lag in range(kernels.shape[-1])])
+        actuation = self._actuation(np.eye(len(self.controlled) * self.halves * self.modes))
+        moved = np.stack([self.points.evaluate(_answer(kernels[..., lag], actuation)) for lag in range(kernels.shape[-1])])
         response = block_response(self.links, of_forces, moved)
-        unknowns = np.concatenate([response.stretch, self._voltages(response.force, lacks)], axis=1)
+        unknowns = np.concatenate([response.stretch, self._voltages(response.force, actuation)], axis=1)
         self.rows = over_block(unknowns)
         size = unknowns.shape[1]
         self.earlier = [self.rows[step * size : (step + 1) * size, : step * size] for step in range(unknowns.shape[0])]
         self.reaction = over_block(response.force)
         self.pull = over_block(response.mass_velocity)
         springs = CubicSprings(np.tile(absorbers.cubic, 2), np.tile(self.links.lent, 2))
-        law = (
-            springs
-            if not self.controlled
-            else SpringsAndActuators(springs, 2 * self.count, LimitedVoltages(len(self.controlled), self.halves, self.modes))
-        )
+        self.voltages = LimitedVoltages(len(self.controlled), self.halves, self.modes)
+        law = SpringsAndActuators(springs, 2 * self.count, self.voltages) if self.controlled else springs
         self.law, self.newton = law, ImplicitStep(unknowns[0], law)
         self.relaxation = Relaxation(self.rows, size, springs)
         self.relaxing = self.relaxation.steps > 1 and not self.controlled
         half, length = self.links.half_step, kernels.shape[-1]
         self.integral = half * (2.0 * np.tri(length, k=-1) + np.eye(length))
 
-    def _voltages(self, force: FloatArray, lacks: FloatArray) -> FloatArray:
+    def _voltages(self, force: FloatArray, actuation: FloatArray) -> FloatArray:
         """Return the voltages asked for, in units of the limits, per unit input: shape (lags, amplitudes, inputs)."""
         lags, _, columns = force.shape
         found = np.zeros((lags, len(self.controlled) * self.halves * self.modes, columns))
         if not self.controlled:
             return found
         pressures = [self.points.project(f) for f in force]
-        pressures[0][..., columns - lacks.shape[-1] :] += lacks
+        pressures[0][..., columns - actuation.shape[-1] :] += actuation
         for lag in range(lags):
             volts = sum(_answer(self.table.kernels[self.shells :, ..., k], pressures[lag - k]) for k in range(lag + 1))
             found[lag] = (volts / self.limits[:, None, None, None]).reshape(-1, columns)
         return found
 
-    def _lacks_to_pressure(self, lacks: FloatArray) -> FloatArray:
-        """Return modal pressures (shells, halves, M + 1, ...) of what actuators lack (amplitudes, ...) in units of their limits."""
-        pressure = np.zeros((self.shells, self.halves, self.modes, *lacks.shape[1:]))
-        parts = lacks.reshape(len(self.controlled), self.halves, self.modes, *lacks.shape[1:])
-        for part, shell, scale in zip(parts, self.controlled, self.full_lack, strict=True):
+    def _actuation(self, volts: FloatArray) -> FloatArray:
+        """Return modal pressures (shells, halves, M + 1, ...) of voltages given (amplitudes, ...) in units of their limits."""
+        pressure = np.zeros((self.shells, self.halves, self.modes, *volts.shape[1:]))
+        parts = volts.reshape(len(self.controlled), self.halves, self.modes, *volts.shape[1:])
+        for part, shell, scale in zip(parts, self.controlled, self.full_pressure, strict=True):
             pressure[shell] = scale * part
         return pressure
 
-    def _linear_motion(self) -> None:
-        """Sample the motion without absorbers and the voltages asked for without limits, shape (T, rows)."""
-        structure = self.structure
-        self.linear_displacement = self._by_step(self.points.evaluate(structure.linear_displacement))
-        self.linear_velocity = self._by_step(self.points.evaluate(structure.linear_velocity))
+    def _linear_motion(self, structure: PreparedStructure) -> None:
+        """Sample the motion, and where actuators saturate the voltages asked for, that the forces are added to: shape (T, rows)."""
+        self.linear_displacement = self._by_step(self.points.evaluate(self.structure.linear_displacement))
+        self.linear_velocity = self._by_step(self.points.evaluate(self.structure.linear_velocity))
         steps = structure.grid.time.size
         asked = np.zeros((len(self.controlled), self.halves, self.modes, steps))
         if self.controlled:
-            asked[:, : structure.linear_voltage.shape[1]] = structure.linear_voltage / self.limits[:, None, None, None]
+            volts = structure.voltage_without_actuators
+            asked[:, : volts.shape[1]] = volts / self.limits[:, None, None, None]
         self.asked = np.ascontiguousarray(asked.reshape(-1, steps).T)
 
     def _by_step(self, histories: FloatArray) -> FloatArray:
@@ -165,29 +168,30 @@ class _March:
     def run(self, progress: Progress | None) -> MarchResult:
         """Return the histories of all steps; the first instant is at rest."""
         steps, n = self.structure.grid.time.size, self.count
-        force, mass, lacks = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, self.asked.shape[1]))
+        force, mass, volts = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, self.asked.shape[1]))
         pressure = np.zeros((self.shells, self.halves, self.modes, steps))
         state = BlockState(*np.zeros((3, 2, n)), *np.zeros((2, n)))
         for start in range(1, steps, self.length):
             block = slice(start, min(start + self.length, steps))
             count = block.stop - start
-            state, force[block], mass[block], lacks[block] = self._block(block, state)
-            pressure[..., block] = self._pressure(force[block].reshape(count, -1).T, lacks[block].T)
+            state, force[block], mass[block], volts[block] = self._block(block, state)
+            pressure[..., block] = self._pressure(force[block].reshape(count, -1).T, volts[block].T)
             own = self.points.evaluate(self.history.push(pressure[..., block])[: self.shells]).T.reshape(count, 2, n)
             state = state.moved(own, self.integral[count - 1, :count])
             if progress is not None:
                 progress(block.stop / steps, "interface march")
-        lacking = self._lacks_to_pressure(lacks.T) if self.controlled else None
-        return MarchResult(force.reshape(steps, -1).T, mass.T, pressure, lacking, self.newton.iterations + self.relaxation.iterations)
+        actuation = self._actuation(volts.T) if self.controlled else None
+        iterations = self.newton.iterations + self.relaxation.iterations
+        return MarchResult(force.reshape(steps, -1).T, mass.T, pressure, actuation, self.voltages.saturated, iterations)
 
-    def _pressure(self, force: FloatArray, lacks: FloatArray) -> FloatArray:
+    def _pressure(self, force: FloatArray, volts: FloatArray) -> FloatArray:
         pressure = self.points.project(force)
-        return pressure + self._lacks_to_pressure(lacks) if self.controlled else pressure
+        return pressure + self._actuation(volts) if self.controlled else pressure
 
     def _block(self, block: slice, state: BlockState) -> tuple[BlockState, FloatArray, FloatArray, FloatArray]:
         """Solve one block from the state before it.
 
-        Returns the state at its end, but for what its own forces move, the forces, the masses' displacements and what actuators lack.
+        Returns the state at its end, but for what its own forces move, the forces, the masses' displacements and the voltages given.
         """
         n, half, count = self.count, self.links.half_step, block.stop - block.start
         integral = self.integral[:count, :count]
@@ -245,13 +249,14 @@ class _March:
         try:
             return self.newton.solve(known)
         except ConvergenceError:
-            failed = f"their forces did not converge in {MAX_ITERATIONS} iterations"
             if self.links.lent.any():  # no step helps: the tangent is singular wherever both springs pass through rest
                 remedy = "give them a linear stiffness, however small, such as 1 kN/m^2, or a mass"
-                raise InputError("absorbers", f"without mass, cubic springs alone leave them loose at rest, and {failed}", remedy) from None
-            step = 2.0 * self.links.half_step
+                loose = "without mass, cubic springs alone leave them loose at rest, and their forces did not converge"
+                raise InputError("absorbers", loose, remedy) from None
+            guilty = [name for name, there in (("absorbers", self.count), ("saturating actuators", self.controlled)) if there]
+            coarse = f"steps of {2.0 * self.links.half_step:g} (time_step/refinement) are too coarse for the {' and '.join(guilty)}"
             remedy = "use a quarter of time_step, or four times the refinement"
-            raise InputError("time_step", f"steps of {step:g} are too coarse for the absorbers: {failed}", remedy) from None
+            raise InputError("time_step", f"{coarse}: their forces did not converge", remedy) from None
 
 
 @dataclass(frozen=True)

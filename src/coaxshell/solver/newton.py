@@ -5,7 +5,9 @@ everything linear within the same step. With the tangent n' = T frozen,
 
     z <- (1 - R T)^{-1} [z_known + R (n(z) - T z)],
 
-one product an iteration; z is extrapolated from earlier steps to begin with.
+one product an iteration; z is extrapolated from earlier steps to begin with. Laws with corners (a voltage that stops at its limit) can
+make that cycle where a step moves z far: then the tangent is taken anew at every iteration and as much of the way to the new z is gone
+as reduces the residual.
 """
 
 from __future__ import annotations
@@ -16,7 +18,9 @@ import numpy as np
 
 from coaxshell.acoustics.operators import FloatArray
 
-MAX_ITERATIONS = 60
+_MAX_DESCENTS = 200
+_SHORTEST = 2.0**-30
+"""Part of the way to a new z, at least."""
 _FEW_ITERATIONS = 4
 _ROUNDING = 4e-15
 
@@ -28,6 +32,8 @@ class InterfaceLaw(Protocol):
     """Error of z, relative."""
     patience: float
     """The tangent is renewed when an iteration gains less than this factor."""
+    most_iterations: int
+    """Before the residual is watched."""
 
     def excess(self, z: FloatArray) -> FloatArray:
         """Return n(z)."""
@@ -95,7 +101,7 @@ class ImplicitStep:
         z = 3.0 * (self._last - self._before) + self._oldest
         target = self._target(known)
         last = 0.0  # 0: not measured with the present tangent
-        for iteration in range(1, MAX_ITERATIONS + 1):
+        for iteration in range(1, law.most_iterations + 1):
             new = self._gain @ law.beyond_tangent(z)
             new += target
             change = new - z
@@ -115,7 +121,37 @@ class ImplicitStep:
                     size = 0.0
             last = size
         else:
-            raise ConvergenceError
+            z = self._by_descent(known)
         self.iterations += iteration
         self._oldest, self._before, self._last = self._before, self._last, z
         return z
+
+    def _by_descent(self, known: FloatArray) -> FloatArray:
+        """Return z of the next step by Newton's method with a new tangent at every iteration, shortened until the residual falls."""
+        law, z = self._law, self._last
+        missing, size = self._residual(z, known)
+        for _ in range(_MAX_DESCENTS):
+            try:
+                towards = np.asarray(np.linalg.solve(self._identity - law.freeze(z, self._response), missing), dtype=np.float64)
+            except np.linalg.LinAlgError:
+                raise ConvergenceError from None
+            self.iterations += 1
+            part = 1.0
+            new = z + towards
+            missing, left = self._residual(new, known)
+            while not left < (1.0 - 1e-4 * part) * size:
+                part *= 0.5
+                if part < _SHORTEST:
+                    raise ConvergenceError
+                new = z + part * towards
+                missing, left = self._residual(new, known)
+            z, size = new, left
+            if size <= law.tolerance or law.relative(part * towards, z) <= law.tolerance:
+                self._renew(z)
+                return z
+        raise ConvergenceError
+
+    def _residual(self, z: FloatArray, known: FloatArray) -> tuple[FloatArray, float]:
+        """Return z_known + R n(z) - z and its size relative to z_known."""
+        missing = known + self._response @ self._law.excess(z) - z
+        return missing, self._law.relative(missing, known)

@@ -45,17 +45,20 @@ class Interface:
         Line forces at every instant of the grid.
     stretch : ndarray, shape (2, N, T)
         D.
-    correction : ndarray, shape (shells, halves, M + 1, T), or None
-        Modal pressures that saturated actuators lack.
+    actuation : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressures that saturating actuators gave.
     marched : bool
         Whether steps were taken, or the interface solved exactly.
+    saturating : PreparedStructure or None
+        With its feedback, where actuators acted as forces on the structure without.
     """
 
     links: AbsorberSet
     force: FloatArray
     stretch: FloatArray
-    correction: FloatArray | None
+    actuation: FloatArray | None
     marched: bool
+    saturating: PreparedStructure | None = None
 
 
 def surface_norms(normal: npt.NDArray[np.number], tangential: npt.NDArray[np.number]) -> FloatArray:

@@ -9,9 +9,10 @@ import numpy as np
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.acoustics.operators import FloatArray, all_orders
 from coaxshell.solver.history import KernelTable
-from coaxshell.solver.kernels import velocity_weights, voltage_law, voltage_weights
+from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
+from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import LinearSpectra, Progress, linear_spectra
 from coaxshell.solver.workshop import Workshop
@@ -26,12 +27,18 @@ class ForcedParts:
     compliance, ratio : ndarray or None
         C_ij and V/W.
     kernels, kernels_with_voltage : KernelTable or None
+    sensor_rates : ndarray or None
+        Step weights of the rates of the controlled shells' sensors.
+    open_loop : ForcedParts or None
+        Those of the structure without feedback.
     """
 
     compliance: ComplexArray | None = None
     ratio: ComplexArray | None = None
     kernels: KernelTable | None = None
     kernels_with_voltage: KernelTable | None = None
+    sensor_rates: FloatArray | None = None
+    open_loop: ForcedParts | None = None
 
 
 class PreparedStructure:
@@ -104,28 +111,60 @@ class PreparedStructure:
     def kernels(self) -> KernelTable:
         """Step weights of the velocity kernels, ready for history sums."""
         if self.forced.kernels is None:
-            self.forced.kernels = KernelTable(velocity_weights(self.problem, self.grid, self.compliance))
+            self.forced.kernels = KernelTable(self.step_weights([])[0])
         return self.forced.kernels
+
+    def step_weights(self, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
+        """Return the step weights of modal pressures in the velocities and in the rates of the sensors' voltages of some shells.
+
+        By product integration, and where the step does not resolve an order's membrane by the trapezoidal rule.
+        """
+        problem, grid = self.problem, self.grid
+        velocity = velocity_weights(problem, grid, self.compliance)
+        rate = sensor_rate_weights(problem, grid, self.compliance, self.tangential_ratio, sensors)
+        late = unresolved_orders(problem, grid, self.max_order)
+        if late.any():
+            velocity[:, :, late], rate[:, :, late] = trapezoidal_weights(problem, grid, all_orders(self.max_order)[late], sensors)
+        return velocity, rate
 
     @cached_property
     def controlled(self) -> list[int]:
         """Shells with feedback."""
         return [i for i, shell in enumerate(self.problem.shells) if shell.gains is not None]
 
+    @cached_property
+    def open_loop(self) -> PreparedStructure:
+        """The structure without feedback, on which actuators act as forces like any other."""
+        if self.forced.open_loop is None:
+            self.forced.open_loop = ForcedParts()
+        problem, shared = self.problem.open_loop, self.forced.open_loop
+        return PreparedStructure(problem, self.grid, self.max_order, self._progress, workshop=self._workshop, forced=shared)
+
     @property
     def kernels_with_voltage(self) -> KernelTable:
-        """The same, with the voltages asked for on the controlled shells as further outputs."""
+        """Step weights of the velocities without feedback, with the voltages asked for on the controlled shells as further outputs."""
         if self.forced.kernels_with_voltage is None:
-            voltage = voltage_weights(self.problem, self.grid, self.compliance, self.tangential_ratio, self.controlled)
-            velocity = velocity_weights(self.problem, self.grid, self.compliance)
-            self.forced.kernels_with_voltage = KernelTable(np.concatenate([velocity, voltage]))
+            velocity, rates = self.open_loop.step_weights(self.controlled)
+            self.forced.sensor_rates = rates
+            voltage = voltage_weights(self.problem, rates, self.controlled, self.grid.time_step)
+            both = np.concatenate([velocity, voltage])
+            self.forced.kernels_with_voltage = KernelTable(both)
+            self.open_loop.forced.kernels = KernelTable(both[: velocity.shape[0]])
         return self.forced.kernels_with_voltage
 
+    @property
+    def sensor_rates(self) -> FloatArray:
+        """Step weights of modal pressures in the rates of the controlled shells' sensors, without feedback."""
+        self.kernels_with_voltage  # noqa: B018 - made together
+        assert self.forced.sensor_rates is not None
+        return self.forced.sensor_rates
+
     @cached_property
-    def linear_voltage(self) -> FloatArray:
-        """Voltages asked for without absorbers or saturation, shape (controlled, halves, M + 1, T)."""
-        laws = [voltage_law(self.problem, i, self.grid.nodes, self.tangential_ratio[i]) for i in self.controlled]
-        return np.stack([self.grid.invert(law * self.linear.normal[i]) for law, i in zip(laws, self.controlled, strict=True)])
+    def voltage_without_actuators(self) -> FloatArray:
+        """Voltages asked for while neither absorbers nor actuators act, shape (controlled, halves, M + 1, T)."""
+        bare = self.open_loop
+        laws = [voltage_law(self.problem, i, self.grid.nodes, bare.tangential_ratio[i]) for i in self.controlled]
+        return np.stack([self.grid.invert(law * bare.linear.normal[i]) for law, i in zip(laws, self.controlled, strict=True)])
 
     def forced_spectra(self, pressure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Return the transforms of W and V, sources and modal pressures on the shells together.

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.actuation import pressure_given
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.linked import modal_pressure_of, solve_linked
 from coaxshell.solver.prepared import PreparedStructure
@@ -47,7 +48,9 @@ def spectra_of(solution: ModalSolution) -> SolvedSpectra:
     problem = solution.problem
     grid = LaplaceGrid(solution.settings.time_step, solution.time.size - 1)
     structure = PreparedStructure(problem, grid, modes)
-    pressure = solution.control_correction
+    pressure = pressure_given(solution)
+    if pressure is not None:
+        structure = structure.open_loop
     if solution.absorber_force is not None:
         links = absorber_set(problem, problem.system.absorber_list, 2 if needs_sine_half(problem.system.sources) else 1)
         if links.is_linear and pressure is None:

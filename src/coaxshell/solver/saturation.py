@@ -1,8 +1,9 @@
 """Actuators that cannot follow the control law: the voltage stops at the field limit.
 
-The linear solution already contains the control law, so only the correction is unknown: where the voltage asked for, u, exceeds
-the limit, the actuator lacks delta = clip(u) - u. It acts as the pressure (actuator pressure per volt) * delta on its shell, and
-changes u in turn. Points around the circle and their saturated set are solved for at every step:
+In the interface march the voltage given, clip(u), is a force on the shells without feedback like any other
+(:class:`LimitedVoltages`). In the direct engine, whose step contains the control law, only what the actuator lacks is unknown,
+delta = clip(u) - u. It acts as the pressure (actuator pressure per volt) * delta on its shell, and changes u in turn. Points around
+the circle and their saturated set are solved for at every step (:class:`SaturatedShell`):
 
     u = u_known + B delta,      delta = clip(u) - u,
 
@@ -40,16 +41,22 @@ def circle(modes: int, halves: int) -> tuple[FloatArray, FloatArray]:
 
 
 class LimitedVoltages:
-    """What limited actuators lack, n(u) = clip(u) - u, by modes; u in units of each actuator's limit.
+    """What limited actuators give, n(u) = clip(u), by modes; u in units of each actuator's limit.
 
     Parameters
     ----------
     shells : int
         Controlled shells.
     halves, modes : int
+
+    Attributes
+    ----------
+    saturated : bool
+        Whether any voltage given was cut.
     """
 
     def __init__(self, shells: int, halves: int, modes: int) -> None:
+        self.saturated = False
         self._shape = (shells, halves * modes)
         self._evaluate, self._project = circle(modes, halves)
         self._around, self._back = np.ascontiguousarray(self._evaluate.T), np.ascontiguousarray(self._project.T)
@@ -63,21 +70,23 @@ class LimitedVoltages:
         """Return n(u) by modes."""
         amplitudes = z.reshape(self._shape)
         if self._within(amplitudes):
-            return np.zeros_like(z)
+            return z.copy()
         volts = amplitudes @ self._around
-        return np.asarray(((np.clip(volts, -1.0, 1.0) - volts) @ self._back).ravel())
+        given = np.clip(volts, -1.0, 1.0)
+        self.saturated = self.saturated or not np.array_equal(given, volts)
+        return np.asarray((given @ self._back).ravel())
 
     def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
-        """Keep the tangent, -1 on the saturated points, and return R T."""
+        """Keep the tangent, 0 on the saturated points and 1 elsewhere, and return R T."""
         self._held = (np.abs(z.reshape(self._shape) @ self._around) > 1.0).astype(np.float64)
-        answer = np.zeros_like(response)
+        answer = response.copy()
         width = self._shape[1]
         for shell, held in enumerate(self._held):
             rows = np.flatnonzero(held)
             if rows.size:
                 part = slice(shell * width, (shell + 1) * width)
                 tangent = self._project[:, rows] @ self._evaluate[rows]
-                answer[:, part] = -response[:, part] @ tangent
+                answer[:, part] -= response[:, part] @ tangent
         return answer
 
     def beyond_tangent(self, z: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ the outer radius.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -112,6 +112,11 @@ class Problem:
     shells: tuple[ShellProblem, ...]
     fluids: tuple[FluidRegion | None, ...]
     ingredients: Ingredients = OWN
+
+    @property
+    def open_loop(self) -> Problem:
+        """The same without feedback."""
+        return replace(self, shells=tuple(replace(shell, gains=None) for shell in self.shells))
 
     def stiffness(self, index: int, m: np.ndarray) -> RingStiffness:
         """Return the dimensionless modal stiffness of one shell, K a/(rho_e c_e^2)."""

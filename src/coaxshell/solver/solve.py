@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from copy import copy
 from dataclasses import replace
 
+import numpy as np
+
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
@@ -13,6 +15,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.absorbers import absorber_set
+from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
@@ -162,14 +165,15 @@ class Prepared:
         warnings = list(self._notes)
         saturate = system.control is not None and system.control.saturation
         if system.absorber_list or saturate:
-            structure.compliance  # noqa: B018 - one pass for response and compliance together
+            passive = structure.open_loop if saturate else structure
+            passive.compliance  # noqa: B018 - one pass for response and compliance together
             stopwatch.lap("modal system at all Laplace nodes")
             links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
             linked = solve_linked(structure, links, progress, saturate=saturate)
             normal, tangential = linked.normal, linked.tangential
             stopwatch.lap("absorbers and saturation")
             require_finite_stages(structure, linked)
-            warnings += checks.absorbers(structure, links, linked, self.settings.refinement)
+            warnings += checks.absorbers(passive, links, linked, self.settings.refinement)
         else:
             normal, tangential = structure.linear.normal, structure.linear.tangential
             stopwatch.lap("modal system at all Laplace nodes")
@@ -181,7 +185,8 @@ class Prepared:
             rates = [grid.invert(x * grid.nodes)[..., keep] for x in (normal, tangential)]
         stopwatch.lap("inverse transform")
         interface = None if linked is None else interface_of(structure, links, linked)
-        trust = estimates.estimated_errors(structure, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
+        moved = structure.open_loop if linked is not None and linked.actuation is not None else structure
+        trust = estimates.estimated_errors(moved, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
         stopwatch.lap("error estimates")
         warnings += checks.before(problem, grid, order) + checks.after(problem, trust, self.settings)
         warnings += checks.tension(problem, tensions(problem, grid, normal))
@@ -190,6 +195,16 @@ class Prepared:
         solution = ModalSolution(problem, self.settings, grid.time[keep], w, v, trust, (), timings, rates[0], rates[1])
         if linked is not None and system.absorber_list:
             solution = replace(solution, absorber_displacement=linked.displacement[:, keep], absorber_force=linked.force[..., keep])
-        if linked is not None and linked.correction is not None:
-            solution = replace(solution, control_correction=linked.correction[..., keep])
+        if saturate:
+            solution = replace(solution, control_correction=_lack(solution, linked, keep))
         return replace(solution, warnings=tuple(warnings + checks.actuators(solution)))
+
+
+def _lack(solution: ModalSolution, linked: LinkedSpectra | None, keep: slice) -> FloatArray:
+    """Return the modal pressure that saturating actuators gave, less what the linear law asks for at the motion found."""
+    if linked is None or linked.actuation is None:
+        return np.zeros_like(solution.normal)
+    w_rate, v_rate = solution.normal_rate, solution.tangential_rate
+    assert w_rate is not None
+    assert v_rate is not None
+    return linked.actuation[..., keep] - pressure_asked(solution.problem, solution.normal, solution.tangential, w_rate, v_rate)

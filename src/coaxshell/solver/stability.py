@@ -63,8 +63,7 @@ class OpenLoop:
     @classmethod
     def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, workshop: Workshop | None) -> OpenLoop:
         """Return it for a problem, whose gains only tell which shells are controlled."""
-        bare = replace(problem, shells=tuple(replace(shell, gains=None) for shell in problem.shells))
-        system = ModalSystem(bare, nodes, orders, workshop=workshop)
+        system = ModalSystem(problem.open_loop, nodes, orders, workshop=workshop)
         fed_back = {
             i: pressure_fed_back(problem, i, operator.tangential, orders[:, None])
             for i, operator in enumerate(system.shells)
@@ -120,8 +119,7 @@ def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: 
     """Return the orders whose response would grow by more than a factor e within the duration."""
     shift, frequencies = _contour(problem, max_order, duration)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
-    structure = tuple(replace(shell, gains=None) for shell in problem.shells)
-    known = (structure, controlled, problem.fluids, problem.scales, max_order)
+    known = (problem.open_loop.shells, controlled, problem.fluids, problem.scales, max_order)
     orders = all_orders(max_order)
     turned = np.zeros(orders.size)
     for start in range(0, frequencies.size, _BLOCK):

@@ -22,10 +22,11 @@ import numpy.typing as npt
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.absorbers import InterfacePoints
 from coaxshell.solver.history import KernelTable
+from coaxshell.solver.kernels import voltage_weights
 from coaxshell.solver.march import march
-from coaxshell.solver.orders_left_out import relative
+from coaxshell.solver.orders_left_out import Interface, relative
 from coaxshell.solver.prepared import ForcedParts, PreparedStructure
 
 FloatArray = npt.NDArray[np.float64]
@@ -89,11 +90,19 @@ class CoarserStructure(PreparedStructure):
 
     def __init__(self, fine: PreparedStructure, every: int, saturate: bool) -> None:
         grid = LaplaceGrid(fine.grid.time_step * every, fine.grid.steps // every)
-        table = fine.kernels_with_voltage if saturate else fine.kernels
-        coarse = KernelTable(_summed(table.kernels, every, grid.time.size))
-        forced = ForcedParts(kernels_with_voltage=coarse) if saturate else ForcedParts(kernels=coarse)
+        self._fine, self._every, self._kept = fine, every, slice(0, grid.time.size * every, every)
+        velocity = _summed((fine.open_loop if saturate else fine).kernels.kernels, every, grid.time.size)
+        forced = ForcedParts(kernels=KernelTable(velocity))
+        if saturate:
+            rates = _summed(fine.sensor_rates, every, grid.time.size)
+            voltage = voltage_weights(fine.problem, rates, fine.controlled, grid.time_step)
+            forced = ForcedParts(kernels_with_voltage=KernelTable(np.concatenate([velocity, voltage])))
         super().__init__(fine.problem, grid, fine.max_order, forced=forced)
-        self._fine, self._kept = fine, slice(0, grid.time.size * every, every)
+
+    @cached_property
+    def open_loop(self) -> PreparedStructure:
+        """The same without feedback."""
+        return CoarserStructure(self._fine.open_loop, self._every, False)
 
     @cached_property
     def linear_displacement(self) -> FloatArray:
@@ -106,9 +115,9 @@ class CoarserStructure(PreparedStructure):
         return self._fine.linear_velocity[..., self._kept]
 
     @cached_property
-    def linear_voltage(self) -> FloatArray:
-        """Voltages asked for without absorbers or saturation there."""
-        return self._fine.linear_voltage[..., self._kept]
+    def voltage_without_actuators(self) -> FloatArray:
+        """Voltages asked for while neither absorbers nor actuators act, there."""
+        return self._fine.voltage_without_actuators[..., self._kept]
 
 
 def _summed(weights: FloatArray, every: int, steps: int) -> FloatArray:
@@ -123,9 +132,7 @@ def _summed(weights: FloatArray, every: int, steps: int) -> FloatArray:
     return total
 
 
-def march_error(
-    structure: PreparedStructure, links: AbsorberSet, force: FloatArray, correction: FloatArray | None, whole: FloatArray
-) -> FloatArray:
+def march_error(structure: PreparedStructure, interface: Interface, whole: FloatArray) -> FloatArray:
     """Return the printed error of displacement and stress by the march's steps, shape (shells, 2), relative.
 
     A share of what changes when the interface is marched at four times the step, or at twice the step where that fails; 1 if both do.
@@ -133,41 +140,38 @@ def march_error(
     Parameters
     ----------
     structure : PreparedStructure
-    links : AbsorberSet
-    force : ndarray, shape (2N, T)
-        Of the run.
-    correction : ndarray, shape (shells, halves, M + 1, T), or None
-        Modal pressures that saturated actuators lack in the run.
+        Which the forces moved.
+    interface : Interface
+        What it did in the run.
     whole : ndarray, shape (shells, 2)
         Mean squares of the run's motion, summed over the instants of its grid.
     """
     least = np.where(whole > 0, 1.0, 0.0)
     for every, share in SHARES.items():
-        least = np.minimum(least, share * _difference(structure, links, force, correction, whole, every))
+        least = np.minimum(least, share * _difference(structure, interface, whole, every))
         if np.all(least < TOO_MUCH):
             break
     return least
 
 
-def _difference(
-    structure: PreparedStructure, links: AbsorberSet, force: FloatArray, correction: FloatArray | None, whole: FloatArray, every: int
-) -> FloatArray:
+def _difference(structure: PreparedStructure, interface: Interface, whole: FloatArray, every: int) -> FloatArray:
     """Return what changes when the interface is marched at steps *every* times longer, infinity if that fails."""
-    grid = structure.grid
-    coarser = CoarserStructure(structure, every, correction is not None)
+    grid, links, saturating = structure.grid, interface.links, interface.saturating
+    coarser = CoarserStructure(saturating or structure, every, saturating is not None)
     unknown = np.full(whole.shape, np.inf)
     try:
         with np.errstate(all="ignore"):
-            coarse = march(coarser, links, saturate=correction is not None)
+            coarse = march(coarser, links, saturate=saturating is not None)
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return unknown
     if not np.abs(coarse.modal_pressure).max(initial=0.0) < 1e100:
         return unknown
     orders = _some_orders(structure.max_order, _MORE)
     points = InterfacePoints(structure.problem, links, structure.max_order)
-    pressure = points.project(grid.transform_linear(_between(coarser, grid, coarse.force) - force))[:, :, orders]
-    if correction is not None and coarse.correction is not None:
-        pressure += grid.transform_linear(_between(coarser, grid, coarse.correction[:, :, orders]) - correction[:, :, orders])
+    pressure = points.project(grid.transform_linear(_between(coarser, grid, coarse.force) - interface.force))[:, :, orders]
+    if interface.actuation is not None and coarse.actuation is not None:
+        given = _between(coarser, grid, coarse.actuation[:, :, orders])
+        pressure += grid.transform_linear(given - interface.actuation[:, :, orders])
     normal = np.einsum("ijmk,jhmk->ihmk", structure.compliance[:, :, orders], pressure)
     tangential = structure.tangential_ratio[:, None, orders] * normal
     return relative(_of_orders(normal, tangential, orders, grid.invert) * _spread(orders), whole)

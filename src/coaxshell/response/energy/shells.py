@@ -10,6 +10,7 @@ import numpy as np
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.solver.actuation import pressure_given
 from coaxshell.structure.ring import RingStiffness, bending_strain, open_circuit_stiffness, ring_stiffness
 
 
@@ -55,19 +56,20 @@ def _quadratic(weight: FloatArray, k: RingStiffness, v: FloatArray, w: FloatArra
 def actuator_work(motion: Motion) -> FloatArray:
     """Return the work that the actuators of all shells have taken from them, shape (T,).
 
-    Minus the integral of the actuators' pressure times dw/dt over the surfaces: the linear law's (Eqs. 4, 17) and, where the
-    voltage saturates, its correction.
+    Minus the integral of the actuators' pressure times dw/dt over the surfaces: the linear law's (Eqs. 4, 17) or, where the
+    voltage saturates, what was given.
     """
     problem, grid, s = motion.problem, motion.grid, motion.grid.nodes
-    correction = motion.solution.control_correction
+    given = pressure_given(motion.solution)
     total = np.zeros(grid.time.size)
     for i, shell in enumerate(problem.shells):
         if shell.gains is None:
             continue
-        gain_v, gain_w = problem.sensor_gain(i, motion.orders[:, None])
-        volts = gain_v * motion.spectra.tangential[i] + gain_w * motion.spectra.normal[i]
-        pressure = problem.actuator_pressure(i) * (shell.gains.proportional + shell.gains.derivative * s) * volts
-        if correction is not None:
-            pressure[: correction.shape[1]] += grid.transform_linear(correction[i])
+        if given is not None:
+            pressure = grid.transform_linear(given[i])
+        else:
+            gain_v, gain_w = problem.sensor_gain(i, motion.orders[:, None])
+            volts = gain_v * motion.spectra.tangential[i] + gain_w * motion.spectra.normal[i]
+            pressure = problem.actuator_pressure(i) * (shell.gains.proportional + shell.gains.derivative * s) * volts
         total -= SurfaceWork(grid, shell.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

@@ -1,0 +1,43 @@
+"""The modal pressures of the actuators: what the control law asks for at a motion, and what saturating actuators gave (Eqs. 4, 17, 20)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solution import ModalSolution
+
+
+def pressure_asked(
+    problem: Problem, normal: FloatArray, tangential: FloatArray, normal_rate: FloatArray, tangential_rate: FloatArray
+) -> FloatArray:
+    """Return the pressure of the linear law, A (k_p phi_s + k_d dphi_s/dt), from the motion and its rates.
+
+    Parameters
+    ----------
+    problem : Problem
+    normal, tangential, normal_rate, tangential_rate : ndarray, shape (shells, halves, M + 1, T)
+        W, V, dW/dt and dV/dt.
+
+    Returns
+    -------
+    ndarray, shape (shells, halves, M + 1, T)
+        Positive inward; 0 on shells without feedback.
+    """
+    pressure, orders = np.zeros_like(normal), all_orders(normal.shape[2] - 1)[:, None]
+    for i, shell in enumerate(problem.shells):
+        if shell.gains is None:
+            continue
+        sensor_v, sensor_w = problem.sensor_gain(i, orders)
+        sensed, rate = (sensor_v * v[i] + sensor_w * w[i] for w, v in ((normal, tangential), (normal_rate, tangential_rate)))
+        pressure[i] = problem.actuator_pressure(i) * (shell.gains.proportional * sensed + shell.gains.derivative * rate)
+    return pressure
+
+
+def pressure_given(solution: ModalSolution) -> FloatArray | None:
+    """Return the pressure that saturating actuators gave, shape (shells, halves, M + 1, T); None where the linear law held throughout."""
+    lack, w_rate, v_rate = solution.control_correction, solution.normal_rate, solution.tangential_rate
+    if lack is None or w_rate is None or v_rate is None or not lack.any():
+        return None
+    return pressure_asked(solution.problem, solution.normal, solution.tangential, w_rate, v_rate) + lack
