@@ -103,7 +103,7 @@ pygments_dark_style = "native"
 
 def without_placeholders(app, what, name, obj, options, signature, result):
     """Show a required argument as one: its default in the code only tells that it was left out."""
-    return (re.sub(r"\s*=\s*<object object[^>]*>", "", signature) if signature else signature, result)
+    return (re.sub(r"\s*=\s*<required>", "", signature) if signature else signature, result)
 
 
 def no_type_before_a_colon(app, what, name, obj, options, lines):

@@ -24,11 +24,14 @@ class FakeResponse:
     def stress(self, shell, angle):
         return self._array(shell, angle, 2e5, 9.0)
 
-    def displacement(self, shell, angle):
-        return -self._array(shell, angle, 1.2e-6, 4.0) * 0.7
+    def displacement(self, shell, angle, component="normal", relative=False):
+        return -self._array(shell, angle, 1.2e-6, 4.0) * (0.7 if component == "normal" else 0.4) * (0.5 if relative else 1.0)
 
     def sensor_voltage(self, shell, angle):
         return self._array(shell, angle, 300.0, 7.0)
+
+    def actuator_voltage(self, shell, angle):
+        return self._array(shell, angle, 3e3, 7.0)
 
     def _array(self, shell, angle, scale, frequency):
         index = self.system.shell_index(shell)

@@ -12,7 +12,7 @@ from PIL import Image
 from coaxshell import InputError, presets
 from coaxshell.plotting import FieldView, film_files, save_film
 from coaxshell.plotting.field_scales import FieldScales
-from coaxshell.plotting.film_canvas import Canvas
+from coaxshell.plotting.film_canvas import Canvas, _draw_overlay
 from coaxshell.plotting.frames import field_frames, gathered
 
 VIEW = FieldView(3.0, 90)
@@ -173,3 +173,10 @@ def test_refusals(waves, tmp_path, options, message):
     with pytest.raises(InputError, match=message):
         save_film(waves, **arguments)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("pixels", "marked"), [(90, False), (300, True)])
+def test_axes_are_marked_where_they_can_be_read(waves, pixels, marked):
+    overlay = _draw_overlay(waves.system, FieldView(3.0, pixels))
+    lower_edge = overlay[-round(0.06 * pixels) :, :, 3]
+    assert bool(lower_edge.any()) is marked

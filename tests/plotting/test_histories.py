@@ -15,7 +15,7 @@ from coaxshell.plotting import QUANTITIES, plot_history
 def test_curve_is_the_response_in_the_units_of_the_axis(response, quantity):
     ax = plot_history(response, quantity, "inner", 180.0)
     drawn = QUANTITIES[quantity]
-    expected = getattr(response, drawn.method)("inner", angle=[180.0]).isel(angle=0).to_numpy()
+    expected = getattr(response, drawn.method)("inner", angle=[180.0], **drawn.options).isel(angle=0).to_numpy()
     np.testing.assert_allclose(ax.lines[0].get_ydata(), drawn.per_si * expected, rtol=1e-12)
     np.testing.assert_allclose(ax.lines[0].get_xdata(), response.time, rtol=0)
     assert drawn.unit in ax.get_ylabel()

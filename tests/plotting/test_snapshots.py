@@ -9,7 +9,7 @@ from matplotlib.collections import PolyCollection
 from coaxshell import InputError, RigidShell, presets
 from coaxshell.paper import FIGURES
 from coaxshell.plotting import COMPARISON_TIMES, SNAPSHOT_TIMES, FieldView, figure_pressure_rms, figure_snapshots, plot_field
-from coaxshell.plotting.field_scales import FieldScales, field_scales, pressure_unit
+from coaxshell.plotting.field_scales import PRESSURE_COLOURS, FieldScales, compressed, field_scales, mappable, pressure_unit
 from coaxshell.plotting.frames import field_frames, gathered
 
 SMALL = FieldView(3.0, 40)
@@ -186,3 +186,13 @@ def test_rms_of_both_domains(waves, make_waves):
 @pytest.mark.parametrize("number", ["13", "14"])
 def test_recipes_of_two_systems(number):
     assert FIGURES[number].presets == ("bare", "hybrid")
+
+
+def test_colours_of_the_pressure_reach_to_the_front_and_keep_what_is_faint():
+    assert compressed(0.0) == 0.0
+    assert compressed(np.array([-1.0, 1.0])) == pytest.approx([-1.0, 1.0])
+    faint = compressed(np.array([1e-3, 1e-2]))
+    assert faint[1] / faint[0] == pytest.approx(10.0, rel=0.01)  # in proportion
+    assert 0.2 < compressed(0.1) < 0.4
+    drawn = mappable(2e4, PRESSURE_COLOURS)
+    assert float(drawn.norm(1e4)) == pytest.approx(0.5 + 0.5 * float(compressed(0.5)))

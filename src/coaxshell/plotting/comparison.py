@@ -96,7 +96,9 @@ def plot_comparison(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Ax
     ax.axhline(0.0, color=COLOURS["grey"], linewidth=0.6, zorder=1)
     ax.set_xlim(0.0, longest)
     peaks = [abs(curve.peak[1]) for curve in curves.values()]
-    if len(peaks) > 1 and peaks[-1] > 0:
+    if len(peaks) > 1 and any(curve.still_grows for curve in curves.values()):
+        ax.set_title("still growing", loc="right", fontsize=8)  # a change would be that of the runs' length
+    elif len(peaks) > 1 and peaks[-1] > 0:
         change = f"{100 * (peaks[0] / peaks[-1] - 1):+.0f} %".replace("-", _MINUS)
         ax.set_title(f"peak {change}", loc="right", fontsize=8)
     return ax

@@ -1,4 +1,9 @@
-"""Colours of pressure and stress: two diverging maps, white at zero, with limits that are symmetric and round."""
+"""Colours of pressure and stress: two diverging maps, white at zero, with limits that are symmetric and round.
+
+The front is tens of times louder than what the shells radiate. Colours of the pressure are in proportion up to a tenth of their limit and
+follow the logarithm beyond (arsinh), so that the front is shown as strong as it is and a hundredth of it is still seen; those of the
+stress are in proportion.
+"""
 
 from __future__ import annotations
 
@@ -28,10 +33,12 @@ PRESSURE_UNITS = ("auto", "Pa", "kPa", "MPa", "relative")
 
 _PREFIXES = {"Pa": 1.0, "kPa": 1e-3, "MPa": 1e-6}
 
-# The front is a line and its reflections are short: the limit that almost all pixels stay within shows the rest of the field.
-_PRESSURE_SHARE = 0.97
+_PRESSURE_SHARE = 0.9995
 _STRESS_SHARE = 0.999
-_ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+LINEAR = 0.1
+"""Share of the limit up to which colours of the pressure are about in proportion."""
+_SHARES = (-1.0, -0.4, -0.1, 0.0, 0.1, 0.4, 1.0)
+"""Where the pressure's colour bar is marked: at about 0.7 and 0.3 of the way to its ends."""
 
 
 @dataclass(frozen=True)
@@ -74,19 +81,11 @@ def field_scales(frames: Iterable[Frames], pressure: float | None = None, stress
     every = list(frames)
     if pressure is None:
         values = [np.abs(part.pressure).ravel()[:: 1 + part.pressure.size // 2_000_000] for part in every]
-        pressure = _round_near(_share(values, _PRESSURE_SHARE))
+        pressure = round_up(_share(values, _PRESSURE_SHARE))
     if stress is None:
         rings = [np.abs(ring).ravel() for part in every for ring in part.stress if ring is not None]
         stress = round_up(_share(rings, _STRESS_SHARE))
     return FieldScales(pressure, stress)
-
-
-def _round_near(value: float) -> float:
-    """Return the round number nearest to a positive value; 1 for 0."""
-    if not value > 0:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(value))
-    return min(_ROUND, key=lambda step: abs(math.log(step * power / value))) * power
 
 
 def _share(values: list[Any], share: float) -> float:
@@ -134,22 +133,34 @@ def stress_unit(limit: float) -> DrawnUnit:
     return DrawnUnit(f"hoop stress ({name})", _PREFIXES[name])
 
 
-def mappable(limit: float, colours: str) -> ScalarMappable:
-    """Return matplotlib's mapping from minus to plus a limit onto a colour map."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
+def compressed(values: Any) -> Any:
+    """Return arsinh(x/LINEAR)/arsinh(1/LINEAR): the place of a pressure on its colour scale, both relative to their limits."""
+    return np.arcsinh(values / LINEAR) / np.arcsinh(1.0 / LINEAR)
 
+
+def mappable(limit: float, colours: str) -> ScalarMappable:
+    """Return matplotlib's mapping from minus to plus a limit onto a colour map: compressed for a pressure, else in proportion."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import AsinhNorm, Normalize
+
+    if colours == PRESSURE_COLOURS:
+        return ScalarMappable(norm=AsinhNorm(LINEAR * limit, vmin=-limit, vmax=limit), cmap=colours)
     return ScalarMappable(norm=Normalize(-limit, limit), cmap=colours)
 
 
 def add_colour_bar(ax: Any, limit: float, unit: DrawnUnit, colours: str, *, orientation: str = "vertical") -> Any:
     """Fill axes with a colour bar, in the drawn unit, with arrows where values may lie beyond, and return it."""
-    from matplotlib.ticker import MaxNLocator
+    from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
     bar = ax.figure.colorbar(mappable(limit * unit.per_pascal, colours), cax=ax, orientation=orientation, extend="both")
     bar.set_label(unit.label)
     bar.outline.set_linewidth(0.5)
-    bar.locator = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10], symmetric=True)
+    if colours == PRESSURE_COLOURS:
+        end = limit * unit.per_pascal
+        bar.locator = FixedLocator([share * end for share in _SHARES])
+        bar.formatter = FuncFormatter(lambda value, _: f"{value:g}".replace("-", "\N{MINUS SIGN}"))
+    else:
+        bar.locator = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10], symmetric=True)
     bar.update_ticks()
     bar.ax.grid(visible=False)
     bar.ax.minorticks_off()

@@ -15,6 +15,7 @@ from coaxshell.plotting.field_scales import (
     STRESS_COLOURS,
     FieldScales,
     add_colour_bar,
+    compressed,
     pressure_unit,
     stress_unit,
 )
@@ -23,6 +24,7 @@ from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import style
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from coaxshell.model import System
@@ -36,6 +38,7 @@ _MARGIN, _GAP, _TOP, _BAR, _LABELS = 10, 12, 34, 14, 58  # at 450 pixels a panel
 _LEVELS = 1024
 _FRAME = 60  # dark grey
 _LONGEST = 28
+_FEWEST_WITH_AXES = 240  # pixels of a panel: figures on smaller ones could not be read
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,7 @@ class Canvas:
         picture = self._background.copy()
         for left, part, rings, overlay in zip(self._left, parts, self._rings, self._overlays, strict=True):
             panel = picture[self._top : self._top + self.view.pixels, left : left + self.view.pixels]
-            panel[:] = _coloured(part.field(index)[::-1], self.scales.pressure, self._colours)
+            panel[:] = _coloured(compressed(part.field(index)[::-1] / np.float32(self.scales.pressure)), 1.0, self._colours)
             for ring, stress in zip(rings, part.stress, strict=True):
                 if stress is not None:
                     _blend(panel, ring, _coloured(stress[index], self.scales.stress, self._stress_colours))
@@ -196,7 +199,24 @@ def _draw_overlay(system: System, view: FieldView) -> Bytes:
         if system.absorber_list:
             x, y = absorber_places(system)
             ax.plot(x, y, linestyle="none", marker="o", markersize=2.4 * zoom, color=ABSORBER_COLOUR, markeredgewidth=0)
+        if view.pixels >= _FEWEST_WITH_AXES:
+            _mark_axes(ax, view.half_width, zoom)
         return _pixels(figure)
+
+
+def _mark_axes(ax: Axes, edge: float, zoom: float) -> None:
+    """Mark x/a and y/a along the lower and the left edge, inside: a panel has no room around it."""
+    from matplotlib.ticker import MaxNLocator
+
+    ink: dict[str, Any] = {"color": "0.25", "fontsize": 6.0 * zoom}
+    places = [place for place in MaxNLocator(nbins=6, steps=[1, 2, 5, 10]).tick_values(-edge, edge) if abs(place) < 0.93 * edge]
+    for place in places:
+        ax.plot([place, place], [-edge, -0.975 * edge], color="0.25", linewidth=0.7 * zoom)
+        ax.plot([-edge, -0.975 * edge], [place, place], color="0.25", linewidth=0.7 * zoom)
+        ax.text(place, -0.965 * edge, f"{place:g}", ha="center", va="bottom", **ink)
+        ax.text(-0.96 * edge, place, f"{place:g}", ha="left", va="center", **ink)
+    ax.text(0.985 * edge, -0.965 * edge, "x/a", ha="right", va="bottom", **ink)
+    ax.text(-0.96 * edge, 0.985 * edge, "y/a", ha="left", va="top", **ink)
 
 
 def _shortened(name: str) -> str:

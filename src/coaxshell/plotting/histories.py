@@ -82,6 +82,11 @@ class History:
         index = int(np.argmax(np.abs(self.values)))
         return float(self.time[index]), float(self.values[index])
 
+    @property
+    def still_grows(self) -> bool:
+        """Whether the largest magnitude is the last one: the curve ends before it has reached its peak."""
+        return bool(len(self.values) > 1 and np.argmax(np.abs(self.values)) == len(self.values) - 1)
+
 
 def history(response: Response, quantity: str, shell: int | str, angle: float) -> History:
     """Return one curve of a response in drawn units; InputError for an unknown quantity."""
