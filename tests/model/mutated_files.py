@@ -35,11 +35,11 @@ def record(random_):
     return "\n".join(lines) + random_.choice(("", "\n")), separator, decimal
 
 
-def spoilt(random_, content, pieces):
+def spoilt(random_, content, pieces, *, gently=False):
     """Return bytes with a few letters replaced, removed, doubled or put in, or lines moved, or the end cut off."""
-    for _ in range(random_.randrange(1, 4)):
+    for _ in range(1 if gently else random_.randrange(1, 4)):
         place = random_.randrange(len(content) + 1)
-        match random_.randrange(7):
+        match random_.randrange(3 if gently else 7):
             case 0:
                 content = content[:place] + content[place + 1 :]
             case 1:
@@ -168,7 +168,10 @@ def _differences(data, model, where=""):
 def _same(value, found, field):
     if isinstance(value, str):
         unit = next((mark.dimension.unit for mark in field.metadata if hasattr(mark, "dimension")), "")
-        quantity = UNITS.Quantity(value.replace("−", "-"))
+        try:
+            quantity = UNITS.Quantity(value.replace("−", "-"))
+        except Exception as error:  # noqa: BLE001 - what pint does not read is a difference, whatever it raises
+            raise AssertionError(f"{value!r} became {found!r}, where pint says {error}") from None
         value = quantity.to(unit).magnitude if quantity.is_compatible_with(unit) and not quantity.dimensionless else quantity.magnitude
     return isinstance(found, int | float) and math.isclose(value, found, rel_tol=1e-9, abs_tol=1e-300)
 

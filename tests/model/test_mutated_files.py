@@ -54,7 +54,7 @@ def test_spoilt_scenarios_change_their_meaning_never(count):
     read = 0
     for seed in range(count if count > 100 else 20):
         random_ = seeded(seed)
-        content = spoilt(random_, scenario(random_), SCENARIO_PIECES)
+        content = spoilt(random_, scenario(random_), SCENARIO_PIECES, gently=seed % 4 > 0)
         try:
             text = content.decode()
             system = System.from_toml_string(text)

@@ -66,6 +66,8 @@ REFUSED = [
     ("1e99999999999999999999999 kg", "mass", "not finite"),
     ("6 Ym**99", "length", "not a length"),
     ("0 kg", "length", "not a length"),
+    ("6 mm;s", "length", "unknown unit"),
+    ("1mm0 mm", "length", "unknown unit"),
     ("1e9999999999 kg", "length", "not a length"),
 ]
 LONG = 300_000

@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
-from coaxshell.studio import job_routes, refusals, routes, statics, study_routes
+from coaxshell.studio import job_routes, record_uploads, refusals, routes, statics, study_routes
 from coaxshell.studio.guard import NAMES, Guard
 from coaxshell.studio.refusals import RefusedError
 from coaxshell.studio.state import Studio
@@ -30,7 +30,7 @@ def create_app(port: int, key: str, names: Collection[str] = ()) -> Guard:
         Names of hosts, beside those of this machine, under which it may be reached.
     """
     application = Starlette(
-        routes=[*statics.routes(), *routes.routes(), *job_routes.routes(), *study_routes.routes()],
+        routes=[*statics.routes(), *routes.routes(), *job_routes.routes(), *study_routes.routes(), *record_uploads.routes()],
         lifespan=_alive,
         exception_handlers={RefusedError: _refused, HTTPException: _plain, ClientDisconnect: _gone, Exception: _failed},
     )
