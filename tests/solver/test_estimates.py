@@ -84,7 +84,7 @@ def within(printed: np.ndarray, true: np.ndarray, least: float, most: float) -> 
 
 def test_what_absorbers_excite_counts() -> None:
     # Behind a vacuum nothing else moves the inner shell: its orders above M, and the softness of both walls that they make.
-    coarse, many = (cx.simulate(GAP, **{**SETTINGS, "modes": modes}) for modes in (40, 200))
+    coarse, many = (cx.simulate(GAP, **{**SETTINGS, "modes": modes}) for modes in (64, 300))
     within(coarse.estimates.orders, true_error(coarse, many), 0.5, 20)
     assert coarse.estimates.orders.min() > 1e-3
 

@@ -28,6 +28,7 @@ from coaxshell.solver.kernels import voltage_weights
 from coaxshell.solver.march import march
 from coaxshell.solver.orders_left_out import Interface, relative
 from coaxshell.solver.prepared import ForcedParts, PreparedStructure
+from coaxshell.solver.sampled_orders import standing_for
 
 FloatArray = npt.NDArray[np.float64]
 Array = npt.NDArray[Any]
@@ -39,18 +40,20 @@ interface, a fifth of it or more where it does not."""
 TOO_MUCH = 0.3
 """Error beyond which the longer step may be to blame."""
 ROUNDING = float(np.finfo(np.float64).eps)
-_FEW, _MORE = 16, 28
+_SAMPLE = 14
 """Orders whose histories are compared."""
 
 
-def _some_orders(max_order: int, count: int) -> npt.NDArray[np.int64]:
-    """Return all orders up to M, or some at equal distances."""
-    return np.unique(np.linspace(0, max_order, min(max_order + 1, count)).round().astype(np.int64))
+def _some_orders(max_order: int) -> npt.NDArray[np.int64]:
+    """Return all orders up to M, or some of them, the denser the lower."""
+    if max_order < _SAMPLE:
+        return np.arange(max_order + 1)
+    return np.unique(np.append(0, np.geomspace(1, max_order, _SAMPLE).round())).astype(np.int64)
 
 
 def _of_orders(normal: Array, tangential: Array, orders: npt.NDArray[np.int64], history: Callable[[Array], FloatArray]) -> FloatArray:
-    """Return the norms (shells, 2) of some orders of a motion, from its transforms (shells, halves, orders, nodes) by way of histories."""
-    share = np.where(orders == 0, 1.0, 0.5)
+    """Return the norms (shells, 2) of all orders of a motion, from transforms (shells, halves, orders, nodes) of some."""
+    share = np.where(orders == 0, 1.0, 0.5) * standing_for(orders.astype(np.float64))
     squares = [np.sum(history(x) ** 2, axis=(1, 3)) for x in (normal, orders[:, None] * tangential - normal)]
     return np.stack(squares, axis=1) @ share
 
@@ -61,12 +64,12 @@ def band_limit(grid: LaplaceGrid, normal: ComplexArray, tangential: ComplexArray
     The band limit, what comes back from later in the period, and rounding. ``whole`` are the norms of the run, (shells, 2, M + 1),
     summed over the instants of the grid.
     """
-    orders = _some_orders(normal.shape[2] - 1, _FEW)
+    orders = _some_orders(normal.shape[2] - 1)
     parts = normal[:, :, orders], tangential[:, :, orders], orders
     wider = grid.taper() - grid.taper(WIDE_ROLL_OFF)
     total = whole.sum(axis=-1)
-    change = relative(_of_orders(*parts, lambda x: grid.invert(x, wider)) * _spread(orders), total)
-    later = relative(_of_orders(*parts, grid.beyond) * _spread(orders), total)
+    change = relative(_of_orders(*parts, lambda x: grid.invert(x, wider)), total)
+    later = relative(_of_orders(*parts, grid.beyond), total)
     return change + grid.wrap_around * (1.0 + later) + rounding(grid, total)
 
 
@@ -166,7 +169,7 @@ def _difference(structure: PreparedStructure, interface: Interface, whole: Float
         return unknown
     if not np.abs(coarse.modal_pressure).max(initial=0.0) < 1e100:
         return unknown
-    orders = _some_orders(structure.max_order, _MORE)
+    orders = _some_orders(structure.max_order)
     points = InterfacePoints(structure.problem, links, structure.max_order)
     pressure = points.project(grid.transform_linear(_between(coarser, grid, coarse.force) - interface.force))[:, :, orders]
     if interface.actuation is not None and coarse.actuation is not None:
@@ -174,12 +177,7 @@ def _difference(structure: PreparedStructure, interface: Interface, whole: Float
         pressure += grid.transform_linear(given - interface.actuation[:, :, orders])
     normal = np.einsum("ijmk,jhmk->ihmk", structure.compliance[:, :, orders], pressure)
     tangential = structure.tangential_ratio[:, None, orders] * normal
-    return relative(_of_orders(normal, tangential, orders, grid.invert) * _spread(orders), whole)
-
-
-def _spread(orders: npt.NDArray[np.int64]) -> float:
-    """Return how many orders each of some equally distant ones stands for."""
-    return float(max(1.0, (orders[-1] + 1) / orders.size))
+    return relative(_of_orders(normal, tangential, orders, grid.invert), whole)
 
 
 def _between(coarser: PreparedStructure, grid: LaplaceGrid, histories: FloatArray) -> FloatArray:
