@@ -4,6 +4,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
+STAMP_DEMO := $(VENV)/.installed-demo
 STAMP_ALL := $(VENV)/.installed-all
 STAMP_DOCS := $(VENV)/.installed-docs
 DEMO   := demo
@@ -23,13 +24,24 @@ help:
 	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
+define ENVIRONMENT
+@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
+  { echo "error: $(PYTHON) is older than Python 3.11 or not installed; name another one: make PYTHON=python3.12" >&2; exit 1; }
+@$(PYTHON) -m venv $(VENV) || \
+  { echo "error: $(PYTHON) cannot make virtual environments; on Debian: apt-get install python3-venv" >&2; exit 1; }
+endef
+
 $(STAMP): pyproject.toml
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
-	  { echo "error: $(PYTHON) is older than Python 3.11 or not installed; name another one: make PYTHON=python3.12" >&2; exit 1; }
-	@echo "setting up $(VENV) (once, about half a minute)"
-	@$(PYTHON) -m venv $(VENV) || \
-	  { echo "error: $(PYTHON) cannot make virtual environments; on Debian: apt-get install python3-venv" >&2; exit 1; }
+	$(ENVIRONMENT)
+	@echo "installing coaxshell with the tools of its development into $(VENV): once, one to three minutes as the network goes"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev]'
+	@touch $@
+
+# The demonstration needs no more than its runs and its film.
+$(STAMP_DEMO): pyproject.toml
+	$(ENVIRONMENT)
+	@echo "installing coaxshell with what a run and a film need into $(VENV): once, about a minute as the network goes"
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[video]'
 	@touch $@
 
 # VTK, 764 MB installed, only reads back what we write for ParaView.
@@ -37,16 +49,22 @@ $(STAMP_ALL): $(STAMP)
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev,paraview-check]'
 	@touch $@
 
-demo: $(STAMP)
+demo: $(STAMP_DEMO)
 	@mkdir -p $(DEMO)
-	@echo "hybrid against bare: two runs, their reductions, a sheet of fields and a film, about half a minute"
+	@echo "hybrid against bare: two runs, their reductions, a sheet of fields and a film, one to two minutes"
+	@echo "  bare: a few seconds"
 	@$(BIN)/coaxshell run bare --quiet --force --output $(DEMO)/bare.nc > $(DEMO)/bare.txt
-	@$(BIN)/coaxshell run hybrid --compare bare --quiet --force --output $(DEMO)/hybrid.nc --figure $(DEMO)/stress.png
+	@echo "  hybrid beside bare: 10 s"
+	@$(BIN)/coaxshell run hybrid --compare bare --quiet --force --output $(DEMO)/hybrid.nc --figure $(DEMO)/stress.png > $(DEMO)/reductions.txt
+	@cat $(DEMO)/reductions.txt
+	@echo "  stress at head and tail, and pressure at four instants: half a minute"
 	@$(BIN)/coaxshell figure 3 --quiet --force --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
 	@$(BIN)/coaxshell snapshots $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --times 0.5,1.2,2,3.1 --columns 2 --quiet --force \
-	  --output $(DEMO)/fields.png 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
+	  --output $(DEMO)/fields.png 2> $(DEMO)/.told || { cat $(DEMO)/.told >&2; exit 1; }
+	@echo "  a film of 100 frames: a minute"
 	@$(BIN)/coaxshell animate $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --frames 100 --fps 20 --size 360 --quiet --force \
-	  --output $(DEMO)/film.mp4 2> $(DEMO)/log.txt || { cat $(DEMO)/log.txt >&2; exit 1; }
+	  --output $(DEMO)/film.mp4 2> $(DEMO)/.told || { cat $(DEMO)/.told >&2; exit 1; }
+	@rm -f $(DEMO)/.told
 
 # The studio's page is tested in a real browser: Debian's, installed when it is missing and we may.
 chromium:

@@ -206,6 +206,7 @@ class Response:
     def energy(self, every: int = 10, progress: Callable[[float, str], None] | None = None) -> xr.Dataset:
         """Return every store, flow and loss of energy and the closure residual, J per metre of length, at every so many instants.
 
+        Takes ten to thirty seconds at the paper's resolution; *progress* is told how far it is.
         See :func:`coaxshell.response.energy.energy`.
         """
         return energy(self.solution, every, progress, spectra=self._spectra)
