@@ -7,9 +7,11 @@ import importlib
 import re
 import tomllib
 
+import limit_pages
 import pytest
 
 import coaxshell
+from coaxshell import limits
 from house import PACKAGE, PROJECT, modules, tree
 
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
@@ -42,7 +44,8 @@ def test_every_exported_name_exists():
 def test_lazy_names_and_their_static_imports_agree():
     guarded = next(node for node in tree(PACKAGE / "__init__.py").body if isinstance(node, ast.If))
     static = {(node.module, alias.name) for node in guarded.body if isinstance(node, ast.ImportFrom) for alias in node.names}
-    assert static == {(home, name) for name, home in coaxshell._HOME.items()}
+    rooms = {(coaxshell.__name__, name) for name in coaxshell._SUBPACKAGES}
+    assert static == {(home, name) for name, home in coaxshell._HOME.items()} | rooms
     assert set(coaxshell.__all__) == {name for _, name in static} | {"InputError", "PhysicsWarning", "__version__"}
 
 
@@ -64,3 +67,12 @@ def test_the_version_stands_in_one_place():
 
 def test_the_package_is_marked_as_typed():
     assert (PACKAGE / "py.typed").is_file()
+
+
+def test_every_bound_stands_in_the_documentation():
+    bounds = {name: value for name, value in vars(limits).items() if isinstance(value, limits.Limit)}
+    assert {name for name, value in bounds.items() if value not in limits.TABLE} == set()
+    assert len(limits.TABLE) == len(set(limits.TABLE)) == len(bounds)
+    page = limit_pages.limit_table()
+    for value in bounds.values():
+        assert f"| {value.what} | {value.value:,} | {value.unit} |" in page

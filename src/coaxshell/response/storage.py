@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
+from coaxshell.limits import SAVED_TEXT
 from coaxshell.numerics.netcdf import write_netcdf
 from coaxshell.numerics.seal import add_seal
 from coaxshell.response import restored
@@ -39,6 +40,7 @@ def save(solution: ModalSolution, path: str | Path, *, compression: bool = False
     if solution.problem != dimensionless(solution.problem.system):
         raise InputError("response", "was made with other formulas than a file could repeat", "save its histories as tables instead")
     dataset = to_dataset(solution)
+    SAVED_TEXT.check(len(dataset["scenario"].item().encode()), "response", "resample its record, or cut it")
     packed = {"zlib": True, "complevel": 4, "shuffle": True} if compression else {}
     encoding = {name: {"_FillValue": None, **packed} for name in ARRAYS if name in dataset and dataset[name].size}
     write_netcdf(dataset, path, encoding, add_seal)
