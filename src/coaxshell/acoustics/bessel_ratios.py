@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ive, kve
+from scipy import special
+from scipy.special import ive
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -83,6 +84,28 @@ def i_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
         np.add(work, ratios[m], out=work)
         np.reciprocal(work, out=ratios[m - 1])
     return ratios
+
+
+_ASYMPTOTIC = 1e4
+"""|z| above which four terms of K_0's and K_1's asymptotic series are exact to rounding; SciPy's kve ends at about 2^30."""
+
+
+def kve(order: int, z: npt.ArrayLike) -> ComplexArray:
+    """Return K_m(z) e^z for m = 0 or 1 and Re z > 0, however large z.
+
+    For large z sqrt(pi/(2 z)) (1 + a_1/z + a_2/z^2 + ...), a_k = a_{k-1} (4 m^2 - (2 k - 1)^2)/(8 k) (DLMF 10.40.2).
+    """
+    z = np.asarray(z, dtype=np.complex128)
+    large = np.abs(z) > _ASYMPTOTIC
+    value = np.asarray(special.kve(order, np.where(large, _ASYMPTOTIC, z)), dtype=np.complex128)
+    if large.any():
+        inverse, term = 1.0 / z[large], np.ones(int(large.sum()), np.complex128)
+        series = term.copy()
+        for k in range(1, 5):
+            term = term * inverse * ((4.0 * order**2 - (2 * k - 1) ** 2) / (8.0 * k))
+            series += term
+        value[large] = np.sqrt(0.5 * np.pi * inverse) * series
+    return value
 
 
 def k_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:

@@ -18,11 +18,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.special import kve
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.bessel_ratios import ComplexArray, kve
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray
+from coaxshell.acoustics.rays import path_to
 
 NEAREST = 1e-3
 """Least distance from a source at which it is evaluated; nearer points get the value there: fields stay finite."""
@@ -74,7 +74,7 @@ class SphericalField:
     def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray) -> None:
         self._pulse = pulse
         self._range, self._ray = _rays(distance, x, y)
-        self._path, self._spread = self._range - (distance - 1.0), (distance - 1.0) / self._range
+        self._path, self._spread = path_to(distance, x, y, NEAREST), (distance - 1.0) / self._range
 
     def pressure(self, time: float) -> FloatArray:
         """Return (S/R) f(x)."""
@@ -93,7 +93,7 @@ class LineField:
     def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray, latest: float) -> None:
         self._pulse, self._start = pulse, distance - 1.0
         self._range, self._ray = _rays(distance, x, y)
-        self._path, self._spread = self._range - self._start, np.sqrt(self._start / self._range)
+        self._path, self._spread = path_to(distance, x, y, NEAREST), np.sqrt(self._start / self._range)
         self._wakes: dict[int, Callable[[float, FloatArray], FloatArray]] = {}
         self._latest = latest
 

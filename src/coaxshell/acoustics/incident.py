@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.special import kve
 
 from coaxshell.acoustics import bessel_ratios as br
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.fourier_sums import exponential_sums
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions
+from coaxshell.acoustics.rays import surface_rays
 
 SurfaceLoad = Callable[[RadialFunctions, slice], ComplexArray]
 """From the exterior fluid's radial functions at r = 1 and the slice of grid nodes they stand for to L_m(s), (orders, nodes)."""
@@ -40,7 +40,7 @@ class PlaneGeometry:
         """Return L_m = -eps_m e^{-s}/(s K_m'(s)), from the Wronskian I_m K_m' - I_m' K_m = -1/s."""
 
         def load(surface: RadialFunctions, nodes: slice) -> ComplexArray:
-            inverse_k = br.running_product(1.0 / kve(0, surface.kappa), 1.0 / surface.k_ratios)  # e^{-s}/K_m(s)
+            inverse_k = br.running_product(1.0 / br.kve(0, surface.kappa), 1.0 / surface.k_ratios)  # e^{-s}/K_m(s)
             return -neumann(orders) * surface.keep(inverse_k) * surface.exterior
 
         return load
@@ -58,7 +58,7 @@ class LineGeometry:
         def load(surface: RadialFunctions, nodes: slice) -> ComplexArray:
             s, far = surface.kappa, surface.kappa * self.distance
             far_ratios = br.k_ratios(surface.max_order, far)
-            order_zero = kve(0, far) / (kve(0, s) * kve(0, s * (self.distance - 1.0)))  # exponentials cancel: R0 = 1 + S
+            order_zero = br.kve(0, far) / (br.kve(0, s) * br.kve(0, s * (self.distance - 1.0)))  # exponentials cancel: R0 = 1 + S
             across = br.running_product(order_zero, far_ratios / surface.k_ratios)
             return -neumann(orders) * surface.keep(across) * surface.exterior
 
@@ -90,13 +90,12 @@ class SphericalGeometry:
         """
         points = int(1.05 * (grid.nyquist + float(orders[-1]))) + 64
         theta = np.pi * (np.arange(points) + 0.5) / points
-        range_ = np.sqrt(1.0 + self.distance**2 - 2.0 * self.distance * np.cos(theta))
-        slope = (1.0 - self.distance * np.cos(theta)) / range_  # dR/dr at r = 1
-        amplitude = (self.distance - 1.0) / range_ / points
+        rays = surface_rays(theta, self.distance)
+        amplitude = rays.spread / points
         cosines = np.cos(theta[:, None] * orders) * neumann(orders).T
-        shapes = np.stack([amplitude, amplitude * slope, amplitude * slope / range_], axis=1)
+        shapes = np.stack([amplitude, amplitude * rays.slope, amplitude * rays.slope * rays.curvature], axis=1)
         weights = (shapes[:, :, None] * cosines[:, None, :]).reshape(points, -1)
-        sums = exponential_sums(range_ - (self.distance - 1.0), weights, grid)
+        sums = exponential_sums(rays.path, weights, grid)
         pressure, front, afterflow = sums.reshape(3, orders.size, -1)
         return pressure, self.acceleration(front, afterflow, grid.nodes)
 

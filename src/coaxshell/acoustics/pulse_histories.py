@@ -36,6 +36,21 @@ def pulse_history(pulse: Pulse, t: FloatArray, time_scale: float, pressure_scale
     return np.asarray(np.where(t >= 0, pressure, 0.0) / pressure_scale, dtype=np.float64)
 
 
+def pulse_corners(pulse: Pulse, time_scale: float, most: int = 16) -> FloatArray:
+    """Return the dimensionless times after its start at which a pulse jumps or bends, ascending; of many the sharpest."""
+    match pulse:
+        case Step() if pulse.rise_time > 0:
+            return np.array([pulse.rise_time / time_scale])
+        case Sampled():
+            times, values = pulse.curve
+            slopes = np.diff(values) / np.diff(times)
+            bends = np.append(np.abs(np.diff(slopes, prepend=0.0)), np.inf if values[-1] else np.abs(slopes[-1]))
+            bends[0] = np.inf if values[0] else bends[0]
+            there = np.flatnonzero((bends > 1e-12 * np.abs(slopes).max()) & (times > 0.0))
+            return np.sort(times[there[np.argsort(-bends[there], kind="stable")[:most]]]) / time_scale
+    return np.empty(0)
+
+
 def pulse_impulse(pulse: Pulse, t: FloatArray, time_scale: float, pressure_scale: float) -> FloatArray:
     """Return the integral of the pulse from 0 to t, dimensionless, of the shape of t."""
     seconds = np.maximum(t, 0.0) * time_scale
@@ -60,5 +75,5 @@ def _sampled_impulse(times: FloatArray, values: FloatArray, seconds: FloatArray)
     until = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(times))])
     index = np.clip(np.searchsorted(times, inside, side="right") - 1, 0, times.size - 2)
     elapsed = inside - times[index]
-    slope = (values[index + 1] - values[index]) / (times[index + 1] - times[index])
-    return np.asarray(until[index] + elapsed * (values[index] + 0.5 * slope * elapsed), dtype=np.float64)
+    share = elapsed / (times[index + 1] - times[index])
+    return np.asarray(until[index] + elapsed * (values[index] + 0.5 * share * (values[index + 1] - values[index])), dtype=np.float64)

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import erfcx
 
 from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.sampled_transforms import piecewise_linear
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
 
 
@@ -33,15 +34,15 @@ def pulse_transform(pulse: Pulse, s: ComplexArray, time_scale: float, pressure_s
             return pulse.peak_pressure / pressure_scale * _gaussian(s, width, centre)
         case Sampled():
             times, values = pulse.curve
-            return _piecewise_linear(s, times / time_scale, values / pressure_scale)
+            return piecewise_linear(s, times / time_scale, values / pressure_scale)
     raise TypeError(f"no transform for a pulse of type {type(pulse).__name__}")
 
 
 def _ramp(s: ComplexArray, rise: float) -> ComplexArray:
-    """Unit step reached linearly within ``rise``: (1 - e^{-s rise})/(s^2 rise), or 1/s."""
-    if rise == 0.0:
-        return 1.0 / s
-    return -np.expm1(-s * rise) / (s**2 * rise)
+    """Unit step reached linearly within ``rise``: (1 - e^{-z})/(z s) with z = s rise, or 1/s."""
+    z = s * rise
+    still = z == 0.0
+    return np.asarray(np.where(still, 1.0, -np.expm1(-z) / np.where(still, 1.0, z)) / s, dtype=np.complex128)
 
 
 def _gaussian(s: ComplexArray, width: float, centre: float) -> ComplexArray:
@@ -52,20 +53,6 @@ def _gaussian(s: ComplexArray, width: float, centre: float) -> ComplexArray:
     value = np.empty_like(s)
     front = math.exp(-(centre**2) / (2.0 * width**2))
     value[~left] = front * erfcx(argument[~left])
-    value[left] = 2.0 * np.exp(argument[left] ** 2 - centre**2 / (2.0 * width**2)) - front * erfcx(-argument[left])
+    turned = s[left] * (0.5 * s[left] * width**2 - centre)  # argument^2 less centre^2/(2 width^2), which may be any size
+    value[left] = 2.0 * np.exp(turned) - front * erfcx(-argument[left])
     return scale * value
-
-
-def _piecewise_linear(s: ComplexArray, times: np.ndarray, values: np.ndarray) -> ComplexArray:
-    """Linear between samples, zero before the first and after the last: sums of jumps e^{-s t}/s and kinks e^{-s t}/s^2."""
-    slopes = np.diff(values) / np.diff(times)
-    kinks = np.diff(np.concatenate([[0.0], slopes, [0.0]]))
-    jumps = np.zeros_like(values)
-    jumps[0], jumps[-1] = values[0], -values[-1]
-    result = np.empty_like(s)
-    block = max(1, 2_000_000 // times.size)
-    for start in range(0, s.size, block):
-        nodes = s[start : start + block]
-        waves = np.exp(-np.outer(times, nodes))
-        result[start : start + block] = (kinks @ waves / nodes + jumps @ waves) / nodes
-    return result

@@ -76,12 +76,15 @@ class SurfaceLoads:
     def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> None:
         self.halves = 2 if needs_sine_half(problem.system.sources) else 1
         self._problem, self._orders = problem, orders
-        self._groups = [(UnitLoad(wave, grid, orders, workshop), sources) for wave, sources in _geometries(problem).items()]
+        self._groups = [
+            (UnitLoad(wave, grid, orders, workshop), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
+            for wave, sources in _geometries(problem).items()
+        ]
 
     def __call__(self, surface: RadialFunctions, nodes: slice) -> list[ComplexArray]:
         """Return the load of the cosine half, and of the sine half if any source needs it, at a slice of the grid's nodes."""
-        units = ((unit(surface, nodes), sources) for unit, sources in self._groups)
-        return _superposed(self._problem, self._orders, surface.kappa, units)
+        units = ((unit(surface, nodes), [(source, x[nodes]) for source, x in sources]) for unit, sources in self._groups)
+        return _superposed(self._problem, self._orders, units)
 
 
 def incident_on_surface(problem: Problem, grid: LaplaceGrid, surface: RadialFunctions) -> tuple[ComplexArray, ComplexArray]:
@@ -90,10 +93,11 @@ def incident_on_surface(problem: Problem, grid: LaplaceGrid, surface: RadialFunc
     *surface* holds the exterior fluid's functions there, at all orders and the nodes of the grid.
     """
     orders = surface.orders
-    groups = [(incident_parts(wave, grid, orders, surface), sources) for wave, sources in _geometries(problem).items()]
-    pressure, slope = (
-        np.stack(_superposed(problem, orders, surface.kappa, ((parts[which], sources) for parts, sources in groups))) for which in (0, 1)
-    )
+    groups = [
+        (incident_parts(wave, grid, orders, surface), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
+        for wave, sources in _geometries(problem).items()
+    ]
+    pressure, slope = (np.stack(_superposed(problem, orders, ((parts[which], sources) for parts, sources in groups))) for which in (0, 1))
     return pressure, slope
 
 
@@ -106,14 +110,16 @@ def _geometries(problem: Problem) -> dict[IncidentWave, list[Source]]:
 
 
 def _superposed(
-    problem: Problem, orders: FloatArray, s: ComplexArray, units: Iterable[tuple[ComplexArray, list[Source]]]
+    problem: Problem, orders: FloatArray, units: Iterable[tuple[ComplexArray, list[tuple[Source, ComplexArray]]]]
 ) -> list[ComplexArray]:
-    """Return the cosine half, and the sine half if any source needs it, of what all make, from what a unit pulse of each geometry makes."""
+    """Return the cosine half, and the sine half if any source needs it, of what all make.
+
+    *units* are what a unit pulse of each geometry makes, and the sources of that geometry with the transforms of their pulses.
+    """
     totals: list[ComplexArray | float] = [0.0] * (2 if needs_sine_half(problem.system.sources) else 1)
     for unit, sources in units:
-        spectra = [source_spectrum(problem, source, s) for source in sources]
         for half, total in enumerate(totals):
-            weights = sum(projection(orders, source.angle, half) * x for source, x in zip(sources, spectra, strict=True))
+            weights = sum(projection(orders, source.angle, half) * spectrum for source, spectrum in sources)
             totals[half] = total + unit * weights
     return [np.asarray(total, dtype=np.complex128) for total in totals]
 

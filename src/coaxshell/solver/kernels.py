@@ -115,14 +115,15 @@ def trapezoidal_sums(rate: FloatArray, time_step: float) -> FloatArray:
 def exponential_weights(decay: FloatArray, grid: LaplaceGrid) -> FloatArray:
     """Return the product-integration weights of e^{-b t}, shape (M + 1, T), for decays b of shape (M + 1, 1).
 
-    At lag 0 the integral of e^{-b t}(1 - t/dt) over one step, dt (x - 1 + e^{-x})/x^2 with x = b dt; later dt e^{-b t}
-    (sinh(x/2)/(x/2))^2.
+    At lag 0 the integral of e^{-b t}(1 - t/dt) over one step, dt (x - 1 + e^{-x})/x^2 with x = b dt; at lag k
+    dt ((1 - e^{-x})/x)^2 e^{-x (k - 1)}: dt e^{-b t} (sinh(x/2)/(x/2))^2 without its overflow, for walls as light as they may be.
     """
     x = decay * grid.time_step
-    half = 0.5 * np.where(x == 0.0, 1.0, x)
-    hat = np.where(x == 0.0, 1.0, (np.sinh(half) / half) ** 2)
-    weights: FloatArray = np.exp(-decay * grid.time) * hat * grid.time_step
-    series = 0.5 - x / 6.0 + x**2 / 24.0  # the closed form cancels for small x
-    closed = (x + np.expm1(-x)) / np.where(x == 0.0, 1.0, x) ** 2
+    divisor = np.where(x == 0.0, 1.0, x)
+    mean = np.where(x == 0.0, 1.0, -np.expm1(-x) / divisor)
+    weights: FloatArray = grid.time_step * mean**2 * np.exp(-x * np.maximum(np.arange(grid.time.size) - 1.0, 0.0))
+    small = np.clip(x, -1.0, 1.0)
+    series = 0.5 - small / 6.0 + small**2 / 24.0  # the closed form cancels for small x
+    closed = (1.0 - mean) / divisor
     weights[:, 0] = grid.time_step * np.where(np.abs(x) < 1e-3, series, closed)[:, 0]
     return weights

@@ -7,7 +7,8 @@ import numpy as np
 from coaxshell.acoustics.incident import neumann
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import FloatArray, RadialFunctions, all_orders
-from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
+from coaxshell.acoustics.pulse_histories import pulse_corners, pulse_history, pulse_impulse
+from coaxshell.acoustics.rays import front_angle, surface_rays
 from coaxshell.model.sources import Source
 from coaxshell.numerics.late import signal
 from coaxshell.solver.direct.weights import scattering_weights
@@ -39,8 +40,8 @@ def surface_loads(problem: Problem, grid: LaplaceGrid, max_order: int) -> FloatA
 def arc_integrals(problem: Problem, source: Source, times: FloatArray, orders: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return P0_m(t) and the modal radial velocity b_m(t) at r = 1 of a spherical or plane wave, each (M + 1, T).
 
-    The integrals run over the arc that the front has passed, 0 <= theta <= theta_front(t), where the integrand is smooth, by
-    Gauss-Legendre quadrature fine enough for the highest order.
+    The integrals run over the arc that the front has passed, 0 <= theta <= theta_front(t), split where the pulse's jumps and corners are
+    at that time: between them the integrand is smooth, and Gauss-Legendre quadrature fine enough for the highest order is exact.
     """
     scales = problem.scales
     nodes, weights = np.polynomial.legendre.leggauss(int(0.55 * np.pi * orders[-1]) + 48)
@@ -48,38 +49,24 @@ def arc_integrals(problem: Problem, source: Source, times: FloatArray, orders: F
     reach = None if distance is None else distance / scales.length
     pressure, velocity = np.zeros((2, orders.size, times.size))
     since = times - source.delay / scales.time
+    corners = np.append(pulse_corners(source.pulse, scales.time), np.inf)
     for start in range(0, times.size, _TIMES):
         block = slice(start, start + _TIMES)
-        front = _front_angle(since[block], reach)
-        if not front.any():
-            continue
-        theta = 0.5 * front[:, None] * (nodes + 1.0)
-        arrival, amplitude, slope, spread = _geometry(theta, reach)
-        clock = since[block][:, None] - arrival
-        p = amplitude * pulse_history(source.pulse, clock, scales.time, scales.pressure)
-        v = slope * (p + amplitude * spread * pulse_impulse(source.pulse, clock, scales.time, scales.pressure))
-        half_arc = 0.5 * front[:, None] * weights / np.pi
-        pressure[:, block], velocity[:, block] = _project(np.stack([p * half_arc, v * half_arc]), np.cos(theta), orders)
+        front = front_angle(since[block], reach)
+        for corner in corners:
+            behind = front_angle(since[block] - corner, reach)
+            if (front > behind).any():
+                theta = behind[:, None] + 0.5 * (front - behind)[:, None] * (nodes + 1.0)
+                rays = surface_rays(theta, reach)
+                clock = since[block][:, None] - rays.path
+                p = rays.spread * pulse_history(source.pulse, clock, scales.time, scales.pressure)
+                v = rays.slope * (p + rays.spread * rays.curvature * pulse_impulse(source.pulse, clock, scales.time, scales.pressure))
+                arc = 0.5 * (front - behind)[:, None] * weights / np.pi
+                both = _project(np.stack([p * arc, v * arc]), np.cos(theta), orders)
+                pressure[:, block] += both[0]
+                velocity[:, block] += both[1]
+            front = behind
     return pressure, velocity
-
-
-def _front_angle(since: FloatArray, distance: float | None) -> FloatArray:
-    """Return the angle up to which the front has passed the surface r = 1."""
-    since = np.maximum(since, 0.0)
-    if distance is None:
-        cosine = 1.0 - since
-    else:
-        cosine = (1.0 + distance**2 - (distance - 1.0 + since) ** 2) / (2.0 * distance)
-    return np.arccos(np.clip(cosine, -1.0, 1.0))
-
-
-def _geometry(theta: FloatArray, distance: float | None) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return arrival time, amplitude S/R, dR/dr and 1/R at r = 1 (theory manual, section "Incident wave")."""
-    if distance is None:
-        return 1.0 - np.cos(theta), np.ones_like(theta), -np.cos(theta), np.zeros_like(theta)
-    range_ = np.sqrt(1.0 + distance**2 - 2.0 * distance * np.cos(theta))
-    stand_off = distance - 1.0
-    return range_ - stand_off, stand_off / range_, (1.0 - distance * np.cos(theta)) / range_, 1.0 / range_
 
 
 def _project(values: FloatArray, cosine: FloatArray, orders: FloatArray) -> FloatArray:
