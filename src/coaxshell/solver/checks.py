@@ -12,6 +12,7 @@ import numpy as np
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.naming import shell_phrase
+from coaxshell.model.plausibility import remarks
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
@@ -44,6 +45,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)
+        + remarks(problem.system)
     )
 
 

@@ -1,0 +1,49 @@
+"""Magnitudes that no material or fluid has, and what was probably meant: remarked when a system is solved, never refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from coaxshell.model.fluids import Fluid
+from coaxshell.model.pulses import Sampled
+from coaxshell.model.shells import Shell
+
+if TYPE_CHECKING:
+    from coaxshell.model.system import System
+
+USUAL: dict[str, tuple[float, float, str, tuple[tuple[float, str], ...]]] = {
+    "youngs_modulus": (1e8, 1.3e12, "Pa", ((1e9, "GPa"), (1e6, "MPa"))),
+    "density": (50.0, 25_000.0, "kg/m^3", ((1e3, "g/cm^3"),)),
+    "sound_speed": (300.0, 10_000.0, "m/s", ((1e3, "km/s"), (1e-3, "mm/s"))),
+}
+"""Least and largest usual value, its unit, and units that people have in mind. Young's moduli from polymers to diamond (1.2e12 Pa) and
+densities from foams to osmium (22,590 kg/m^3): M. F. Ashby, Materials Selection in Mechanical Design; sound speeds from air to hydrogen
+and glass: CRC Handbook of Chemistry and Physics. A value outside that would be usual in another unit was probably meant in that one;
+one that would not, such as a wall of next to nothing, is somebody's intention."""
+
+
+def remarks(system: System) -> list[str]:
+    """Return a remark on each magnitude that is out of its range, with the likely meaning, and those on measured records."""
+    found: list[str] = []
+    for i, shell in enumerate(system.shells):
+        for j, layer in enumerate(shell.layers if isinstance(shell, Shell) else ()):
+            for name in ("youngs_modulus", "density"):
+                found += _told(f"shells[{i}].layers[{j}].material.{name}", name, getattr(layer.material, name, None))
+    for i, fluid in enumerate(system.fluids):
+        if isinstance(fluid, Fluid):
+            found += _told(f"fluids[{i}].sound_speed", "sound_speed", fluid.sound_speed)
+    for i, source in enumerate(system.sources):
+        where = f"source[{i}]" if isinstance(system.source, tuple) else "source"
+        if isinstance(source.pulse, Sampled):
+            found += [f"{where}.pulse: {text}" for text in source.pulse.remarks]
+    return list(dict.fromkeys(found))
+
+
+def _told(where: str, name: str, value: Any) -> Iterator[str]:
+    least, most, unit, likely = USUAL[name]
+    if not isinstance(value, float) or least <= value <= most:
+        return
+    meant = next((word for factor, word in likely if least <= value * factor <= most), None)
+    if meant is not None:
+        yield f"{where} = {value:g} {unit} is outside {least:g} to {most:g} {unit}; is {value:g} {meant} meant?"
