@@ -108,7 +108,7 @@ def loose_reading(content, separator, decimal):
     first = next((k for k, row in enumerate(rows) if len(row) == 2 and None not in row), len(rows))
     if any(line[0] in "+-.0123456789" for line in lines[:first]) or any(len(row) != 2 or None in row for row in rows[first:]):
         return None
-    units = re.findall(r"\(([^()\s]+)\)", text[: text.find(lines[first])].replace("\xa0", "")) if first else []
+    units = re.findall(r"\(([^()\s]+)\)", text[: text.find(lines[first])].replace("\xa0", "").replace("\ufeff", "")) if first else []
     if len(units) not in (0, 2):
         return None
     factors = (TIME_UNITS.get(units[0]), PRESSURE_UNITS.get(units[1])) if units else (1.0, 1.0)

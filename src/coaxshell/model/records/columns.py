@@ -123,7 +123,7 @@ def is_unit(text: str) -> bool:
 
 def factor_of(unit: str, kind: str) -> float | None:
     """Return the factor of a unit to SI; None if it is no unit of *kind*."""
-    if not unit.strip() or len(unit) > 40:
+    if not unit.strip() or len(unit) > 40 or "%" in unit:  # "%Pa" is a spoilt kPa sooner than a hundredth
         return None
     try:
         return to_si(f"1 {unit}", kind)
