@@ -189,13 +189,15 @@ def settings_of(given: object, *, live: bool, system: System | None = None) -> S
     return settings
 
 
-def wrong_with(given: object) -> list[InputError]:
+def wrong_with(given: object, system: System | None) -> list[InputError]:
     """Return all that is wrong with a resolution at which a run may be asked for; nothing with none."""
     found: list[InputError] = []
     left = dict(given) if isinstance(given, dict) else given
+    if system is None and isinstance(left, dict):  # what a text is in transits cannot be told yet
+        left = {name: value for name, value in left.items() if not isinstance(value, str)}
     while left is not None and len(found) <= len(PREVIEW):
         try:
-            settings_of(left, live=False)
+            settings_of(left, live=False, system=system)
             break
         except InputError as error:
             found.append(error)

@@ -52,24 +52,33 @@ async def read(work: Callable[[], T], data: dict[str, Any]) -> T:
 async def conversation(data: dict[str, Any], **more: Any) -> Response:
     """Return the answer to a description, valid or not, with further entries."""
     try:
-        answer = await read(lambda: descriptions.told(_described(data)), data)
+        answer = await read(lambda: _described(data), data)
     except InputError as error:
         return JSONResponse(refusals.told(error))
-    return JSONResponse({**answer, **more})
+    return JSONResponse({**more, **answer})
 
 
-def _described(data: dict[str, Any]) -> System:
-    """Return the system of a request; InputError with all that is wrong with it and with the resolution that goes with it, if one does."""
+def _described(data: dict[str, Any]) -> dict[str, Any]:
+    """Return the answer to a description; InputError with all that is wrong with it, and with the resolution that may go with it."""
+    given, system = data.get("resolution"), None
     problems: list[InputError] = []
     try:
         system = descriptions.system_of(data)
     except InputError as error:
         problems = [error, *error.also]
-    problems += limits.wrong_with(data.get("resolution"))
-    if problems:
+    problems += limits.wrong_with(given, system)
+    if system is None or problems:
         first, *others = problems
         raise InputError(first.where, first.problem, first.remedy, tuple(others))
-    return system
+    if given is None:
+        return descriptions.told(system)
+    settings = limits.settings_of(given, live=False, system=system)
+    with refusals.readable("system"):
+        limits.check_cost(system, settings, live=False)
+    return {
+        **descriptions.told(system),
+        "resolution": {name: getattr(settings, name) for name in limits.PREVIEW if not isinstance(given, dict) or name in given},
+    }
 
 
 def wanted(data: dict[str, Any], *, live: bool) -> tuple[System, Settings]:

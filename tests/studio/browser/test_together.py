@@ -61,12 +61,12 @@ def test_the_page_outlives_a_restart_of_the_server(own_server, open_page, watche
     assert run_of(page)["arrays"]["time"].size > 1000
 
 
-def test_a_link_holds_the_whole_system(page, open_page):
+def test_a_link_holds_the_whole_system(server, page, open_page):
     page.locator("#preset").select_option(label="absorbers")
     until(page, "window.coaxshell.state.system.control === null")
     until(page, "location.hash.startsWith('#s=')")
     page.wait_for_timeout(800)  # the address follows half a second behind
-    again = open_page(page.url)
+    again = open_page(f"{server.address}#{page.url.partition('#')[2]}")
     assert system_of(again) == cx.presets.load("absorbers")
 
 

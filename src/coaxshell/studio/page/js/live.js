@@ -41,6 +41,8 @@ export class Slot {
     this.shown = wish.revision;
     if (!answer.ok) {
       this.stopFull();
+      // What is too much for a preview may be asked for in full, whose limits have been looked at before.
+      if (wish.full && answer.problem.where === "resolution" && this.wanted.revision === wish.revision) return this.refine();
       return this.tell.problem(answer.problems ?? [answer.problem], wish);
     }
     this.keep(wish, answer, false);

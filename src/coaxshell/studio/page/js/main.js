@@ -86,7 +86,7 @@ async function change(path, value, { live = false } = {}) {
 
 // Ask the library about system and resolution: adopted when it accepts both, else every problem beside its field, that of `path` first.
 async function check({ since, path = "", whole = false, keepForm }) {
-  const mine = ++checking, resolution = JSON.stringify(page.resolution);
+  const mine = ++checking;
   let answer;
   try {
     answer = await request("/api/validate", { body: { system: page.system, resolution: page.resolution } });
@@ -98,8 +98,9 @@ async function check({ since, path = "", whole = false, keepForm }) {
   }
   page.metrics = answer.metrics ?? [];
   record.understood(answer.records);
-  const finer = resolution !== page.resolved;
-  page.resolved = resolution;
+  page.resolution = { ...page.resolution, ...answer.resolution };
+  const finer = JSON.stringify(page.resolution) !== page.resolved;
+  page.resolved = JSON.stringify(page.resolution);
   adopt(answer.system, { since, keepForm: keepForm && shape(answer.system) === page.shape });
   if (finer && page.runs.pinned) slots.pinned.want(page.runs.pinned.system, { resolution: preview(), full: page.resolution });
 }

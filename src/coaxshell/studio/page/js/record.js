@@ -27,6 +27,7 @@ export function editor(path, change) {
     try {
       const query = new URLSearchParams(Object.entries({ name: one.name, ...one.options }).filter(([, value]) => value !== "")).toString();
       const answer = await request(`/api/record?${query}`, { body: one.body, type: "application/octet-stream" });
+      if (given.get(path) !== one) return null; // something newer was given meanwhile
       one.columns = answer.columns;
       if (answer.ok) return change(path, answer.pulse);
       note.textContent = `Not read. ${told(answer.problem)}`;
@@ -42,7 +43,7 @@ export function editor(path, change) {
     if (!one) return;
     const pick = (name, label, values) => {
       const id = `record-${path}-${name}`;
-      const select = el("select", { id, onchange: () => give({ ...one, options: { ...one.options, [name]: select.value } }) },
+      const select = el("select", { id, onchange: () => { const now = given.get(path); give({ ...now, options: { ...now.options, [name]: select.value } }); } },
         el("option", { value: "" }, name.endsWith("unit") ? "as written" : "found by itself"), ...values.map((value) => el("option", { value, selected: value === one.options[name] }, value)));
       return el("div", { class: "field" }, el("label", { for: id }, label), select);
     };

@@ -66,5 +66,7 @@ export function inWords(text) {
     .replace(/\buse modes ?= ?(\d+) or modes ?= ?"auto"/g, "set Orders to $1 under Resolution")
     .replace(/\bmodes ?= ?(\d+)/g, "Orders $1")
     .replace(/\btime_step ?= ?([\d.e-]+)/g, "a time step of $1 a/c")
+    .replace(/\bgive (time|pressure)_column, a name or a number from 1 on/g, "choose the column of $1")
+    .replace(/\bgive (time|pressure)_unit\b/g, "choose the unit of $1")
     .replace(/\bhalve time_step\b/g, "halve the time step under Resolution");
 }
