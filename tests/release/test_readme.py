@@ -20,6 +20,7 @@ SMALLER = {
     "init": [],
     "run": COARSE,
     "info": [],
+    "plot": COARSE,
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
     "animate": ["--frames", "2", "--size", "80", "--quiet"],
