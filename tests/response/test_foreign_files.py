@@ -297,7 +297,7 @@ original, folder, first, count = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.a
 content = original.read_bytes()
 bare = content[: content.rindex(b"\\ncoaxshell sha256")]
 VALUES = ["", "{}", "[]", "null", "NaN", "[" * 5000, '{"duration": 1e999}', '{"modes": 1e9}', '{"a": 1}', "x" * 100_000, 1.5, -1, 2**62,
-          np.nan, np.arange(3), np.array(["a", "b"]), b"\\xff\\xfe", h5py.Empty("f8"), True, '[1]', '["\\\\ud800"]', "\\x1b[31m"]
+          np.nan, np.arange(3), np.array([b"a", b"b"]), b"\\xff\\xfe", h5py.Empty("f8"), True, '[1]', '["\\\\ud800"]', "\\x1b[31m"]
 refused = 0
 for seed in range(first, first + count):
     chance = random.Random(seed)
