@@ -5,10 +5,13 @@ from __future__ import annotations
 import tracemalloc
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.export.paraview import export_paraview
+from coaxshell.export.tables import export_csv
 from coaxshell.model import presets
 from coaxshell.numerics import memory
 from coaxshell.numerics.cost import Cost
@@ -141,3 +144,36 @@ def test_costs_add_up() -> None:
     assert case.times(8).memory == 1e9
     assert case.then(Cost(3e9, 1.0)) == Cost(3e9, 11.0)
     assert [Cost(0.0, s).duration for s in (40.0, 200.0, 30000.0, 5e5)] == ["40 s", "3.3 min", "8.3 h", "5.8 days"]
+
+
+@pytest.fixture(scope="module")
+def run() -> cx.Response:
+    return cx.simulate(presets.load("bare"), duration=2.0, time_step=1e-2, modes=12)
+
+
+@pytest.mark.parametrize("ask", ["pressure", "velocity", "intensity"])
+def test_fields_that_do_not_fit(ask: str, run: cx.Response, monkeypatch: pytest.MonkeyPatch) -> None:
+    axis = np.broadcast_to(1.5, 200_000)  # a grid of 4e10 points
+    with pytest.raises(InputError, match=rf"memory: the {ask} at 40,000,000,000 points and 2 instants needs about [\d.]+ TB"):
+        getattr(run, ask)(x=axis, y=axis, time=[0.5, 1.0])
+    monkeypatch.setenv(memory.VARIABLE, "1 MB")
+    with pytest.raises(InputError, match="ask for fewer points, or for some instants at a time"):
+        getattr(run, ask)(radius=np.linspace(1, 2, 100), angle=np.linspace(0, 90, 100), time=[0.5, 1.0])
+
+
+def test_energies_and_exports_that_do_not_fit(run: cx.Response, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(memory.VARIABLE, "20 kB")
+    with pytest.raises(InputError, match="the energy of 201 instants and orders 0 to 12 needs about"):
+        run.energy()
+    with pytest.raises(InputError, match="ParaView's series of 101 instants of a run of 201 needs about"):
+        export_paraview(run, tmp_path / "series")
+    with pytest.raises(InputError, match="a table of 18 columns and 201 rows needs about"):
+        export_csv(run, tmp_path / "table.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_studies_that_do_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(memory.VARIABLE, "600 MB")
+    over = {"source.peak_pressure": [1e3, 2e3, 3e3, 4e3, 5e3, 6e3]}
+    with pytest.raises(InputError, match=r"a study of 6 cases in 6 processes needs about .* and 600 MB are free; use workers=[123];"):
+        cx.sweep(presets.load("bare"), over, workers=6, duration=5.0, time_step=1e-2, modes=60)

@@ -12,7 +12,7 @@ from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.streams import echo
-from coaxshell.cli.studying import study_options, tell_code
+from coaxshell.cli.studying import study_options, tell_code, tell_study_time
 
 
 def optimise(
@@ -62,6 +62,8 @@ def optimise(
     problem = read_study(study, OptimisationStudy).problem(study.parent, allow_code=allow_code, tell=tell_code)
     folder = journal or Path(f"{study.stem}.journal")
     with study_options(folder, resume, workers, dask, quiet) as how:
+        runs = problem.evaluations * max(1, len(problem.uncertain.points))
+        tell_study_time([problem.space.base], problem.resolution, runs, how, quiet=quiet)
         optimum = optimise_problem(problem, how)
     optimum.save(target)
     if figure is not None:

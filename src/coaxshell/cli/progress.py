@@ -6,12 +6,23 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from coaxshell.numerics.cost import Cost
 
 from coaxshell.cli.streams import printable
 
 Report = Callable[[float, str], None]
 
 _LINES = 10
+
+
+def tell_time(cost: Cost, what: str, quiet: bool) -> None:
+    """Say on stderr how long something will take, if that is longer than anyone waits without asking."""
+    if not quiet and cost.seconds >= 30.0:
+        sys.stderr.write(f"{what}: about {cost.duration} on a machine that has nothing else to do\n")
+        sys.stderr.flush()
 
 
 @contextmanager

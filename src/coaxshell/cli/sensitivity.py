@@ -12,7 +12,7 @@ from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.streams import echo
-from coaxshell.cli.studying import study_options, tell_code
+from coaxshell.cli.studying import study_options, tell_code, tell_study_time
 
 
 def sensitivity(
@@ -46,6 +46,7 @@ def sensitivity(
     plan = read_study(study, SensitivityStudy).plan(study.parent, allow_code=allow_code, tell=tell_code)
     folder = store or Path(f"{study.stem}.store")
     with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as how:
+        tell_study_time(plan.systems, plan.resolution, len(plan.systems), how, quiet=quiet)
         found = uncertainty_of(plan, how)
     write_netcdf(found, target)
     if figure is not None and told(found):

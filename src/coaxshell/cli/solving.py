@@ -9,7 +9,7 @@ from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 from coaxshell.cli import options, values
-from coaxshell.cli.progress import progress
+from coaxshell.cli.progress import progress, tell_time
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -41,9 +41,13 @@ class Request:
     def solve(self, system: System, *, quiet: bool) -> Response:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
         from coaxshell.response import simulate
+        from coaxshell.solver.cost import run_cost
+        from coaxshell.solver.settings import Settings as Checked
 
         settings = self.settings(system)
         with values.named_as_options(), progress(quiet) as report:
+            if settings["modes"] != "auto":
+                tell_time(run_cost(system, Checked(**settings)), "the run", quiet)
             return simulate(system, progress=report, **settings)
 
     def settings(self, system: System) -> Settings:

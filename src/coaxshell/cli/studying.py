@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from coaxshell.cli.progress import progress
+from coaxshell.cli.progress import progress, tell_time
 from coaxshell.cli.values import named_as_options, whole
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
-    from coaxshell.studies import How
+    from coaxshell.model import System
+    from coaxshell.studies import How, Resolution
 
 
 @contextmanager
@@ -36,6 +37,16 @@ def study_options(store: Path, resume: bool, workers: str | None, dask: str | No
             with named_as_options(address="dask", dask="dask"):
                 executor = stack.enter_context(dask_executor(dask))
         yield How(executor, number, store, resume, stack.enter_context(progress(quiet, left=True)))
+
+
+def tell_study_time(systems: Sequence[System | InputError], resolution: Resolution, count: int, how: How, *, quiet: bool) -> None:
+    """Say how long a study of so many runs will take, from some of its systems."""
+    from coaxshell.studies.cost import case_cost
+    from coaxshell.studies.executors import capacity
+
+    if resolution.modes != "auto":
+        cost = case_cost(systems, resolution).times(count, capacity(how.executor, how.workers))
+        tell_time(cost, f"{count:,} runs", quiet)
 
 
 def tell_code(functions: list[str]) -> None:

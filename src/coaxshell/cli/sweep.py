@@ -12,7 +12,7 @@ from coaxshell.cli import options
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.streams import echo
-from coaxshell.cli.studying import study_options, tell_code
+from coaxshell.cli.studying import study_options, tell_code, tell_study_time
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ def sweep(
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")
     with kept(folder, len(design.cases)), study_options(folder, resume, workers, dask, quiet) as how:
+        tell_study_time([system], resolution, len(design.cases), how, quiet=quiet)
         dataset = sweep_design(system, design, metrics, resolution, how)
     _write(dataset, target, csv, figure)
     if store is None:

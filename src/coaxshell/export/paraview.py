@@ -13,6 +13,7 @@ import numpy.typing as npt
 from coaxshell.errors import InputError
 from coaxshell.export.vtk_xml import write_collection, write_image, write_lines
 from coaxshell.model import RigidShell
+from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing_folder
 
 if TYPE_CHECKING:
@@ -71,6 +72,10 @@ def export_paraview(
     check_grid(half_width, points, displaced)
     index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
     seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
+    shown, kept = 3.0 * response.time.size, 3.0 * len(response.system.shells) * len(index)
+    Cost(8.0 * _ANGLES.size * (shown + kept) + 4.0 * _BLOCK_BYTES).require(
+        f"ParaView's series of {len(index):,} instants of a run of {response.time.size:,}", "give fewer times, or run a coarser step"
+    )
     with replacing_folder(folder, PARAVIEW_PARTS, force=force) as partial:
         (partial / "data").mkdir()
         fields = _write_fields(response, partial, index, half_width, points, progress)

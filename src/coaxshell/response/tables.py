@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from coaxshell.model import RigidShell
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.cost import Cost
 
 if TYPE_CHECKING:
     from coaxshell.response.response import Response
@@ -26,6 +27,10 @@ def history_table(response: Response) -> dict[str, FloatArray]:
     Time in transits and in seconds; for each elastic shell hoop stress, inward displacement and, where it has them, sensor and
     actuator voltage, at the head (the first source's direction) and at the tail; displacement of each absorber.
     """
+    width = 2 + 8 * len(response.system.shells) + len(response.system.absorber_list)
+    Cost(48.0 * width * response.time.size).require(
+        f"a table of {width} columns and {response.time.size:,} rows", "run a coarser step or fewer absorbers"
+    )
     head = response.system.sources[0].angle
     angles = [head + turn for _, turn in _POINTS]
     columns = {

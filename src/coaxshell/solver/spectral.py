@@ -98,7 +98,7 @@ def linear_spectra(
             for i, operator in enumerate(modal.shells):
                 spectra.ratio[i, :, block] = operator.tangential if operator is not None else 0.0
 
-    over_blocks(node_blocks(grid, max_order), work, progress, "Laplace nodes")
+    over_blocks(node_blocks(grid, max_order), work, progress, "frequencies")
     return spectra
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model.base import within
 from coaxshell.model.system import System
+from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
 from coaxshell.studies.executors import capacity, completed
 from coaxshell.studies.metrics import Metric
@@ -111,6 +112,8 @@ def run_cases(
     report = progress or (lambda fraction, stage: None)
     report(len(outcomes) / len(systems), "cases")
     waiting = [Case(i, system) for i, system in enumerate(systems) if i not in outcomes and isinstance(system, System)]
+    if executor is None:
+        require_room(case_cost([case.system for case in waiting], resolution), len(waiting), workers_at_once)
     planned = batches(waiting, metrics, resolution, workers_at_once)
     processes = 1 if executor is None and len(planned) == 1 else workers
     try:

@@ -10,6 +10,7 @@ import numpy as np
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
 from coaxshell.model.naming import shell_phrase
+from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.energy.absorbers import absorber_energy
@@ -23,6 +24,9 @@ from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.solution import ModalSolution
 
 Progress = Callable[[float, str], None]
+
+_ARRAYS = 40.0
+"""Arrays of the size of all normal displacements that stand side by side at the worst, as measured."""
 
 BALANCE = "exterior_work = sum of the variables with the role store or loss + closure_residual"
 
@@ -73,6 +77,10 @@ def energy(
     """
     if isinstance(every, bool) or not isinstance(every, (int, np.integer)) or not 1 <= every < solution.time.size:
         raise InputError("every", f"{every!r} is not allowed", f"give a whole number of time steps from 1 to {solution.time.size - 1}")
+    Cost(_ARRAYS * solution.normal.nbytes).require(
+        f"the energy of {solution.time.size:,} instants and orders 0 to {solution.normal.shape[2] - 1:,}",
+        "run fewer orders or a coarser step",
+    )
     report = progress or (lambda fraction, stage: None)
     report(0.0, "motion again")
     motion = Motion(solution, int(every), spectra)

@@ -9,7 +9,7 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.evaluate import evaluate, settled
 from coaxshell.response.fields.grids import Grid, grid_of, labelled
 from coaxshell.response.fields.regions import FloatArray
-from coaxshell.response.fields.request import Progress, request, when_of
+from coaxshell.response.fields.request import Progress, request, require_room, when_of
 from coaxshell.solver.recompute import SolvedSpectra
 
 OUTWARD = "components along increasing radius and angle"
@@ -37,7 +37,9 @@ def velocity(
     """
     step = spectra.grid.time_step
     asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
-    grid, when = grid_of(x, y, radius, angle), when_of(time, spectra)
+    when = when_of(time, spectra)
+    require_room("velocity", (x, y, radius, angle), when, 2)
+    grid = grid_of(x, y, radius, angle)
     asked = settled(spectra, asked, grid)
     values = _turned(grid, evaluate(spectra, asked, grid, np.atleast_1d(when), ("radial", "angular")))
     values *= spectra.problem.scales.velocity
@@ -64,7 +66,9 @@ def intensity(
     """
     step = spectra.grid.time_step
     asked = request(part="total", filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
-    grid, when = grid_of(x, y, radius, angle), when_of(time, spectra)
+    when = when_of(time, spectra)
+    require_room("intensity", (x, y, radius, angle), when, 3)
+    grid = grid_of(x, y, radius, angle)
     asked = settled(spectra, asked, grid)
     pressure, *flow = evaluate(spectra, asked, grid, np.atleast_1d(when), ("pressure", "radial", "angular"))
     values = _turned(grid, flow)

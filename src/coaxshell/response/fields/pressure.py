@@ -8,7 +8,7 @@ import numpy.typing as npt
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.evaluate import evaluate, settled
 from coaxshell.response.fields.grids import grid_of, labelled
-from coaxshell.response.fields.request import Progress, request, when_of
+from coaxshell.response.fields.request import Progress, request, require_room, when_of
 from coaxshell.solver.recompute import SolvedSpectra
 
 LONG_NAMES = {
@@ -75,7 +75,9 @@ def pressure(
     """
     step = spectra.grid.time_step
     asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step, front=front)
-    grid, when = grid_of(x, y, radius, angle), when_of(time, spectra)
+    when = when_of(time, spectra)
+    require_room("pressure", (x, y, radius, angle), when)
+    grid = grid_of(x, y, radius, angle)
     asked = settled(spectra, asked, grid)
     values = evaluate(spectra, asked, grid, np.atleast_1d(when), ("pressure",))[0]
     values *= spectra.problem.scales.pressure

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypedDict
 
@@ -10,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.cost import Cost
 from coaxshell.response import arguments
 from coaxshell.solver.recompute import SolvedSpectra
 
@@ -59,6 +61,32 @@ def when_of(time: npt.ArrayLike | None, spectra: SolvedSpectra) -> FloatArray:
     if time is None:
         raise InputError("time", "is missing", f"give one time or a list of them, from 0 to {last:g} transits")
     return instants(time, last)
+
+
+_HELD = {1: 1.0, 2: 4.0, 3: 6.0}
+"""Arrays of the result's size that stand side by side, by the number of quantities that it is made of."""
+
+
+def require_room(name: str, place: Sequence[object], when: FloatArray, quantities: int = 1) -> None:
+    """Raise InputError, before anything of its size is made, if a field at so many points and instants does not fit into memory.
+
+    Parameters
+    ----------
+    name : str
+        Of the field.
+    place : sequence
+        The axes asked for, None for those left out.
+    when : ndarray
+        Instants.
+    quantities : int
+        From which it is made: 1 for the pressure, 2 for the velocity, 3 for the intensity.
+    """
+    sizes: list[int] = [np.asarray(axis).size for axis in place if axis is not None]
+    points = math.prod(sizes)
+    cost = Cost(8.0 * _HELD[quantities] * points * when.size + 150.0 * points)
+    if not cost.fits:
+        what = f"the {name} at {points:,} points and {when.size:,} instants"
+        cost.require(what, "ask for fewer points, or for some instants at a time")
 
 
 class FieldOptions(TypedDict, total=False):
