@@ -15,6 +15,7 @@ from coaxshell.export.vtk_xml import write_collection, write_image, write_lines
 from coaxshell.model import RigidShell
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing_folder
+from coaxshell.numerics.scalars import plain
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -90,6 +91,7 @@ def check_grid(half_width: float, points: int, displaced: float) -> None:
     """Raise InputError if a square of so many points or a factor of displacement is not allowed."""
     if not (math.isfinite(half_width) and half_width > 0):
         raise InputError("width", f"{2 * half_width:g} is not allowed", "give a positive number, in outermost radii")
+    points = plain(points)
     if isinstance(points, bool) or not isinstance(points, int) or not 2 <= points <= 4000:
         raise InputError("points", f"{points!r} is not allowed", "give a whole number from 2 to 4000")
     if not math.isfinite(displaced):

@@ -10,6 +10,7 @@ from coaxshell.model.fluids import Vacuum
 from coaxshell.model.naming import shell_number, shell_places
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
+from coaxshell.numerics.scalars import plain
 
 if TYPE_CHECKING:
     from coaxshell.model.absorbers import Absorber, AbsorberRing
@@ -27,7 +28,7 @@ def check(system: System) -> None:
 
 def index_of(shell: int | str, count: int) -> int:
     """Return the number of a shell among *count*, from a number, digits, "inner", "outer" or another of its names; InputError otherwise."""
-    number = shell_number(shell, count) if isinstance(shell, str) else shell
+    number = shell_number(shell, count) if isinstance(shell, str) else plain(shell)
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < count:
         return number
     numbers = "0" if count == 1 else f"0 to {count - 1}"

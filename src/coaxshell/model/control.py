@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, model_validator
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
 from coaxshell.model.units import Number, quantity
+from coaxshell.numerics.scalars import plain
 
 End = Literal["inner", "middle", "outer"]
 ALLOWED = "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer', 'middle' (of three)"
@@ -20,7 +21,7 @@ def _shells(value: Any) -> Any:
         if value == "all":
             return value
         value = [part.strip() for part in value.split(",")]
-    elif isinstance(value, int) and not isinstance(value, bool):
+    elif isinstance(plain(value), int) and not isinstance(plain(value), bool):
         value = [value]
     if not isinstance(value, list | tuple | range):
         raise InputError("", f"{value!r} is not allowed", ALLOWED)
@@ -28,7 +29,7 @@ def _shells(value: Any) -> Any:
 
 
 def _shell(item: Any) -> int | str:
-    number = int(item) if isinstance(item, str) and len(item) < 9 and item.isdecimal() else item
+    number = int(item) if isinstance(item, str) and len(item) < 9 and item.isdecimal() else plain(item)
     if number in get_args(End) or (isinstance(number, int) and not isinstance(number, bool) and number >= 0):
         return number
     raise InputError("", f"{item!r} is not allowed", ALLOWED)

@@ -20,6 +20,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.quantity_text import hint, parts, respelt
 from coaxshell.model.usual_units import USUAL
+from coaxshell.numerics.scalars import plain
 
 
 @dataclass(frozen=True)
@@ -108,6 +109,7 @@ def quantity(
 def to_si(value: object, dimension: Dimension | str) -> float:
     """Convert a number (already SI) or a text such as ``"6 mm"`` to a finite SI float; InputError says what was expected."""
     kind = DIMENSIONS[dimension] if isinstance(dimension, str) else dimension
+    value = plain(value)
     if isinstance(value, bool):  # Python counts it among the numbers; a user does not
         raise InputError("", f"{shown(value)} is not {kind.name}", _remedy(kind))
     if isinstance(value, str):
@@ -126,6 +128,7 @@ def to_si(value: object, dimension: Dimension | str) -> float:
 
 def whole(value: object) -> object:
     """Pass whole numbers of any type on as int and refuse booleans, which Python counts as numbers."""
+    value = plain(value)
     if isinstance(value, bool):
         raise InputError("", f"{value!r} is not a count", "give a whole number")
     return int(value) if isinstance(value, Integral) else value

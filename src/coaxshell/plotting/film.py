@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.scalars import plain
 from coaxshell.plotting.field_scales import FieldScales, field_scales
 from coaxshell.plotting.film_canvas import Canvas
 from coaxshell.plotting.film_files import film_writer, write_film
@@ -88,6 +89,7 @@ def save_film(
 
 def check_film(path: Path, frames: int, fps: float) -> None:
     """Raise InputError if a film of this kind, length and rate cannot be made here."""
+    frames = plain(frames)
     if isinstance(frames, bool) or not isinstance(frames, int) or not 2 <= frames <= 100_000:
         raise InputError("frames", f"{frames!r} is not allowed", "give a whole number from 2 to 100000")
     if not (math.isfinite(fps) and 0.1 <= fps <= 240):

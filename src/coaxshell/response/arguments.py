@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.scalars import plain
 from coaxshell.structure.section import Section
 
 FloatArray = npt.NDArray[np.float64]
@@ -40,6 +41,7 @@ def depth_of(section: Section, depth: object) -> float:
     if isinstance(depth, str):
         face = one_of("depth", depth, ("inner", "outer"))
         return section.layers[0][0] if face == "inner" else section.layers[-1][1]
+    depth = plain(depth)
     if isinstance(depth, bool) or not isinstance(depth, (int, float, np.floating, np.integer)) or not math.isfinite(depth):
         raise InputError("depth", f"{depth!r} is not allowed", 'give z in metres (positive outward), "inner" or "outer"')
     return float(depth)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.response.dataset import ARRAYS
 from coaxshell.response.voltages import time_derivative
@@ -29,6 +30,7 @@ def thinned(solution: ModalSolution, every: int, window: Sequence[float] | None)
     InputError
         If *every* or the window is not allowed, or fewer than two instants would be left.
     """
+    every = plain(every)
     if isinstance(every, bool) or not isinstance(every, int) or every < 1:
         raise InputError("every", f"{every!r} is not allowed", "give a whole number of time steps, 1 or more")
     span = arguments.time_window(solution.time, window)

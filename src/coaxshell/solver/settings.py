@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.scalars import plain
 
 MAX_MODES = 2000
 MAX_STEPS = 2_000_000
@@ -41,10 +42,12 @@ class Settings:
     refinement: int = 1
 
     def __post_init__(self) -> None:
+        for name in ("duration", "time_step", "modes", "tolerance", "refinement"):
+            object.__setattr__(self, name, plain(getattr(self, name)))
         _finite_positive("duration", self.duration, "acoustic transit times a/c_e")
         _finite_positive("time_step", self.time_step, "acoustic transit times a/c_e")
         _finite_positive("tolerance", self.tolerance, "relative error")
-        if self.modes != "auto":
+        if not isinstance(self.modes, str) or self.modes != "auto":
             if isinstance(self.modes, bool) or not isinstance(self.modes, int) or not 1 <= self.modes <= MAX_MODES:
                 raise InputError("modes", f"{self.modes!r} is not allowed", f'give a whole number from 1 to {MAX_MODES} or "auto"')
         if isinstance(self.refinement, bool) or not isinstance(self.refinement, int) or not 1 <= self.refinement <= 64:

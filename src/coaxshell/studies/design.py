@@ -14,6 +14,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
 from coaxshell.model.system import System
+from coaxshell.numerics.scalars import plain
 from coaxshell.studies.paths import Field, field_of
 from coaxshell.studies.span import Span
 
@@ -119,6 +120,7 @@ def _sampled(fields: Sequence[Field], given: Sequence[Any], points: str, samples
     """Return points that fill a box, one tuple a field."""
     from scipy.stats import qmc
 
+    samples, seed = plain(samples), plain(seed)
     if samples is None or isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= MOST_CASES:
         raise InputError("samples", f"{samples!r} is not allowed", f"points = {points!r} needs a whole number from 1 to {MOST_CASES}")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:

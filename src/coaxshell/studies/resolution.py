@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from coaxshell.model.durations import transits
 from coaxshell.model.system import System
+from coaxshell.numerics.scalars import plain
 from coaxshell.solver.settings import Settings
 
 
@@ -22,6 +23,8 @@ class Resolution:
     refinement: int = 1
 
     def __post_init__(self) -> None:
+        for name in ("duration", "time_step", "modes", "tolerance", "refinement"):
+            object.__setattr__(self, name, plain(getattr(self, name)))
         for name in ("duration", "time_step", "tolerance"):  # 1 and 1.0 are one resolution, also to a hash of its text
             if type(getattr(self, name)) is int:
                 object.__setattr__(self, name, float(getattr(self, name)))

@@ -13,6 +13,7 @@ from coaxshell.model.naming import shell_phrase
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.scalars import plain
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
@@ -75,6 +76,7 @@ def energy(
     InputError
         If *every* is not a whole number from 1 to the number of time steps.
     """
+    every = plain(every)
     if isinstance(every, bool) or not isinstance(every, (int, np.integer)) or not 1 <= every < solution.time.size:
         raise InputError("every", f"{every!r} is not allowed", f"give a whole number of time steps from 1 to {solution.time.size - 1}")
     Cost(_ARRAYS * solution.normal.nbytes).require(

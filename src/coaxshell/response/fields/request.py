@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.solver.recompute import SolvedSpectra
 
@@ -161,6 +162,7 @@ def request(
 
 def positive(name: str, value: object, unit: str) -> float:
     """Return a finite number greater than 0; InputError otherwise."""
+    value = plain(value)
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)) or not 0 < float(value) < np.inf:
         raise InputError(name, f"{value!r} is not allowed", f"give a finite number greater than 0 ({unit})")
     return float(value)

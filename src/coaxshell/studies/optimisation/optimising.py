@@ -12,6 +12,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
+from coaxshell.numerics.scalars import plain
 from coaxshell.studies.metrics import ANYWHERE
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
@@ -166,6 +167,7 @@ def problem_of(
     *code* says where files of the user's lie, and whether they may be run.
     """
     (uncertain, samples), (method, evaluations, population, start, seed) = chance, search_by
+    samples, evaluations, population, seed = map(plain, (samples, evaluations, population, seed))
     for name, number, least in (("evaluations", evaluations, 1), ("population", population, 4), ("seed", seed, 0)):
         if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < least):
             raise InputError(name, f"{number!r} is not allowed", f"give a whole number of {least} or more")

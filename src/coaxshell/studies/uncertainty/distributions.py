@@ -14,6 +14,7 @@ from scipy.stats import qmc
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, to_si
+from coaxshell.numerics.scalars import plain
 from coaxshell.studies.paths import Field, field_of, varied
 from coaxshell.studies.uncertainty.laws import ENTRIES, Distribution, LogNormal, Normal, Uniform, check, law_of
 
@@ -136,6 +137,7 @@ def uncertain_of(system: System, given: Mapping[str, Any], samples: int, seed: i
 
 def unit_points(dimensions: int, samples: int, seed: int) -> FloatArray:
     """Return scrambled Sobol points of the unit cube, shape (samples, dimensions); InputError if *samples* or *seed* is not allowed."""
+    samples, seed = plain(samples), plain(seed)
     if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
         raise InputError("samples", f"{samples!r} is not allowed", f"give a whole number from 2 to {MOST_SAMPLES}")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:

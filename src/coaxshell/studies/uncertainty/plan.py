@@ -10,6 +10,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.scalars import plain
 from coaxshell.studies.design import Design
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.resolution import Resolution
@@ -99,7 +100,7 @@ def plan_of(
         See :func:`coaxshell.studies.uncertainty.distributions.uncertain_of`; too few samples, not a power of two though indices
         are asked for, too many runs, an impossible confidence, indices of a single property.
     """
-    samples, seed, confidence = sampling
+    samples, seed, confidence = map(plain, sampling)
     if isinstance(confidence, bool) or not isinstance(confidence, int | float) or not 0.5 <= confidence < 1:
         raise InputError("confidence", f"{confidence!r} is not allowed", "give a share from 0.5 to below 1, such as 0.95")
     coordinates = coordinates_of(system, uncertain, where)
