@@ -22,6 +22,7 @@ Points = Literal["grid", "zip", "latin-hypercube", "sobol"]
 POINTS: tuple[Points, ...] = get_args(Points)
 SAMPLED = ("latin-hypercube", "sobol")
 MOST_CASES = 1_000_000
+MOST_SEED = 2**64
 
 
 @dataclass(frozen=True)
@@ -122,9 +123,9 @@ def _sampled(fields: Sequence[Field], given: Sequence[Any], points: str, samples
 
     samples, seed = plain(samples), plain(seed)
     if samples is None or isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= MOST_CASES:
-        raise InputError("samples", f"{samples!r} is not allowed", f"points = {points!r} needs a whole number from 1 to {MOST_CASES}")
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise InputError("seed", f"{seed!r} is not allowed", "give a whole number of 0 or more")
+        raise InputError("samples", f"{shown(samples)} is not allowed", f"points = {points!r} needs a whole number from 1 to {MOST_CASES}")
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < MOST_SEED:
+        raise InputError("seed", f"{shown(seed)} is not allowed", f"give a whole number from 0 to {MOST_SEED - 1}")
     spans = [Span.between(item, f"over.{field.path}") for field, item in zip(fields, given, strict=True)]
     engine = qmc.LatinHypercube(len(fields), rng=seed) if points == "latin-hypercube" else qmc.Sobol(len(fields), rng=seed)
     if points == "sobol":  # whole powers of two, of which the first are taken: the same points as drawing them one by one

@@ -14,6 +14,9 @@ from coaxshell.errors import InputError
 from coaxshell.model.base import Described, shown, within
 from coaxshell.studies.paths import Field
 
+MOST_VALUES = 1_000_000
+"""Values of one field."""
+
 
 class Span(Described):
     """Describe an interval: ``{from = 0, to = 50, step = 1}`` or ``{from = "1 kg", to = "20 kg", count = 20, scale = "log"}``."""
@@ -73,8 +76,8 @@ class Span(Described):
         if (self.count is None) == (self.step is None):
             raise InputError(where, "needs either count or step", "give one of them")
         if self.count is not None:
-            if self.count < 2:
-                raise InputError(f"{where}.count", f"{self.count} is not allowed", "give 2 or more")
+            if not 2 <= self.count <= MOST_VALUES:
+                raise InputError(f"{where}.count", f"{shown(self.count)} is not allowed", f"give 2 to {MOST_VALUES:,}")
             raw = np.geomspace(low, high, self.count) if self.scale == "log" else np.linspace(low, high, self.count)
         else:
             if self.scale == "log":
@@ -82,6 +85,10 @@ class Span(Described):
             step = field.value(self.step, f"{where}.step")
             if not step > 0:
                 raise InputError(f"{where}.step", f"{step!r} is not allowed", "must be greater than 0")
+            if not (high - low) / step < MOST_VALUES:
+                raise InputError(
+                    f"{where}.step", f"{step!r} makes {(high - low) / step:.3g} values", f"at most {MOST_VALUES:,} are allowed"
+                )
             raw = low + step * np.arange(math.floor((high - low) / step * (1 + 1e-12) + 1e-9) + 1)
         if field.integer:
             return tuple(dict.fromkeys(round(float(value)) for value in raw))
