@@ -38,6 +38,40 @@ def test_a_map_on_a_logarithmic_axis():
     assert (ax.get_xlabel(), ax.get_ylabel(), bar.get_ylabel()) == ("n", "c (N s/m²)", "stress (MPa)")
 
 
+@pytest.mark.parametrize("values", [[10, 100 / 3, 10 / 3, 1], [1, 2, 4], [5e3, 7e3, 9.8e3], [0.01, 0.02, 5]])
+def test_equal_ratios_and_decades_are_drawn_on_a_logarithmic_axis(values):
+    made = dataset(("c",), (len(values),), c=("c", [float(value) for value in values], "N"))
+    assert plot_sweep(made, "stress").get_xscale() == "log"
+
+
+@pytest.mark.parametrize("values", [[1, 2, 3], [0, 1, 10, 100], [-1, 1, 100], [1.0, 1.001, 1.002], [1, 8], [3]])
+def test_even_steps_zeros_signs_and_pairs_are_drawn_on_a_linear_axis(values):
+    made = dataset(("n", "c"), (2, len(values)), n=("n", [1, 2], "1"), c=("c", values, "1"))
+    assert plot_sweep(made, "stress").get_yscale() == "linear"
+
+
+@pytest.mark.parametrize(
+    ("over", "how"),
+    [
+        ({"absorbers.mass": {"from": "1 kg/m", "to": "20 kg/m", "count": 2, "scale": "log"}}, {}),
+        ({"absorbers.count": {"from": 2, "to": 9, "count": 4, "scale": "log"}}, {}),  # rounded: no equal ratios any more
+        ({"absorbers.mass": {"from": 1, "to": 20, "scale": "log"}}, {"points": "sobol", "samples": 4}),
+        ({"absorbers.mass": {"from": 1, "to": 20, "scale": "log"}}, {"points": "latin-hypercube", "samples": 3}),
+    ],
+)
+def test_a_span_laid_out_by_its_logarithm_is_drawn_so(over, how):
+    system, fast = cx.presets.load("absorbers"), {"modes": 3, "time_step": 0.05, "duration": 0.3, "workers": 1}
+    (path,) = over
+    found = cx.sweep(system, over, ["inner.peak_stress"], **how, **fast)
+    assert found[path].attrs["scale"] == "log"
+    metric = json.loads(found.attrs["metrics"])[0]
+    assert plot_sweep(found, metric).get_xscale() == "log"
+    over[path].pop("scale")
+    even = cx.sweep(system, over, ["inner.peak_stress"], **how, **fast)
+    assert "scale" not in even[path].attrs
+    assert plot_sweep(even, metric).get_xscale() == "linear"
+
+
 def test_sampled_points_and_names():
     made = dataset(("case",), (4,), x=("case", [0.1, 0.4, 0.2, 0.3], "m"), kind=("case", ["a", "b", "a", "b"], "1"))
     ax = figure_sweep(made).axes[0]

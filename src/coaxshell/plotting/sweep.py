@@ -59,7 +59,8 @@ def figure_sweep(dataset: xr.Dataset, metrics: Sequence[str] = ()) -> Figure:
 def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes:
     """Draw one metric of a sweep and return the axes: a curve or points over one field, a map or coloured points over two.
 
-    Failed cases are left out of curves and points, and grey in maps.
+    Failed cases are left out of curves and points, and grey in maps. The axis of a field is logarithmic where a span with
+    ``scale = "log"`` laid it out, and where its values lie in equal ratios or over decades.
 
     Raises
     ------
@@ -98,7 +99,7 @@ def _two(ax: Axes, dataset: xr.Dataset, fields: list[str], scaled: npt.NDArray[n
         ax.set_facecolor("#BDBDBD")
         right = np.argsort(x, kind="stable"), np.argsort(y, kind="stable")
         table = np.ma.masked_invalid(scaled[np.ix_(*right)].T)
-        drawn = ax.pcolormesh(_edges(x[right[0]]), _edges(y[right[1]]), table, cmap="cividis")
+        drawn = ax.pcolormesh(_edges(x[right[0]], ax.get_xscale()), _edges(y[right[1]], ax.get_yscale()), table, cmap="cividis")
         ax.grid(visible=False)
     else:
         drawn = ax.scatter(x, y, c=scaled, cmap="cividis", s=12)  # type: ignore[assignment]
@@ -107,9 +108,9 @@ def _two(ax: Axes, dataset: xr.Dataset, fields: list[str], scaled: npt.NDArray[n
         figure.colorbar(drawn, ax=ax, label=label)
 
 
-def _edges(centres: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _edges(centres: npt.NDArray[np.float64], scale: str) -> npt.NDArray[np.float64]:
     """Return the edges of cells about the centres, halfway between neighbours on the scale of the axis."""
-    logarithmic = _logarithmic(centres)
+    logarithmic = scale == "log"
     at = np.log(centres) if logarithmic else centres
     if at.size == 1:
         return np.array([centres[0] - 0.5, centres[0] + 0.5])
@@ -129,14 +130,18 @@ def _axis(axis: object, coordinate: xr.DataArray) -> npt.NDArray[np.float64]:
         return np.array([names.index(str(value)) for value in raw], dtype=np.float64)
     values = raw.astype(np.float64)
     axis.set_label_text(name if unit == "1" else f"{name} ({unit})")  # type: ignore[attr-defined]
-    if _logarithmic(values):
+    if _logarithmic(values, str(coordinate.attrs.get("scale", ""))):
         axis._set_axes_scale("log")  # type: ignore[attr-defined]
     return values
 
 
-def _logarithmic(values: npt.NDArray[np.float64]) -> bool:
-    """Return whether values are spread over decades rather than evenly."""
-    if values.min() <= 0 or values.max() < 30 * values.min():
+def _logarithmic(values: npt.NDArray[np.float64], scale: str) -> bool:
+    """Return whether values are spread by their logarithms: as asked for, in equal ratios, or over decades rather than evenly."""
+    different = np.unique(values)
+    if different.size < 2 or different[0] <= 0:
         return False
-    steps = np.diff(np.unique(values))
-    return bool(steps.size and steps.max() > 4 * steps.min())
+    if scale == "log":
+        return True
+    ratios, steps = different[1:] / different[:-1], np.diff(different)
+    geometric = different.size > 2 and ratios.max() < (1 + 1e-3) * ratios.min() and ratios[0] > 1.05  # closer ones are even steps too
+    return bool(geometric or (different[-1] >= 30 * different[0] and steps.max() > 4 * steps.min()))

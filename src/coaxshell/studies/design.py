@@ -35,11 +35,14 @@ class Design:
     points : str
     values : tuple of tuple
         One tuple a field: its values on the axis of a grid, or its value in every case.
+    scales: tuple of str
+        One a field: "log" where it was asked for as a span with its logarithms spread evenly, else "linear".
     """
 
     fields: tuple[Field, ...]
     points: Points
     values: tuple[tuple[Any, ...], ...]
+    scales: tuple[str, ...]
 
     @property
     def cases(self) -> list[dict[str, Any]]:
@@ -92,7 +95,11 @@ def design_of(system: System, over: Mapping[str, Any], points: str = "grid", sam
     count = math.prod(len(column) for column in values) if points == "grid" else len(values[0])
     if count > MOST_CASES:
         raise InputError("over", f"asks for {count} cases", f"at most {MOST_CASES} are allowed")
-    return Design(fields, points, values)
+    return Design(fields, points, values, tuple(_scale(item) for item in given))
+
+
+def _scale(given: Any) -> str:
+    return str(given.get("scale", "linear")) if isinstance(given, Mapping) else given.scale if isinstance(given, Span) else "linear"
 
 
 def _field(system: System, path: str) -> Field:

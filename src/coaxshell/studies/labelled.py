@@ -15,6 +15,7 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.studies.design import Design
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.metrics import Metric
+from coaxshell.studies.paths import Field
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import numerics
 
@@ -25,15 +26,15 @@ FAILURE, WARNINGS = "failure", "physics_warnings"
 def labelled(system: System, design: Design, metrics: Sequence[Metric], resolution: Resolution, outcomes: Sequence[Outcome]) -> xr.Dataset:
     """Return one variable a metric, one coordinate a varied field, both with units; failed cases are NaN, ``failure`` says why.
 
-    The dimensions are the paths for a grid, else ``case``. It holds nothing of when or by whom it was computed: the same study
-    gives an identical dataset.
+    The dimensions are the paths for a grid, else ``case``; a field spread by its logarithm says ``scale = "log"``. The dataset holds
+    nothing of when or by whom it was computed: the same study gives an identical one.
     """
     shape = design.shape
     grid = design.points == "grid"
     dims = tuple(field.path for field in design.fields) if grid else (CASE,)
     coordinates = {
-        field.path: xr.Variable((field.path,) if grid else (CASE,), _column(values), {"units": field.units, "long_name": field.long_name})
-        for field, values in zip(design.fields, design.values, strict=True)
+        field.path: xr.Variable((field.path,) if grid else (CASE,), _column(values), _told(field, scale))
+        for field, values, scale in zip(design.fields, design.values, design.scales, strict=True)
     }
     variables: dict[str, xr.Variable] = {}
     table = np.array([outcome.values for outcome in outcomes], dtype=np.float64)
@@ -54,6 +55,11 @@ def labelled(system: System, design: Design, metrics: Sequence[Metric], resoluti
         "metrics": json.dumps([metric.name for metric in metrics]),
     }
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def _told(field: Field, scale: str) -> dict[str, str]:
+    """Return what a coordinate says of itself; of its scale only where that is not linear."""
+    return {"units": field.units, "long_name": field.long_name} | ({"scale": scale} if scale != "linear" else {})
 
 
 def _column(values: Sequence[Any]) -> np.ndarray[Any, Any]:

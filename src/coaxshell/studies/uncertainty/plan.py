@@ -67,7 +67,8 @@ class Plan:
             tuple(coordinate.quantile(point[i], present[i]) for point in self.uncertain.points)
             for i, coordinate in enumerate(self.uncertain.coordinates)
         ]
-        return Design(tuple(coordinate.labelled for coordinate in self.uncertain.coordinates), "sobol", tuple(columns))
+        fields = tuple(coordinate.labelled for coordinate in self.uncertain.coordinates)
+        return Design(fields, "sobol", tuple(columns), ("linear",) * len(fields))
 
     @property
     def parts(self) -> dict[str, Any]:
