@@ -43,7 +43,8 @@ print("\n".join(text.splitlines()[:4]))
 # The comparison
 # --------------
 #
-# In a terminal it is ``coaxshell verify --against my_fem.csv --case iakovlev-double``, which also writes a report with plots.
+# In a terminal it is ``coaxshell verify --against my_fem.csv --case iakovlev-double``, which also writes a report with plots and
+# leaves with exit code 1 unless all errors are within the tolerance, 0.05 unless ``--tolerance`` says otherwise.
 
 with TemporaryDirectory() as folder:
     file = Path(folder) / "my_fem.csv"

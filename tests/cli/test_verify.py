@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from coaxshell.verification import registry
@@ -50,7 +52,7 @@ def test_another_codes_histories(run):
     outcome = run("verify", "--against", "mine.csv", "--case", "iakovlev-double", "--modes", "12", "--quiet")
     assert outcome.code == 0
     assert outcome.files == ["mine.csv", *REPORT]
-    assert "16 rows: 16 noted" in outcome.out
+    assert "16 rows: 16 pass, 0 fail" in outcome.out
     again = run("verify", "--against", "mine.csv", "--case", "iakovlev-double", "--modes", "12", "--quiet")
     assert again.code == 2
     assert "exists already" in again.err
@@ -58,6 +60,11 @@ def test_another_codes_histories(run):
         "verify", "--against", "mine.csv", "--case", "iakovlev-double", "--modes", "4", "--tolerance", "1e-6", "--quiet", "--force"
     )
     assert strict.code == 1
+    smaller = Path("mine.csv").read_text().replace("[m]", "[mm]")
+    Path("millimetres.csv").write_text(smaller)
+    wrong = run("verify", "--against", "millimetres.csv", "--case", "iakovlev-double", "--modes", "12", "--quiet", "--force")
+    assert wrong.code == 1, "a deviation fails without --tolerance too"
+    assert "likely 1,000 times too small (its unit?)" in wrong.out
 
 
 @pytest.mark.parametrize(

@@ -35,9 +35,9 @@ def verify(
         Path | None, typer.Option("--template", metavar="FILE.csv", help="Write an example for --against with our numbers for --case.")
     ] = None,
     tolerance: Annotated[
-        str | None,
-        typer.Option("--tolerance", metavar="ERROR", help="With --against: largest relative error that passes."),
-    ] = None,
+        str,
+        typer.Option("--tolerance", metavar="ERROR", help="With --against: largest relative error that passes; inf judges nothing."),
+    ] = "0.05",
     time_step: options.TimeStepOption = "1e-3",
     modes: Annotated[str, typer.Option("--modes", metavar="N", help="With --against, --template: highest order.")] = "150",
     force: options.ForceOption = False,
@@ -46,7 +46,8 @@ def verify(
     """Check the numbers and write a report.
 
     Against theory, reference values and independent methods. With --against FILE.csv --case SCENARIO another code's histories are
-    compared with ours instead. Exits with 1 if anything fails.
+    compared with ours instead: each history and each peak must be within the tolerance, and the likely cause of a deviation is named
+    (sign, unit, a lag in time, head and tail exchanged). Exits with 1 if anything fails.
     """
     if show_list:
         return _list()
@@ -60,8 +61,7 @@ def verify(
     if template is not None:
         _template(case, template, resolution[1], force)
     if against is not None:
-        limit = None if tolerance is None else values.number("--tolerance", tolerance)
-        _against(against, case, _folder(output, force), limit, resolution, quiet)
+        _against(against, case, _folder(output, force), values.number("--tolerance", tolerance), resolution, quiet)
     return None
 
 
@@ -86,7 +86,7 @@ def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet
     _tell(found, output)
 
 
-def _against(path: Path, case: str, output: Path, limit: float | None, resolution: tuple[float, int], quiet: bool) -> None:
+def _against(path: Path, case: str, output: Path, limit: float, resolution: tuple[float, int], quiet: bool) -> None:
     from coaxshell.cli.progress import progress
     from coaxshell.cli.scenario import load_system
     from coaxshell.verification.against import against

@@ -1,12 +1,8 @@
-"""Another code's histories: a CSV file with a time column and columns such as ``displacement_inner_head [m]``."""
+"""Another code's histories: a file with a column of times and columns such as ``displacement_inner_head [m]``, or our own CSV export."""
 
 from __future__ import annotations
 
-import csv
-import io
-import math
-import re
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,129 +10,159 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.limits import RECORD_BYTES
+from coaxshell.model.base import shown
+from coaxshell.model.records.columns import Column as FileColumn
+from coaxshell.model.records.columns import Table, factor_of
+from coaxshell.model.records.reader import table_of
+from coaxshell.numerics.reading import regular_bytes
 
 FloatArray = npt.NDArray[np.float64]
 
-UNITS = {
-    "displacement": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6},
-    "stress": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/m^2": 1.0},
+TIMES = ("time", "t", "time seconds", "time transits", "zeit", "temps")
+TRANSITS = ("transits", "transit", "a/c", "a/c_e")
+SIDES = ("head", "tail")
+VOLTAGES = {"V": 1.0, "mV": 1e-3, "kV": 1e3}
+QUANTITIES = {
+    "displacement": ("displacement",),
+    "stress": ("stress",),
+    "sensor_voltage": ("sensor", "voltage"),
+    "actuator_voltage": ("actuator", "voltage"),
 }
-TIME_UNITS = {"transits": None, "a/c": None, "s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
-SIDES = {"head": 0.0, "tail": 180.0}
-
-_HEADING = re.compile(r"\s*(?P<name>[^\[\]()]*?)\s*(?:[\[(](?P<unit>[^\[\]()]*)[\])])?\s*")
-_COLUMN = re.compile(r"(?P<quantity>displacement|stress)_(?P<shell>[a-z]+|\d+)_(?P<place>head|tail|-?\d+(?:\.\d+)?)(?:deg)?")
+"""Quantities and the words that name them; what is left of a heading names the shell and, last, the place."""
 _EXAMPLE = 'write names such as "displacement_inner_head [m]", "stress_outer_tail [MPa]" or "stress_outer_90 [Pa]"'
+_REMEDY = "give a CSV file; --template writes an example"
 
 
 @dataclass(frozen=True)
 class Column:
-    """One history in SI: its name, quantity, shell as written, angle in degrees, and values."""
+    """One history in SI.
+
+    Attributes
+    ----------
+    name : str
+        The heading without its unit.
+    quantity : str
+        One of :data:`QUANTITIES`, or ``"absorber_displacement"``.
+    shell : str
+        As written; the number of an absorber for its displacement.
+    place : str
+        ``"head"``, ``"tail"``, an angle in degrees, or "" for an absorber.
+    values : ndarray
+    """
 
     name: str
     quantity: str
     shell: str
-    angle: float
+    place: str
     values: FloatArray
 
 
 @dataclass(frozen=True)
 class Histories:
-    """The histories of a file: times in ``unit`` ("transits" or "s") and columns."""
+    """The histories of a file: times in transits or in seconds or both, and columns."""
 
-    time: FloatArray
-    unit: str
+    transits: FloatArray | None
+    seconds: FloatArray | None
     columns: tuple[Column, ...]
 
 
 def read_histories(path: Path) -> Histories:
-    """Return the histories of a CSV file with a line of headings; blank lines and ``#`` comments are skipped.
+    """Return the histories of a file, read as pressure records are: any usual separator, decimal sign, comments and encoding.
 
     Raises
     ------
     InputError
         Naming the file, the line or the column, and what is wrong.
     """
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or "not a text file"
-        raise InputError(str(path), f"cannot be read ({reason.lower()})", "give a CSV file; --template writes an example") from None
-    kept = [(number, line) for number, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")]
-    if len(kept) < 3:
+    content = regular_bytes(path, RECORD_BYTES, _REMEDY)
+    table = table_of(content, str(path)) if content.strip() else Table(())
+    if not table.columns or len(table.columns[0].values) < 2:
         raise InputError(str(path), "holds no histories", "give headings and at least 2 lines of numbers; --template writes an example")
-    separator = next((s for s in (";", ",", "\t") if s in kept[0][1]), ",")
-    headings = _cells(kept[0][1], separator)
-    table = _numbers(path, kept[1:], headings, separator)
-    return _histories(path, headings, table)
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader(io.StringIO(line), delimiter=separator, skipinitialspace=True))]
-
-
-def _numbers(path: Path, lines: Sequence[tuple[int, str]], headings: list[str], separator: str) -> FloatArray:
-    rows = []
-    for number, line in lines:
-        cells = _cells(line, separator)
-        where = f"{path}, line {number}"
-        if len(cells) != len(headings):
-            raise InputError(where, f"{len(cells)} values for {len(headings)} columns", "each line must hold one number for each heading")
-        rows.append([_number(cell, where, heading) for cell, heading in zip(cells, headings, strict=True)])
-    return np.array(rows)
-
-
-def _number(cell: str, where: str, heading: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InputError(where, f"{cell!r} in column {heading!r} is not a finite number", "each value must be a number such as 1.2e-6")
-    return value
-
-
-def _histories(path: Path, headings: list[str], table: FloatArray) -> Histories:
-    time, unit, columns = None, "", []
-    for heading, values in zip(headings, table.T, strict=True):
-        match = _HEADING.fullmatch(heading)
-        name, given = (match["name"].lower(), match["unit"]) if match else (heading.lower(), None)
-        if name in ("time", "time_seconds", "time_transits", "t"):
-            if time is not None:
-                raise InputError(f"{path}, column {heading!r}", "is a second time", "give one column of times")
-            unit, factor = _time_unit(path, heading, name, given)
-            time = values * factor
-        else:
-            columns.append(_column(path, heading, name, given, values))
-    if time is None:
-        raise InputError(str(path), f"has no column of times among {', '.join(headings)}", 'add "time [transits]" or "time [s]"')
+    times: dict[str, FloatArray] = {}
+    columns: list[Column] = []
+    for one in table.columns:
+        where = f"{path}, column {shown(one.heading)}"
+        if _plain(one.name) not in TIMES:
+            columns.append(_column(where, one))
+            continue
+        unit, factor = _time_unit(where, one)
+        if unit in times:
+            raise InputError(where, "is a second time", "give one column of times")
+        times[unit] = _checked(path, table, one.values * factor)
+    if not times:
+        headings = ", ".join(shown(one.heading) for one in table.columns[:9])
+        raise InputError(str(path), f"has no column of times among {headings}", 'add "time [transits]" or "time [s]"')
     if not columns:
         raise InputError(str(path), "has times only", _EXAMPLE)
-    if np.any(np.diff(time) <= 0):
-        late = int(np.argmax(np.diff(time) <= 0)) + 1
-        raise InputError(str(path), f"time {time[late]:g} does not follow {time[late - 1]:g}", "times must be strictly increasing")
+    return Histories(times.get("transits"), times.get("s"), tuple(columns))
+
+
+def _plain(name: str) -> str:
+    return name.lower().replace("_", " ")
+
+
+def _checked(path: Path, table: Table, time: FloatArray) -> FloatArray:
+    """Return times that increase from 0 or later."""
+    behind = np.flatnonzero(np.diff(time) <= 0)
+    if behind.size:
+        late = int(behind[0]) + 1
+        where = f"{path}, {table.row(late)}"
+        raise InputError(where, f"time {time[late]:g} does not follow {time[late - 1]:g}", "times must be strictly increasing")
     if time[0] < 0:
         raise InputError(str(path), f"time {time[0]:g} is negative", "t = 0 is when the front reaches the head of the outermost shell")
-    return Histories(time, unit, tuple(columns))
+    return time
 
 
-def _time_unit(path: Path, heading: str, name: str, given: str | None) -> tuple[str, float]:
+def _time_unit(where: str, column: FileColumn) -> tuple[str, float]:
     """Return "transits" or "s", and the factor of the values to it."""
-    written = given or {"time_seconds": "s", "time_transits": "transits"}.get(name)
-    if written is None or written not in TIME_UNITS:
-        problem = "has no unit" if written is None else f"has the unknown unit {written!r}"
-        raise InputError(f"{path}, column {heading!r}", problem, 'write "time [transits]" (a/c_e), "time [s]", "time [ms]" or "time [us]"')
-    factor = TIME_UNITS[written]
-    return ("transits", 1.0) if factor is None else ("s", factor)
+    written = column.unit or {"time seconds": "s", "time transits": "transits"}.get(_plain(column.name))
+    if written in TRANSITS:
+        return "transits", 1.0
+    factor = factor_of(written, "time") if written else None
+    if factor is None:
+        problem = f"has the unknown unit {shown(written)}" if written else "has no unit"
+        raise InputError(where, problem, 'write "time [transits]" (a/c_e), "time [s]", "time [ms]" or "time [us]"')
+    return "s", factor
 
 
-def _column(path: Path, heading: str, name: str, given: str | None, values: FloatArray) -> Column:
-    match = _COLUMN.fullmatch(name)
-    if match is None:
-        raise InputError(f"{path}, column {heading!r}", "is not a name that is known here", _EXAMPLE)
-    known = UNITS[match["quantity"]]
-    if given and given not in known:
-        raise InputError(f"{path}, column {heading!r}", f"has the unknown unit {given!r}", f"allowed: {', '.join(known)}")
-    place = match["place"]
-    angle = SIDES[place] if place in SIDES else float(place)
-    return Column(name, match["quantity"], match["shell"], angle, values * (known[given] if given else 1.0))
+def _column(where: str, column: FileColumn) -> Column:
+    words = _plain(column.name).split()
+    for quantity, shell, place in _meanings(words):
+        return Column(column.name, quantity, shell, place, column.values * _factor(where, quantity, column.unit))
+    raise InputError(where, "is not a name that is known here", _EXAMPLE)
+
+
+def _meanings(words: list[str]) -> Iterator[tuple[str, str, str]]:
+    """Give quantity, shell and place of the words of a heading, such as "displacement inner head" or "shell 2 of 4 stress tail"."""
+    if len(words) == 3 and words[0] == "absorber" and words[2] == "displacement":
+        yield "absorber_displacement", words[1], ""
+    place = words[-1].removesuffix("deg") if words else ""
+    if place not in SIDES and not _is_angle(place):
+        return
+    rest = words[:-1]
+    for quantity, naming in QUANTITIES.items():
+        for start in range(len(rest) - len(naming) + 1):
+            shell = rest[:start] + rest[start + len(naming) :]
+            if tuple(rest[start : start + len(naming)]) == naming and shell:
+                yield quantity, " ".join(shell), place
+
+
+def _is_angle(text: str) -> bool:
+    digits = text.removeprefix("-").replace(".", "", 1)
+    return digits.isascii() and digits.isdigit() and len(digits) < 20
+
+
+def _factor(where: str, quantity: str, unit: str | None) -> float:
+    """Return the factor of a unit to SI; 1 without one."""
+    if unit is None:
+        return 1.0
+    if quantity.endswith("voltage"):
+        factor, usual = VOLTAGES.get(unit), ", ".join(VOLTAGES)
+    elif quantity == "stress":
+        factor, usual = factor_of(unit, "pressure"), "Pa, kPa, MPa or any other unit of stress"
+    else:
+        factor, usual = factor_of(unit, "length"), "m, mm, um or any other length"
+    if factor is None:
+        raise InputError(where, f"has the unknown unit {shown(unit)}", f"allowed: {usual}")
+    return factor

@@ -326,4 +326,4 @@ def _no_numbers(name: str, lines: Sequence[str], dialect: Dialect) -> InputError
         label = ("time", "pressure")[min(cells.index(bad), 1)] if len(cells) == 2 else "value"
         problem = f"the {label} is missing" if not bad else f"{label} {shown(bad)} is not a finite number"
         return InputError(f"{name}, line {place + 1}", problem, "each line must hold numbers only")
-    return InputError(name, "0 samples are too few", "must hold at least 2 lines of time and pressure")
+    return InputError(name, "0 samples are too few", "must hold at least 2 lines of numbers, such as time and pressure")
