@@ -34,7 +34,7 @@ def test_four_panels_with_one_scale(figure):
 
 def test_every_curve_has_its_circle_and_the_change_stands_above(figure, pair):
     for ax in figure.axes:
-        assert ax.get_title(loc="right") == "peak \N{MINUS SIGN}40 %"
+        assert ax.get_title(loc="right") == "peak smaller by 40 %"
         curves = [line for line in ax.lines if len(line.get_xdata()) == len(pair["bare"].time)]
         circles = [line for line in ax.lines if line.get_marker() == "o"]
         assert len(curves) == len(circles) == 2

@@ -1,4 +1,4 @@
-"""Two runs side by side on stdout, with the reduction of each peak from the second to the first."""
+"""Two runs side by side on stdout, and how each peak of the first stands to that of the second."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
     (first, second), summaries = responses, [response.summary() for response in responses.values()]
     rows = comparison_rows(*summaries)
     title = printable(f"{first} against {second}")
-    header = ("shell", "largest magnitude", first, second, "reduction")
+    header = ("shell", "largest magnitude", first, second, "the first is")
     notes = [f"{name}: {_run(summary)}" for name, summary in zip(responses, summaries, strict=True)]
     if sys.stdout.isatty():
         from rich.console import Console
@@ -71,11 +71,11 @@ def print_comparison(responses: Mapping[str, Response]) -> None:
 
 
 def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
-    """Return (shell, quantity, first value, second value, reduction) for each shell and quantity that either run has.
+    """Return (shell, quantity, first value, second value, how these stand) for each shell and quantity that either run has.
 
-    Where a value still grows at the end of its run the reduction would be one of the run's length: it is not given.
+    Where a value still grows at the end of its run that would be a matter of the run's length: it is not given.
     """
-    from coaxshell.model.prefixes import engineering
+    from coaxshell.model.prefixes import against, engineering
     from coaxshell.response.summary_text import GROWING, ROWS
 
     ours, theirs = ({shell.name: shell for shell in summary.shells} for summary in (first, second))
@@ -87,19 +87,12 @@ def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
             if any(value is not None for value in pair):
                 texts = [_NONE if value is None else engineering(value, unit) for value in pair]
                 grows = any(getattr(value, "growing", False) for value in found)
-                rows.append((name, label, *texts, GROWING if grows else reduction(*pair)))
+                rows.append((name, label, *texts, GROWING if grows else against(pair[0], pair[1])))
     for key, label, unit in (("absorber_displacement", "displacement of masses", "m"), ("absorber_force", "force on a shell", "N/m")):
         pair = [getattr(summary, key) for summary in (first, second)]
         if any(value is not None for value in pair):
-            rows.append(("absorbers", label, *(_NONE if v is None else engineering(v, unit) for v in pair), reduction(*pair)))
+            rows.append(("absorbers", label, *(_NONE if v is None else engineering(v, unit) for v in pair), against(pair[0], pair[1])))
     return rows
-
-
-def reduction(value: float | None, reference: float | None) -> str:
-    """Return by how many per cent a value is less than the reference, negative if it is more; a dash if there is none."""
-    if value is None or not reference:
-        return _NONE
-    return f"{round(100.0 * (1.0 - value / reference), 1) + 0.0:.1f} %"  # adding 0 makes -0.0 plain
 
 
 def _number(value: Peak | float | None) -> float | None:

@@ -33,7 +33,11 @@ def run(
     ] = None,
     compare: Annotated[
         str | None,
-        typer.Option("--compare", metavar="SCENARIO", help="Solve this one too and print both side by side, with reductions in per cent."),
+        typer.Option(
+            "--compare",
+            metavar="SCENARIO",
+            help="Solve this one too and print both side by side: by how much the first is smaller or larger.",
+        ),
     ] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", metavar="FILE", help="Draw the stress at head and tail of each shell; .png, .pdf or .svg.")

@@ -1,4 +1,4 @@
-"""SI prefixes, for numbers that people read."""
+"""Numbers that people read: SI prefixes, and how one magnitude stands to another."""
 
 from __future__ import annotations
 
@@ -16,3 +16,18 @@ def engineering(value: float, unit: str) -> str:
     exponent = exponent_of(value)
     digits = f"{value / 10.0**exponent:#.4g}".rstrip(".") if value else "0"
     return f"{digits} {PREFIXES[exponent]}{unit}"
+
+
+def against(value: float | None, reference: float | None, decimals: int = 1) -> str:
+    """Return in words how a magnitude stands to another.
+
+    ``smaller by 40.1 %``, ``larger by 25.0 %``, ``3.06 times as large`` or ``the same``; from twice as large on it is the ratio that
+    people grasp. A dash where there is no magnitude, or none to compare with.
+    """
+    if value is None or reference is None or not (value >= 0 and reference > 0):
+        return "-"
+    ratio = value / reference
+    if ratio >= 2:
+        return f"{f'{ratio:#.3g}'.rstrip('.') if ratio < 999.5 else f'{ratio:.3g}'} times as large"
+    share = f"{100.0 * abs(ratio - 1):.{decimals}f}"
+    return f"{'smaller' if ratio < 1 else 'larger'} by {share} %" if float(share) else "the same"

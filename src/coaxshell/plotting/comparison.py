@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
+from coaxshell.model.prefixes import against
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
 from coaxshell.plotting.names import literal
 from coaxshell.plotting.scales import common_scales
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 _POINTS = (("head", 0.0), ("tail", 180.0))
 _LOOKS = (("blue", "solid"), ("orange", (0, (5.0, 1.6))), ("green", (0, (1.5, 1.5))), ("purple", "dashdot"), ("grey", "dotted"))
-_MINUS = "\N{MINUS SIGN}"
 Curves = dict[str, History]
 
 
@@ -99,8 +99,7 @@ def plot_comparison(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Ax
     if len(peaks) > 1 and any(curve.still_grows for curve in curves.values()):
         ax.set_title("still growing", loc="right", fontsize=8)  # a change would be that of the runs' length
     elif len(peaks) > 1 and peaks[-1] > 0:
-        change = f"{100 * (peaks[0] / peaks[-1] - 1):+.0f} %".replace("-", _MINUS)
-        ax.set_title(f"peak {change}", loc="right", fontsize=8)
+        ax.set_title(f"peak {against(peaks[0], peaks[-1], decimals=0)}", loc="right", fontsize=8)
     return ax
 
 

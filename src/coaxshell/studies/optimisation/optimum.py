@@ -12,6 +12,7 @@ import numpy as np
 
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
+from coaxshell.model.prefixes import against
 from coaxshell.model.system import System
 from coaxshell.numerics.files import replacing_folder
 from coaxshell.numerics.late import xarray as xr
@@ -182,11 +183,10 @@ class Optimum:
         found = f"{len(self.history)} evaluations by {self.method}" + ("" if self.complete else ", interrupted")
         if not self.feasible:
             found += "; NO design keeps all limits: the one nearest to it is shown"
-        rows: list[tuple[str, ...]] = [("", "baseline", "best", "change", "unit")]
+        rows: list[tuple[str, ...]] = [("", "baseline", "best", "best is", "unit")]
         for target in self.targets.all:
             before, after = self.baseline.targets.get(target.name), self.best.targets.get(target.name)
-            change = f"{100 * (after / before - 1):+.1f} %" if before and after is not None else ""
-            rows.append((target.name, _number(before), _number(after), change, target.metric.units))
+            rows.append((target.name, _number(before), _number(after), against(after, before), target.metric.units))
         variables: list[tuple[str, ...]] = [("variable", "baseline", "best", "unit")]
         for variable, before, after in zip(self.space.variables, self.baseline.values, self.best.values, strict=True):
             variables.append((variable.name, _number(before), _number(after), variable.units))
@@ -199,12 +199,12 @@ class Optimum:
 
 
 def _confirmed(confirmations: Sequence[Confirmation]) -> list[tuple[str, ...]]:
-    rows: list[tuple[str, ...]] = [("confirmed at", "metric", "baseline", "best", "change")]
+    rows: list[tuple[str, ...]] = [("confirmed at", "metric", "baseline", "best", "best is")]
     for one in confirmations:
         label = f"M = {one.resolution.modes}, dt = {one.resolution.time_step:g}"
         for name, after in one.best.items():
             before = one.baseline[name]
-            rows.append((label, name, _number(before), _number(after), f"{100 * (after / before - 1):+.1f} %" if before else ""))
+            rows.append((label, name, _number(before), _number(after), against(after, before)))
     return rows
 
 
