@@ -174,6 +174,13 @@ class Sampled(Described):
         """Largest magnitude of the pressure (Pa)."""
         return float(abs(self.curve[1]).max())
 
+    @cached_property
+    def spectrum(self) -> tuple[FloatArray, FloatArray]:
+        """Frequencies (Hz) and the energy density |P(f)|^2 (Pa^2 s^2) of the history."""
+        from coaxshell.model.records.measures import spectrum
+
+        return spectrum(*self.curve)
+
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the record should know: where it is cut off, absurd magnitudes, a baseline that is left."""

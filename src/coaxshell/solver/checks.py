@@ -9,11 +9,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.naming import shell_phrase
 from coaxshell.model.plausibility import remarks
 from coaxshell.model.prefixes import engineering
+from coaxshell.model.pulses import Sampled
+from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.electrodes import largest_demand
@@ -33,6 +35,8 @@ LINEAR_ACOUSTICS_LIMIT = 1e-2
 VOLTAGE_LIMIT = 0.05
 CUT_LIMIT = 0.1
 """Share of a pulse's peak that may come after the run."""
+UNRESOLVED_LIMIT = 0.05
+"""Share of a record's energy that may lie above what a run resolves; a sharp front with a decay of 0.13 ms has 0.02 at the defaults."""
 RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
@@ -45,6 +49,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)
+        + _unresolved_records(problem, grid, max_order)
         + remarks(problem.system)
     )
 
@@ -201,6 +206,30 @@ def _above(value: float) -> str:
     """Return a number of two digits that is not below a value."""
     step = 10.0 ** (np.floor(np.log10(value)) - 1)
     return f"{np.ceil(value / step * (1 - 1e-12)) * step:.12g}"
+
+
+def _unresolved_records(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
+    """Return a warning for each measured record with much of its energy above what orders or time step resolve.
+
+    A wave of omega meets the outermost wall with the orders up to k a = omega a/c_e, in transits omega itself, so that order M resolves
+    omega = M there; a time step resolves what its roll-off leaves of pi/dt.
+    """
+    hertz = 1.0 / (2.0 * np.pi * problem.scales.time)
+    orders, step = max_order * hertz, (1.0 - ROLL_OFF) * grid.nyquist * hertz
+    lowest, warnings = min(orders, step), []
+    for pulse in (source.pulse for source in problem.system.sources):
+        if not isinstance(pulse, Sampled) or (share := energy_above(pulse, lowest)) <= UNRESOLVED_LIMIT:
+            continue
+        needed = share_below(*pulse.spectrum, 1.0 - UNRESOLVED_LIMIT) / hertz
+        remedies = [f"modes={int(np.ceil(needed))}"] if max_order < needed <= MAX_MODES else []
+        remedies += [f"time_step = {(1.0 - ROLL_OFF) * np.pi / needed:.2g}"] if step / hertz < needed else []
+        warnings.append(
+            f"source: {100 * share:.2g} % of the record's energy, more than {100 * UNRESOLVED_LIMIT:g} %, lies above "
+            f"{engineering(lowest, 'Hz')}: order {max_order} resolves up to {engineering(orders, 'Hz')} at the wall, time_step = "
+            f"{grid.time_step:g} up to {engineering(step, 'Hz')}; use {' and '.join(remedies)}{', or ' if remedies else ''}resample the "
+            "record, if what lies above is noise"
+        )
+    return warnings
 
 
 def _similitude(problem: Problem) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from itertools import pairwise
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import Sampled, System
+from coaxshell.model.records.measures import measures
 from coaxshell.model.records.remarks import remarks
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,34 +30,16 @@ def viewed(system: System) -> list[dict[str, Any]]:
 
 def _view(pulse: Sampled) -> dict[str, Any]:
     time, pressure = (np.asarray(values, dtype=np.float64) for values in pulse.curve)
-    at = int(np.argmax(np.abs(pressure)))
+    found = measures(pulse)
     kept = thinned(time, pressure)
     return {
-        "recorded": len(pulse.time),
+        "recorded": found.samples,
         "samples": len(time),
-        "duration": float(time[-1] - time[0]),
-        "peak": float(pressure[at]),
-        "peak_time": float(time[at]),
-        "decay_time": decay_time(time, pressure),
-        "impulse": float(np.trapezoid(pressure, time)),
+        **{name: getattr(found, name) for name in ("duration", "peak", "peak_time", "decay_time", "impulse")},
         "remarks": list(remarks(pulse)),
         "time": [float(value) for value in time[kept]],
         "pressure": [float(value) for value in pressure[kept]],
     }
-
-
-def decay_time(time: FloatArray, pressure: FloatArray) -> float | None:
-    """Return the time (s) from the largest magnitude until the pressure has fallen to 1/e of it, between samples; None if it never does."""
-    at = int(np.argmax(np.abs(pressure)))
-    share = pressure[at:] / pressure[at] if pressure[at] else np.ones(1)
-    below = np.flatnonzero(share <= 1 / math.e)
-    if not below.size:
-        return None
-    after = int(below[0])
-    before = share[after - 1]
-    part = (before - 1 / math.e) / (before - share[after])
-    start, end = time[at + after - 1], time[at + after]
-    return float(start + part * (end - start) - time[at])
 
 
 def thinned(time: FloatArray, pressure: FloatArray) -> npt.NDArray[np.intp]:

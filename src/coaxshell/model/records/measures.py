@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from scipy.fft import next_fast_len, rfft, rfftfreq
 
 from coaxshell.limits import RECORD_SAMPLES
 from coaxshell.model.records.conditioning import integral
@@ -86,7 +87,7 @@ def measures(record: Sampled) -> Measures:
         impulse=float(sums[-1]),
         largest_impulse=float(sums[np.abs(sums).argmax()]),
         positive_duration=_fall(time[at:], relative[at:], 0.0),
-        band=share_below(*spectrum(time, pressure), BAND),
+        band=share_below(*record.spectrum, BAND),
         nyquist=0.5 / float(steps.min()),
     )
 
@@ -114,15 +115,16 @@ def _fall(time: FloatArray, values: FloatArray, level: float) -> float | None:
 def spectrum(time: FloatArray, pressure: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return frequencies (Hz) and the energy density |P(f)|^2 (Pa^2 s^2) of a history, by the transform of an even grid.
 
-    The grid is as fine as the finest samples, within what a record may have, and twice as long as the history.
+    The grid is as fine as the finest samples, within what a record may have, and at least twice as long as the history.
     """
     span = time[-1] - time[0]
     count = int(min(max(span / np.diff(time).min(), 64), RECORD_SAMPLES.value)) + 1
     grid = np.linspace(time[0], time[-1], count)
     values = np.interp(grid, time, pressure)
     values[[0, -1]] /= 2  # the trapezoidal rule, which a front in the first sample needs
-    density = np.abs(np.fft.rfft(values, 2 * count) * (grid[1] - grid[0])) ** 2
-    return np.fft.rfftfreq(2 * count, grid[1] - grid[0]), density
+    size = int(next_fast_len(2 * count, real=True))
+    density = np.abs(rfft(values, size) * (grid[1] - grid[0])) ** 2
+    return rfftfreq(size, grid[1] - grid[0]), density
 
 
 def share_below(frequency: FloatArray, density: FloatArray, share: float) -> float:
@@ -133,6 +135,8 @@ def share_below(frequency: FloatArray, density: FloatArray, share: float) -> flo
 
 def energy_above(record: Sampled, frequency: float) -> float:
     """Return the share of a record's energy that lies above a frequency (Hz)."""
-    found, density = spectrum(*record.curve)
-    total = float(density.sum())
-    return float(density[found > frequency].sum()) / total if total > 0 else 0.0
+    found, density = record.spectrum
+    below = np.cumsum(density) - density[0] / 2  # up to the upper edge of each piece; the first is half as wide
+    if below[-1] <= 0:
+        return 0.0
+    return float(1.0 - np.interp(frequency, found + found[1] / 2, below, left=2 * below[0] * frequency / found[1]) / below[-1])
