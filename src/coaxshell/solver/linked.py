@@ -35,6 +35,8 @@ class LinkedSpectra:
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
     iterations : int
         Of all steps, 0 if solved exactly.
+    exact : tuple of ndarray, shapes (2 N, nodes) and (N, nodes), or None
+        Transforms of force and displacement of the absorbers carried, where they were solved exactly.
     """
 
     normal: ComplexArray
@@ -43,6 +45,7 @@ class LinkedSpectra:
     displacement: FloatArray
     actuation: FloatArray | None
     iterations: int
+    exact: tuple[ComplexArray, ComplexArray] | None = None
 
 
 def solve_linked(
@@ -74,7 +77,7 @@ def solve_linked(
             found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
         normal, tangential = structure.forced_spectra(found.modal_pressure)
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
-        return LinkedSpectra(normal, tangential, force, displacement, None, 0)
+        return LinkedSpectra(normal, tangential, force, displacement, None, 0, (found.force, found.mass_displacement))
     return _marched(structure, absorbers, march(structure, absorbers, progress=progress))
 
 

@@ -1,19 +1,24 @@
 """Laplace-domain amplitudes of a finished run, made again from its description and its interface forces.
 
 A run keeps modal histories only. Whatever else is linear in the motion (velocities, pressures, energies) follows from the
-transforms of W and V, which cost about as much as a bare run and need not be stored.
+transforms of W and V, which cost about as much as a bare run and need not be stored. A refined run keeps a part of its instants:
+what was marched between them is marched again.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import absorber_set
+from coaxshell.acoustics.operators import FloatArray
+from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.actuation import pressure_given
 from coaxshell.solver.excitation import needs_sine_half
-from coaxshell.solver.linked import modal_pressure_of, solve_linked
+from coaxshell.solver.link_motion import LinkMotion, exact_motion, marched_motion
+from coaxshell.solver.linked import LinkedSpectra, modal_pressure_of, solve_linked
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
@@ -27,10 +32,16 @@ class SolvedSpectra:
     ----------
     problem : Problem
     grid : LaplaceGrid
-        Its ``time`` is the run's time axis; ``invert`` gives histories on it.
+        That on which the run was solved: its ``time`` has ``refinement`` steps to one of the run's; ``invert`` gives histories on it.
     max_order : int
     normal, tangential : ndarray, shape (shells, halves, M + 1, nodes)
         W and V.
+    links : LinkMotion or None
+        Histories of the absorbers, if there are any.
+    actuation : ndarray, shape (shells, halves, M + 1, T), or None
+        Modal pressure that saturating actuators gave, None where the linear law held throughout.
+    refinement : int
+        Steps of the grid to one that the run kept.
     """
 
     problem: Problem
@@ -38,26 +49,44 @@ class SolvedSpectra:
     max_order: int
     normal: ComplexArray
     tangential: ComplexArray
+    links: LinkMotion | None = None
+    actuation: FloatArray | None = None
+    refinement: int = 1
 
 
 def spectra_of(solution: ModalSolution) -> SolvedSpectra:
     """Return the transforms of W and V of a finished run; InputError if instants of it are missing."""
     solution.need_every_instant("what is computed from its transforms (field, energy)")
-    modes = solution.settings.modes
+    modes, refinement = solution.settings.modes, solution.settings.refinement
     assert isinstance(modes, int)
     problem = solution.problem
-    grid = LaplaceGrid(solution.settings.time_step, solution.time.size - 1)
+    grid = LaplaceGrid(solution.settings.time_step / refinement, (solution.time.size - 1) * refinement)
     structure = PreparedStructure(problem, grid, modes)
-    pressure = pressure_given(solution)
-    if pressure is not None:
+    links = absorber_set(problem, problem.system.absorber_list, 2 if needs_sine_half(problem.system.sources) else 1)
+    linked = _linked(structure, links, solution)
+    if linked is None:
+        return SolvedSpectra(problem, grid, modes, structure.linear.normal, structure.linear.tangential, refinement=refinement)
+    motion: LinkMotion | None = None
+    if linked.exact is not None:
+        motion = exact_motion(links, grid, *linked.exact)
+    elif links.count:
+        motion = marched_motion(links, grid.time_step, linked.force, linked.displacement)
+    return SolvedSpectra(problem, grid, modes, linked.normal, linked.tangential, motion, linked.actuation, refinement)
+
+
+def _linked(structure: PreparedStructure, links: AbsorberSet, solution: ModalSolution) -> LinkedSpectra | None:
+    """Return the answer with absorbers and saturation, as it was solved or from the forces kept; None if there are neither."""
+    force, displacement, actuation = solution.absorber_force, solution.absorber_displacement, pressure_given(solution)
+    if actuation is None and not links.count:
+        return None
+    if solution.settings.refinement > 1 or (links.is_linear and actuation is None):
+        return solve_linked(structure, links, saturate=actuation is not None)
+    if actuation is not None:
         structure = structure.open_loop
-    if solution.absorber_force is not None:
-        links = absorber_set(problem, problem.system.absorber_list, 2 if needs_sine_half(problem.system.sources) else 1)
-        if links.is_linear and pressure is None:
-            linked = solve_linked(structure, links)  # exact, as it was solved
-            return SolvedSpectra(problem, grid, modes, linked.normal, linked.tangential)
-        forces = modal_pressure_of(structure, links, solution.absorber_force)
-        pressure = forces if pressure is None else forces + pressure
-    if pressure is None:
-        return SolvedSpectra(problem, grid, modes, structure.linear.normal, structure.linear.tangential)
-    return SolvedSpectra(problem, grid, modes, *structure.forced_spectra(grid.transform_linear(pressure)))
+    pressure = 0.0 if actuation is None else actuation
+    if force is None or displacement is None:
+        force, displacement = np.zeros((0, 2, solution.time.size)), np.zeros((0, solution.time.size))
+    if links.count:
+        pressure = pressure + modal_pressure_of(structure, links, force)
+    normal, tangential = structure.forced_spectra(structure.grid.transform_linear(np.asarray(pressure)))
+    return LinkedSpectra(normal, tangential, force, displacement, actuation, 0)

@@ -12,7 +12,7 @@ from coaxshell.numerics.scalars import plain
 MAX_MODES = 2000
 MAX_STEPS = 2_000_000
 ENGINES = ("spectral", "direct")
-NUMERICS_VERSION = 5
+NUMERICS_VERSION = 6
 """Raised whenever a change alters the numbers that a run gives, so that kept results of another version are told from ours."""
 
 

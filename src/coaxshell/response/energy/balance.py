@@ -58,8 +58,8 @@ def energy(
     - work on the outer shell, since the start: ``exterior_work`` of the total exterior pressure, the sum of ``incident_work``
       (the wave as if nothing were there), ``scattered_work`` (what a rigid cylinder adds to it) and ``radiated_work``. The
       ``radiated_energy`` is minus the last: all that the shell's motion gave the exterior fluid, its near field included.
-    - balance: ``closure_residual`` and ``closure_relative`` (to the largest work); ``damper_defect``, what the
-      recorded forces make of the dissipation less the c (dD/dt)^2 that is used: an error of the time step of the absorbers' march.
+    - balance: ``closure_residual`` and ``closure_relative`` (to the largest work); ``damper_defect``, what the forces
+      on the moving ends make of the dissipation less the c (dD/dt)^2 that is used: an error of the time step.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _shells(motion: Motion) -> dict[str, Entry]:
 
 def _absorbers(motion: Motion) -> dict[str, Entry]:
     kinetic, spring, dissipated, defect = absorber_energy(motion)
-    law = "what the recorded forces make of the dampers' dissipation, less damper_dissipation: error of the time step"
+    law = "what the forces on the moving ends make of the dampers' dissipation, less damper_dissipation: error of the time step"
     return {
         "absorber_kinetic": Entry(kinetic, "store", "absorbers", "kinetic energy of the absorbers' masses"),
         "absorber_spring": Entry(spring, "store", "absorbers", "energy of the absorbers' springs, linear and cubic"),
@@ -167,10 +167,9 @@ def _labelled(motion: Motion, entries: dict[str, Entry]) -> xr.Dataset:
     variables = {}
     for name, entry in entries.items():
         relative = name == "closure_relative"
-        require_finite(
-            entry.values, f"energy.{name}", [("time", motion.solution.time[motion.kept])], "look for extreme layers or absorbers"
-        )
+        require_finite(entry.values, f"energy.{name}", [("time", motion.grid.time[motion.kept])], "look for extreme layers or absorbers")
         attributes = {"units": "1" if relative else "J/m", "long_name": entry.long_name, "role": entry.role, "group": entry.group}
         variables[name] = xr.Variable("time", entry.values * (1.0 if relative else unit), attributes)
-    coordinates = {name: variable[motion.kept] for name, variable in time_coordinates(motion.solution).items()}
+    every = motion.every // motion.spectra.refinement
+    coordinates = {name: variable[::every] for name, variable in time_coordinates(motion.solution).items()}
     return xr.Dataset(variables, coordinates, {"title": motion.problem.system.name or "energy", "balance": BALANCE})

@@ -24,14 +24,15 @@ class Motion:
     ----------
     solution : ModalSolution
     every : int
-        Stores are taken at every such instant of the run.
+        Stores are taken at every such instant that the run kept.
     spectra : SolvedSpectra, optional
         Those of the solution, if known.
     """
 
     def __init__(self, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> None:
-        self.solution, self.every = solution, every
+        self.solution = solution
         self.spectra = spectra_of(solution) if spectra is None else spectra
+        self.every = every * self.spectra.refinement
 
     @property
     def problem(self) -> Problem:
@@ -40,12 +41,12 @@ class Motion:
 
     @property
     def grid(self) -> LaplaceGrid:
-        """The Laplace grid; its ``time`` is the run's."""
+        """The Laplace grid on which the run was solved: all its instants, of which a refined run kept some."""
         return self.spectra.grid
 
     @property
     def kept(self) -> slice:
-        """The run's instants at which stores are taken."""
+        """The grid's instants at which stores are taken, ``every`` steps apart."""
         return slice(None, None, self.every)
 
     @cached_property

@@ -10,7 +10,6 @@ import numpy as np
 from coaxshell.acoustics.operators import FloatArray
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
-from coaxshell.solver.actuation import pressure_given
 from coaxshell.structure.ring import RingStiffness, bending_strain, open_circuit_stiffness, ring_stiffness
 
 
@@ -60,7 +59,7 @@ def actuator_work(motion: Motion) -> FloatArray:
     voltage saturates, what was given.
     """
     problem, grid, s = motion.problem, motion.grid, motion.grid.nodes
-    given = pressure_given(motion.solution)
+    given = motion.spectra.actuation
     total = np.zeros(grid.time.size)
     for i, shell in enumerate(problem.shells):
         if shell.gains is None:

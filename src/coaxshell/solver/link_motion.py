@@ -1,0 +1,83 @@
+"""How fast the absorbers of a finished run moved: the masses' velocities and the rates dD/dt of their links' stretches D = q - w.
+
+A damper turns c (dD/dt)^2 into heat. Where it is stiff, dD/dt is a small difference of two large velocities: what is taken from the
+motion of the two ends in different ways is the error of both, times c. It is therefore what the link's own law makes of its force,
+
+    exact:     dD/dt = s F/(c s + k_l) at every Laplace node,
+    marched:   f_n = c r_n + k_l D_n + k_nl D_n^3,   D_n = D_{n-1} + (r_{n-1} + r_n) dt/2,   the march's own trapezoidal rule.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.acoustics.operators import FloatArray
+from coaxshell.solver.absorbers import AbsorberSet
+
+
+@dataclass(frozen=True)
+class LinkMotion:
+    """Histories of every absorber of a description, dimensionless, at the times of a grid.
+
+    Attributes
+    ----------
+    force : ndarray, shape (N, 2, T)
+        Line forces on the inner [.., 0] and outer [.., 1] shell.
+    displacement, velocity : ndarray, shape (N, T)
+        q and dq/dt.
+    stretch_rate : ndarray, shape (N, 2, T)
+        dD/dt of the links that have a damper.
+    """
+
+    force: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    stretch_rate: FloatArray
+
+
+def exact_motion(absorbers: AbsorberSet, grid: LaplaceGrid, force: ComplexArray, displacement: ComplexArray) -> LinkMotion:
+    """Return the motion from the transforms of the forces (2N, nodes) and of q (N, nodes) of the N absorbers carried."""
+    law = (absorbers.damping[:, None] * grid.nodes + absorbers.linear[:, None])[None]
+    sides = force.reshape(2, absorbers.count, -1)
+    rate = np.divide(sides * grid.nodes, law, out=np.zeros_like(sides), where=law != 0.0)
+    histories = (grid.invert(x)[..., absorbers.member, :] for x in (sides, displacement, displacement * grid.nodes, rate))
+    f, q, velocity, stretch_rate = histories
+    return LinkMotion(f.swapaxes(0, 1), q, velocity, stretch_rate.swapaxes(0, 1))
+
+
+def marched_motion(absorbers: AbsorberSet, time_step: float, force: FloatArray, displacement: FloatArray) -> LinkMotion:
+    """Return the motion from the histories of the forces (N, 2, T) and of q (N, T) of every absorber of the description."""
+    velocity, half = np.zeros_like(displacement), 0.5 * time_step
+    slope = np.diff(displacement, axis=-1) / half
+    for n in range(1, displacement.shape[-1]):
+        velocity[:, n] = slope[:, n - 1] - velocity[:, n - 1]
+    c, linear, cubic = (x[absorbers.member, None] for x in (absorbers.damping, absorbers.linear, absorbers.cubic))
+    rates = np.zeros((force.shape[-1], *force.shape[:2]))
+    if absorbers.damping.any():
+        stretch = np.zeros(force.shape[:2])
+        for n in range(1, len(rates)):
+            ahead = stretch + half * rates[n - 1]
+            rates[n] = _rate(force[..., n], ahead, (np.where(c > 0.0, c, 1.0), linear, cubic), half)
+            stretch = ahead + half * rates[n]
+        rates *= c > 0.0
+    return LinkMotion(force, displacement, velocity, np.moveaxis(rates, 0, -1))
+
+
+def _rate(force: FloatArray, ahead: FloatArray, law: tuple[FloatArray, FloatArray, FloatArray], half: float) -> FloatArray:
+    """Return r of f = c r + k_l D + k_nl D^3, D = ahead + r dt/2.
+
+    The cubic in D is monotone, its root the hyperbolic one; r follows by the secant of the springs, which does not cancel.
+    """
+    damping, linear, cubic = law
+    tangent = linear + damping / half
+    bend = np.sqrt(3.0 * cubic / tangent)
+    target = (force + damping / half * ahead) / tangent
+    curved = 2.0 * np.sinh(np.arcsinh(1.5 * bend * target) / 3.0)
+    stretch = np.divide(curved, bend, out=target.copy(), where=np.broadcast_to(bend > 0.0, target.shape))
+    secant = linear + cubic * (stretch**2 + stretch * ahead + ahead**2)
+    rate: FloatArray = (force - (linear + cubic * ahead**2) * ahead) / (damping + half * secant)
+    return rate
