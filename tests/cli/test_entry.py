@@ -46,6 +46,21 @@ def test_no_help_has_what_a_terminal_takes_for_markup(command):
         assert "[" not in text
 
 
+METAVARS = {
+    *("FILE", "FOLDER", "SCENARIO", "SOURCE", "NAME", "UNIT", "ADDRESS", "PATH=VALUE"),
+    *("N", "TIME", "ANGLE", "LENGTH", "PRESSURE", "FACTOR", "RATIO", "ERROR"),
+}
+
+
+@pytest.mark.parametrize("command", [*COMMANDS, "plot"])
+def test_values_of_options_are_named_in_one_style(command):
+    known = typer.main.get_command(app).commands[command]
+    for option in known.params:
+        if option.param_type_name == "option" and not option.is_flag and "--help" not in option.opts:
+            parts = (option.metavar or "").removesuffix(",...").split("|")  # a list, or a choice of kinds and words
+            assert all(part in METAVARS or (part and len(parts) > 1) for part in parts), (option.opts, option.metavar)
+
+
 def test_version(run):
     assert run("--version").out == f"coaxshell {coaxshell.__version__}\n"
 

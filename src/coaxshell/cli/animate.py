@@ -23,11 +23,11 @@ def animate(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .mp4 (needs the extra 'video') or .webp.")
     ] = Path("film.mp4"),
-    frames: Annotated[int, typer.Option("--frames", help="Number of frames.")] = 250,
-    fps: Annotated[float, typer.Option("--fps", help="Frames per second.")] = 25.0,
-    size: Annotated[int, typer.Option("--size", help="Side of a panel in pixels.")] = 450,
+    frames: Annotated[int, typer.Option("--frames", metavar="N", help="Number of frames.")] = 250,
+    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second.")] = 25.0,
+    size: Annotated[int, typer.Option("--size", metavar="N", help="Side of a panel in pixels.")] = 450,
     until: Annotated[
-        str | None, typer.Option("--until", metavar="TRANSITS", help="Last instant.", show_default="the end of the shortest run")
+        str | None, typer.Option("--until", metavar="TIME", help="Last instant, transits.", show_default="the end of the shortest run")
     ] = None,
     width: field_options.WidthOption = "6",
     units: field_options.UnitsOption = "auto",

@@ -23,16 +23,17 @@ _KINDS = ("paraview", "csv", "mat")
 def export(
     context: typer.Context,
     source: field_options.SourceArgument,
-    to: Annotated[str, typer.Option("--to", metavar="KIND", help="paraview (a folder), csv or mat (a file).")],
+    to: Annotated[str, typer.Option("--to", metavar="paraview|csv|mat", help="ParaView gets a folder, the others a file.")],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Folder or file.", show_default="after SOURCE, in this folder")
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE|FOLDER", help="Folder or file.", show_default="after SOURCE, in this folder"),
     ] = None,
     times: Annotated[
         str | None,
-        typer.Option("--times", metavar="T,T,...", help="ParaView: instants in transits, as in 0:5:0.05.", show_default="101, evenly"),
+        typer.Option("--times", metavar="TIME,...", help="ParaView: instants in transits, as in 0:5:0.05.", show_default="101, evenly"),
     ] = None,
     width: field_options.WidthOption = "6",
-    points: Annotated[int, typer.Option("--points", help="ParaView: points along a side of the square.")] = 301,
+    points: Annotated[int, typer.Option("--points", metavar="N", help="ParaView: points along a side of the square.")] = 301,
     displaced: Annotated[
         str,
         typer.Option("--displaced", metavar="FACTOR", help="ParaView: draw the shells displaced this many times."),

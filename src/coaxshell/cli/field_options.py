@@ -16,16 +16,15 @@ SourceArgument = Annotated[
 CompareOption = Annotated[
     str | None, typer.Option("--compare", metavar="SOURCE", help="Second system, shown beside the first on the same scales.")
 ]
-WidthOption = Annotated[str, typer.Option("--width", metavar="RADII", help="Side of the square that is seen, in outermost radii a.")]
-UnitsOption = Annotated[
-    str, typer.Option("--units", metavar="UNIT", help="Of the pressure: auto, Pa, kPa, MPa, or relative for p/(rho c^2).")
-]
+WidthOption = Annotated[str, typer.Option("--width", metavar="LENGTH", help="Side of the square that is seen, in outermost radii a.")]
+UnitsOption = Annotated[str, typer.Option("--units", metavar="auto|Pa|kPa|MPa|relative", help="Of the pressure; relative is p/(rho c^2).")]
 PressureLimitOption = Annotated[
     str | None,
-    typer.Option("--pressure-limit", metavar="PA", help="End of the pressure's colour scale in Pa.", show_default="from the fields"),
+    typer.Option("--pressure-limit", metavar="PRESSURE", help="End of the pressure's colour scale in Pa.", show_default="from the fields"),
 ]
 StressLimitOption = Annotated[
-    str | None, typer.Option("--stress-limit", metavar="PA", help="End of the stress's colour scale in Pa.", show_default="from the fields")
+    str | None,
+    typer.Option("--stress-limit", metavar="PRESSURE", help="End of the stress's colour scale in Pa.", show_default="from the fields"),
 ]
 
 

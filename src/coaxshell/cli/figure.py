@@ -28,11 +28,13 @@ def figure(
     number: Annotated[str, typer.Argument(metavar="NUMBER", help="Number of the figure in the paper, 2 to 14.")],
     source: Annotated[
         list[Path] | None,
-        typer.Option("--from", metavar="FILE.nc", help="Draw a saved run instead of computing one. Twice for a comparison."),
+        typer.Option("--from", metavar="FILE", help="Draw a saved run (.nc) instead of computing one. Twice for a comparison."),
     ] = None,
     preset: Annotated[
         list[str] | None,
-        typer.Option("--preset", metavar="NAME", help="Preset or .toml file to compute instead of the paper's. Twice for a comparison."),
+        typer.Option(
+            "--preset", metavar="SCENARIO", help="Preset or .toml file to compute instead of the paper's. Twice for a comparison."
+        ),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="figure-NUMBER.png")

@@ -10,7 +10,7 @@ import typer
 from coaxshell.cli.streams import echo
 
 
-def info(file: Annotated[Path, typer.Argument(metavar="FILE.nc", help="A run saved by coaxshell run --output.")]) -> None:
+def info(file: Annotated[Path, typer.Argument(metavar="FILE", help="A run (.nc) saved by coaxshell run --output.")]) -> None:
     """Tell what a saved run holds."""
     from coaxshell import response
 

@@ -17,14 +17,14 @@ from coaxshell.cli.studying import study_options, tell_code, tell_study_time
 
 def optimise(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what may change, what to make small: see docs/optimisation.md.")
+        Path, typer.Argument(metavar="STUDY", help="A .toml file: scenario, what may change, what to make small: see docs/optimisation.md.")
     ],
     output: Annotated[
         Path | None,
         typer.Option(
             "--output",
             "-o",
-            metavar="DIR",
+            metavar="FOLDER",
             help="Folder for best.toml, optimum.json, history.csv.",
             show_default="STUDY.optimum in this folder",
         ),
@@ -37,7 +37,7 @@ def optimise(
         Path | None,
         typer.Option(
             "--journal",
-            metavar="DIR",
+            metavar="FOLDER",
             help="Keep every evaluation here.",
             show_default="STUDY.journal in this folder, removed when all is done",
         ),

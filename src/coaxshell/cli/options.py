@@ -19,7 +19,7 @@ DurationOption = Annotated[
 TimeStepOption = Annotated[str, typer.Option("--time-step", metavar="TIME", help='Time step, likewise: transits, or as in "2 us".')]
 ModesOption = Annotated[str, typer.Option("--modes", metavar="N|auto", help="Highest circumferential order, or auto to meet --tolerance.")]
 ToleranceOption = Annotated[str, typer.Option("--tolerance", metavar="ERROR", help="Relative error that --modes auto aims at.")]
-EngineOption = Annotated[str, typer.Option("--engine", metavar="NAME", help="How to solve: spectral or direct.")]
+EngineOption = Annotated[str, typer.Option("--engine", metavar="spectral|direct", help="How to solve.")]
 RefinementOption = Annotated[
     str, typer.Option("--refinement", metavar="N", help="Solve at time-step/N and keep every N-th instant: for stiff absorbers.")
 ]
@@ -31,12 +31,15 @@ DaskOption = Annotated[
     typer.Option("--dask", metavar="ADDRESS", help="Work on the Dask cluster whose scheduler is here, as in tcp://10.0.0.1:8786."),
 ]
 DatasetOption = Annotated[
-    Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Where to, as NetCDF.", show_default="STUDY.nc in this folder")
+    Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to, as NetCDF (.nc).", show_default="STUDY.nc in this folder")
 ]
 StoreOption = Annotated[
     Path | None,
     typer.Option(
-        "--store", metavar="DIR", help="Keep every finished case here.", show_default="STUDY.store in this folder, removed when all is done"
+        "--store",
+        metavar="FOLDER",
+        help="Keep every finished case here.",
+        show_default="STUDY.store in this folder, removed when all is done",
     ),
 ]
 AllowCodeOption = Annotated[bool, typer.Option("--allow-code", help="Run Python files that the study names outside its folder too.")]

@@ -30,7 +30,7 @@ def plot(
         list[str] | None,
         typer.Option("--shell", metavar="NAME", help="inner, outer or a number from 0 inside. May be repeated.", show_default="all"),
     ] = None,
-    angle: Annotated[str, typer.Option("--angle", metavar="DEG,...", help="Degrees from the source, as in 0,90,180.")] = "0,180",
+    angle: Annotated[str, typer.Option("--angle", metavar="ANGLE,...", help="Degrees from the source, as in 0,90,180.")] = "0,180",
     compare: field_options.CompareOption = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="QUANTITY.png")

@@ -28,16 +28,18 @@ def response_function(
     region: Annotated[str, typer.Argument(metavar="REGION", help="exterior, interior or gap.")],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf, .svg, or .csv for numbers.")],
     modes: Annotated[
-        str, typer.Option("--modes", metavar="M,M,...", help="Circumferential orders, seven at most in a figure.")
+        str, typer.Option("--modes", metavar="N,...", help="Circumferential orders, seven at most in a figure.")
     ] = "0,1,2,5,20",
-    radius: Annotated[str | None, typer.Option("--radius", metavar="R", help="Where the pressure is; the moving wall if left out.")] = None,
+    radius: Annotated[
+        str | None, typer.Option("--radius", metavar="LENGTH", help="Where the pressure is; the moving wall if left out.")
+    ] = None,
     inner_radius: Annotated[
-        str, typer.Option("--inner-radius", metavar="R", help="Of the inner shell: the interior's wall, the gap's inner wall.")
+        str, typer.Option("--inner-radius", metavar="LENGTH", help="Of the inner shell: the interior's wall, the gap's inner wall.")
     ] = "0.5",
-    outer_radius: Annotated[str, typer.Option("--outer-radius", metavar="R", help="Of the gap's outer wall.")] = "1",
-    slowness: Annotated[str, typer.Option("--slowness", metavar="ALPHA", help="c_e/c of the fluid inside or in the gap.")] = "1",
-    duration: Annotated[str, typer.Option("--duration", metavar="TRANSITS", help="How long.")] = "5",
-    time_step: Annotated[str, typer.Option("--time-step", metavar="TRANSITS", help="Time step.")] = "2.5e-3",
+    outer_radius: Annotated[str, typer.Option("--outer-radius", metavar="LENGTH", help="Of the gap's outer wall.")] = "1",
+    slowness: Annotated[str, typer.Option("--slowness", metavar="RATIO", help="c_e/c of the fluid inside or in the gap.")] = "1",
+    duration: Annotated[str, typer.Option("--duration", metavar="TIME", help="How long, transits.")] = "5",
+    time_step: Annotated[str, typer.Option("--time-step", metavar="TIME", help="Time step, transits.")] = "2.5e-3",
     force: options.ForceOption = False,
 ) -> None:
     """Draw or tabulate the response function of a region.

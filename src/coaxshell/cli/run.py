@@ -29,7 +29,8 @@ def run(
     *,
     request: Request,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE.nc", help="Save the run: arrays, system, settings, versions.")
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Save the run as NetCDF (.nc): arrays, system, settings, versions."),
     ] = None,
     compare: Annotated[
         str | None,

@@ -17,7 +17,7 @@ from coaxshell.cli.studying import study_options, tell_code, tell_study_time
 
 def sensitivity(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what is uncertain, what to read: see docs/sensitivity.md.")
+        Path, typer.Argument(metavar="STUDY", help="A .toml file: scenario, what is uncertain, what to read: see docs/sensitivity.md.")
     ],
     output: options.DatasetOption = None,
     figure: Annotated[

@@ -17,7 +17,7 @@ PORT = 8765
 
 
 def studio(
-    port: Annotated[int, typer.Option("--port", metavar="PORT", help="Where to listen on this machine; 0 takes any free port.")] = PORT,
+    port: Annotated[int, typer.Option("--port", metavar="N", help="Where to listen on this machine; 0 takes any free port.")] = PORT,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address.")] = False,
     allow_host: Annotated[
         list[str] | None,

@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 
 
 def sweep(
-    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Scenario, what to vary, what to read: see docs/studies.md.")],
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY", help="A .toml file: scenario, what to vary, what to read: see docs/studies.md.")
+    ],
     output: options.DatasetOption = None,
-    csv: Annotated[Path | None, typer.Option("--csv", metavar="FILE.csv", help="Write a table too, one case a line.")] = None,
+    csv: Annotated[Path | None, typer.Option("--csv", metavar="FILE", help="Write a table (.csv) too, one case a line.")] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", metavar="FILE", help="Draw it too (over one or two fields); .png, .pdf or .svg.")
     ] = None,

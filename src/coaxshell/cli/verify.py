@@ -21,18 +21,18 @@ FOLDER = Path("verification-report")
 def verify(
     quick: Annotated[bool, typer.Option("--quick", help="Smaller versions of the checks: seconds instead of a minute or two.")] = False,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="DIR", help="Where report.md and report.html are written; made if need be.")
+        Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where report.md and report.html are written; made if need be.")
     ] = FOLDER,
     show_list: Annotated[bool, typer.Option("--list", help="List the checks and leave.")] = False,
     only: Annotated[list[str] | None, typer.Option("--only", metavar="NAME", help="Carry out this check only. May be repeated.")] = None,
     against: Annotated[
-        Path | None, typer.Option("--against", metavar="FILE.csv", help="Compare another code's histories with ours; needs --case.")
+        Path | None, typer.Option("--against", metavar="FILE", help="Compare another code's histories (.csv) with ours; needs --case.")
     ] = None,
     case: Annotated[
         str | None, typer.Option("--case", metavar="SCENARIO", help="What the other code solved: a preset or a .toml file.")
     ] = None,
     template: Annotated[
-        Path | None, typer.Option("--template", metavar="FILE.csv", help="Write an example for --against with our numbers for --case.")
+        Path | None, typer.Option("--template", metavar="FILE", help="Write an example (.csv) for --against with our numbers for --case.")
     ] = None,
     tolerance: Annotated[
         str,
@@ -45,7 +45,7 @@ def verify(
 ) -> None:
     """Check the numbers and write a report.
 
-    Against theory, reference values and independent methods. With --against FILE.csv --case SCENARIO another code's histories are
+    Against theory, reference values and independent methods. With --against FILE --case SCENARIO another code's histories are
     compared with ours instead: each history and each peak must be within the tolerance, and the likely cause of a deviation is named
     (sign, unit, a lag in time, head and tail exchanged). Exits with 1 if anything fails.
     """
