@@ -135,7 +135,8 @@ def test_module_and_exit_code():
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals")
-def test_ctrl_c_leaves_nothing_behind(tmp_path):
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_ctrl_c_and_termination_leave_nothing_behind(tmp_path, sent, code):
     arguments = [sys.executable, "-m", "coaxshell", "run", "bare", "--modes", "1000", "--output", "out.nc"]
     package = str(Path(coaxshell.__file__).parents[1])
     with subprocess.Popen(
@@ -147,10 +148,10 @@ def test_ctrl_c_leaves_nothing_behind(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background job ignores it, and so would its children
     ) as process:
         first = process.stderr.readline()
-        process.send_signal(signal.SIGINT)
+        process.send_signal(sent)
         rest = process.stderr.read().splitlines()
     assert first.endswith(" %\n")
-    assert process.returncode == 130
+    assert process.returncode == code
     assert rest[-1].startswith("error: interrupted")
     assert not any("Traceback" in line for line in rest)
     assert list(tmp_path.iterdir()) == []

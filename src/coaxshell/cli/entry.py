@@ -1,6 +1,6 @@
 """From the arguments of the process to its exit code: every failure becomes one line on stderr.
 
-Exit codes: 0 done, 2 bad input, 130 interrupted, 141 nobody reads what is printed (as with ``| head``), 1 anything else.
+Exit codes: 0 done, 2 bad input, 130 interrupted, 143 terminated, 141 nobody reads what is printed (as with ``| head``), 1 anything else.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ import traceback
 from collections.abc import Sequence
 from typing import Any
 
-from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli.interruption import Interrupted, termination
 from coaxshell.cli.streams import give_up_stdout, prepare_streams, printable
 from coaxshell.cli.usage import is_usage_error, usage_text
 from coaxshell.cli.warnings import plain_physics_warnings
 from coaxshell.errors import InputError
 
-DONE, FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS = 0, 1, 2, 130, 141
+DONE, FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS, TERMINATED = 0, 1, 2, 130, 141, 143
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -33,6 +33,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in arguments
     arguments = [argument for argument in arguments if argument != "--debug"]
+    with termination() as told:
+        code = _run(arguments, debug)
+    return TERMINATED if told.asked and code == INTERRUPTED else code
+
+
+def _run(arguments: list[str], debug: bool) -> int:
     try:
         with plain_physics_warnings():
             code = _invoke(arguments)

@@ -1,10 +1,37 @@
-"""An interruption that leaves something behind, and says what."""
+"""Interruptions: Ctrl-C, a request to terminate that ends a command likewise, and one that leaves something behind and says what."""
 
 from __future__ import annotations
 
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+
+class Termination:
+    """Whether the process has been asked to terminate (SIGTERM)."""
+
+    asked = False
+
+    def end(self, *_: object) -> None:
+        """Take the signal as Ctrl-C."""
+        self.asked = True
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def termination() -> Iterator[Termination]:
+    """Turn SIGTERM into Ctrl-C while this lasts, so that temporaries go; elsewhere than in the main thread nothing is done."""
+    told = Termination()
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield told
+        return
+    signal.signal(signal.SIGTERM, told.end)
+    try:
+        yield told
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 class Interrupted(Exception):  # noqa: N818 - not an error: the user pressed Ctrl-C
