@@ -7,13 +7,21 @@ from typing import Annotated
 
 import typer
 
+from coaxshell.cli.documents import JsonOption, print_document, runs_document
 from coaxshell.cli.streams import echo
 
 
-def info(file: Annotated[Path, typer.Argument(metavar="FILE", help="A run (.nc) saved by coaxshell run --output.")]) -> None:
+def info(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A run (.nc) saved by coaxshell run --output.")],
+    as_json: JsonOption = False,
+) -> None:
     """Tell what a saved run holds."""
     from coaxshell import response
 
+    if as_json:
+        found = response.load_response(file)
+        print_document({"file": str(file), **runs_document({found.system.name or file.stem: found.summary()})})
+        return
     echo(response.info(file).rstrip())
     echo()
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.documents import JsonOption, print_document
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.streams import echo
@@ -46,6 +47,7 @@ def optimise(
     allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
+    as_json: JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -70,8 +72,11 @@ def optimise(
         from coaxshell.plotting import figure_optimum, save_figure
 
         save_figure(figure_optimum(optimum), figure)
-    echo(str(optimum))
-    echo(f"wrote {target}" + (f", {figure}" if figure is not None else ""))
+    if as_json:
+        print_document(optimum.to_dict())
+    else:
+        echo(str(optimum))
+    echo(f"wrote {target}" + (f", {figure}" if figure is not None else ""), aside=as_json)
     if not optimum.complete:
         done = len(optimum.history)
         raise Interrupted(

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import re
 
+from coaxshell.cli.documents import JsonOption, print_document
 from coaxshell.cli.streams import echo
 
 
-def presets() -> None:
+def presets(as_json: JsonOption = False) -> None:
     """List the ready-made systems."""
     from coaxshell.model import presets as library
 
+    if as_json:
+        print_document({"presets": [{"name": name, "description": description(library.text(name))} for name in library.names()]})
+        return
     width = max(len(name) for name in library.names())
     for name in library.names():
         echo(f"{name:<{width}}  {description(library.text(name))}")

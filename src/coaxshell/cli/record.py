@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.documents import JsonOption, print_document
 from coaxshell.cli.files import Outputs
 from coaxshell.errors import InputError
 
@@ -38,7 +39,7 @@ def record(
     ] = None,
     taper: Annotated[Text, typer.Option("--taper", metavar="TIME", help="Bring the last part of this length to zero.")] = None,
     figure: Annotated[Path | None, typer.Option("--figure", metavar="FILE", help="Draw it with its spectrum; .png, .pdf, .svg.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print numbers for programs instead of a table.")] = False,
+    as_json: JsonOption = False,
     force: options.ForceOption = False,
 ) -> None:
     """Show what is understood of a measured pressure record.
@@ -72,7 +73,7 @@ def record(
             raise InputError(f"--{error.where.replace('_', '-')}", error.problem, error.remedy) from None
         raise
     if as_json:
-        typer.echo(json.dumps(content(found), indent=2, ensure_ascii=False))
+        print_document(content(found))
     else:
         _print(found, path, wanted)
     if figure is not None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.documents import JsonOption, print_document, runs_document
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.streams import echo
@@ -46,6 +47,7 @@ def run(
     energy: Annotated[
         Path | None, typer.Option("--energy", metavar="FILE", help="Draw where the energy of the first run goes; .png, .pdf or .svg.")
     ] = None,
+    as_json: JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -56,7 +58,7 @@ def run(
     """
     from coaxshell.cli.comparison import labels, load_reference, print_comparison
     from coaxshell.cli.scenario import load_system
-    from coaxshell.cli.tables import print_summary
+    from coaxshell.cli.tables import print_summary, tell_warnings
 
     outputs = Outputs(force)
     if output is not None:
@@ -72,13 +74,18 @@ def run(
     if output is not None:
         responses[0].save(output)
     _draw(named, figure, energy, quiet=quiet)
-    if compare is not None:
+    if as_json:
+        found = {name: response.summary() for name, response in named.items()}
+        print_document(runs_document(found))
+        for summary in found.values():
+            tell_warnings(summary.warnings)
+    elif compare is not None:
         print_comparison(named)
     else:
         print_summary(responses[0])
     for word, path in (("saved", output), ("wrote", figure), ("wrote", energy)):
         if path is not None:
-            echo(f"{word} {path}")
+            echo(f"{word} {path}", aside=as_json)
 
 
 def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:

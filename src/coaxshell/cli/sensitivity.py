@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.documents import JsonOption, print_document, statistics_document
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.streams import echo
@@ -28,6 +29,7 @@ def sensitivity(
     allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
+    as_json: JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -55,5 +57,8 @@ def sensitivity(
         save_figure(figure_sensitivity(found), figure)
     if store is None and told(found):
         shutil.rmtree(folder, ignore_errors=True)
-    echo(found_text(found))
-    echo(f"wrote {target}" + (f", {figure}" if figure is not None and told(found) else ""))
+    if as_json:
+        print_document(statistics_document(found))
+    else:
+        echo(found_text(found))
+    echo(f"wrote {target}" + (f", {figure}" if figure is not None and told(found) else ""), aside=as_json)

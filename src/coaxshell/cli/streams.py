@@ -71,7 +71,8 @@ def printable(text: str) -> str:
     return visible(text, keep="\n\t")
 
 
-def echo(text: str = "") -> None:
-    """Print a text and the end of a line on stdout."""
-    sys.stdout.write(printable(text) + "\n")
-    sys.stdout.flush()
+def echo(text: str = "", *, aside: bool = False) -> None:
+    """Print a text and the end of a line on stdout, or on stderr if it is an aside to a document for programs."""
+    stream = sys.stderr if aside else sys.stdout
+    stream.write(printable(text) + "\n")
+    stream.flush()

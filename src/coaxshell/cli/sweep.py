@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
+from coaxshell.cli.documents import JsonOption, cases_document, print_document
 from coaxshell.cli.files import Outputs
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.streams import echo
@@ -33,6 +34,7 @@ def sweep(
     allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
+    as_json: JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -47,6 +49,7 @@ def sweep(
     outputs.figure(figure)
 
     from coaxshell.studies import SweepStudy, read_study, sweep_design
+    from coaxshell.studies.table import best_cases
 
     system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent, allow_code=allow_code, tell=tell_code)
     if figure is not None and len(design.fields) > 2:
@@ -58,7 +61,12 @@ def sweep(
     _write(dataset, target, csv, figure)
     if store is None:
         shutil.rmtree(folder, ignore_errors=True)
-    _tell(dataset, target, csv, figure)
+    if as_json:
+        print_document(cases_document(dataset))
+    else:
+        echo(best_cases(dataset))
+    paths = (path for path in (target, csv, figure) if path is not None)
+    echo("wrote " + ", ".join(map(str, paths)), aside=as_json)
 
 
 def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | None) -> None:
@@ -73,10 +81,3 @@ def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | N
         from coaxshell.plotting import figure_sweep, save_figure
 
         save_figure(figure_sweep(dataset), figure)
-
-
-def _tell(dataset: xr.Dataset, *paths: Path | None) -> None:
-    from coaxshell.studies.table import best_cases
-
-    echo(best_cases(dataset))
-    echo("wrote " + ", ".join(str(path) for path in paths if path is not None))

@@ -1,0 +1,109 @@
+"""``--json``: one document on stdout, strict JSON, with the numbers of the Python interface; the rest on stderr."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import xarray as xr
+
+import coaxshell as cx
+from coaxshell.cli.documents import print_document
+
+RESOLUTION = "[resolution]\nduration = 1\ntime_step = 0.02\nmodes = 6\n"
+STUDY = f"""
+scenario = "bare"
+metrics = ["inner.peak_stress"]
+[over]
+source.distance = ["4 m", 5]
+source.peak_pressure = [1e4, 2e4]
+{RESOLUTION}"""
+UNCERTAIN = f"""
+scenario = "bare"
+metrics = ["inner.peak_stress"]
+samples = 8
+[uncertain]
+source.peak_pressure = {{ relative = 0.1 }}
+source.distance = {{ normal = {{ mean = "5 m", deviation = "20 cm" }} }}
+{RESOLUTION}"""
+SEARCH = f"""
+scenario = "absorbers"
+objectives = ["inner.peak_stress"]
+method = "differential-evolution"
+evaluations = 6
+population = 5
+[variables]
+"absorbers.mass" = {{ from = 1, to = 20 }}
+{RESOLUTION}"""
+
+
+def document(outcome):
+    """Return what stdout holds, which no constant outside JSON may be part of."""
+    assert outcome.code == 0, outcome.err
+    return json.loads(outcome.out, parse_constant=lambda text: pytest.fail(f"{text} is no JSON"))
+
+
+def test_run_tells_the_summary_in_si(run, small):
+    outcome = run("run", "bare", *small, "--json", "-o", "out.nc")
+    found = document(outcome)
+    summary = cx.simulate(cx.presets.load("bare"), modes=6, time_step=0.02, duration=1).summary()
+    (told,) = found["runs"]
+    assert told["name"] == "bare"
+    for one, shell in zip(told["shells"], summary.shells, strict=True):
+        assert one["name"] == shell.name
+        assert one["stress_head"]["value"] == shell.stress_head.value
+    assert (found["units"]["stress_head"], found["units"]["sensor_voltage"]) == ("Pa", "V")
+    assert "saved out.nc" in outcome.err
+    assert "warning: " in outcome.err
+    assert told["warnings"] == list(summary.warnings)
+    info = document(run("info", "out.nc", "--json"))
+    assert info["runs"] == found["runs"]
+    assert info["file"] == "out.nc"
+
+
+def test_both_runs_of_a_comparison(run, small):
+    found = document(run("run", "absorbers", "--compare", "bare", *small, "--json", "-q"))
+    assert [one["name"] for one in found["runs"]] == ["absorbers", "bare"]
+    assert found["runs"][0]["absorber_force"] > 0
+    assert found["runs"][1]["absorber_force"] is None
+
+
+def test_presets(run):
+    found = document(run("presets", "--json"))["presets"]
+    assert [one["name"] for one in found] == list(cx.presets.names())
+    assert all(one["description"] for one in found)
+
+
+def test_sweep_case_by_case(run, study, tmp_path):
+    outcome = run("sweep", study(), "--workers", "1", "--json")
+    found = document(outcome)
+    dataset = xr.load_dataset(tmp_path / "study.nc", engine="h5netcdf")
+    assert len(found["cases"]) == 4
+    case = next(one for one in found["cases"] if one["source.peak_pressure"] == 1e4 and one["source.distance"] == 5)
+    expected = dataset["inner.peak_stress"].sel({"source.peak_pressure": 1e4, "source.distance": 5})
+    assert case["inner.peak_stress"] == float(expected)
+    assert found["units"]["inner.peak_stress"] == "Pa"
+    assert "wrote study.nc" in outcome.err
+
+
+def test_statistics(run, study, tmp_path):
+    found = document(run("sensitivity", study(UNCERTAIN), "--workers", "1", "--json", "-q"))
+    dataset = xr.load_dataset(tmp_path / "study.nc", engine="h5netcdf")
+    assert (found["runs"], found["failed"]) == (32, 0)
+    assert found["statistics"]["inner.peak_stress"]["mean"] == dataset["inner.peak_stress"].sel(statistic="mean").values.tolist()
+    assert set(found["first_order"]["inner.peak_stress"]) == {"source.peak_pressure", "source.distance"}
+
+
+def test_optimum(run, study, tmp_path):
+    found = document(run("optimise", study(SEARCH), "--workers", "1", "--json", "-q"))
+    assert found == json.loads((tmp_path / "study.optimum" / "optimum.json").read_text())
+    assert found["units"]["inner.peak_stress"] == "Pa"
+
+
+def test_what_is_not_finite_becomes_null(capsys):
+    print_document({"a": [float("nan"), float("inf"), 1.5], "b": {"c": (-float("inf"), None, True)}})
+    assert json.loads(capsys.readouterr().out) == {"a": [None, None, 1.5], "b": {"c": [None, None, True]}}
+
+
+def test_a_refusal_prints_no_document(refused):
+    assert "'bear'" in refused("run", "bear", "--json")
