@@ -19,12 +19,28 @@ from coaxshell.model.plausibility import remarks
         ("fluids[2].sound_speed", 1.5e6, "is 1.5e+06 mm/s meant?"),
         ("shells[0].layers[0].material.density", 7.5, "shells[0].layers[0].material.density = 7.5"),
         ("source", cx.PlaneWave(pulse=cx.Sampled(time=[0, 1e-4], pressure=[0.025, 0.0])), "source.pulse: the peak is 0.025 Pa"),
+        ("source.peak_pressure", "0.025 mPa", "source: the peak = 2.5e-05 Pa (below 0.01 Pa)"),
+        ("source.peak_pressure", "-0.025 mPa", "source: the peak = 2.5e-05 Pa"),
+        ("source.peak_pressure", "250 GPa", "(above 1e+10 Pa)"),
+        ("source.decay_time", "2 h", "source: decay_time = 7200 s (above 60 s)"),
+        ("source.decay_time", "1 ns", "source: decay_time = 1e-09 s (below 1e-08 s)"),
+        ("source.delay", "3 h", "source.delay = 10800 s"),
+        ("source.distance", "500 km", "source.distance = 500000 m"),
+        ("source", cx.PlaneWave(pulse=cx.Step(pressure=1e5, rise_time=3600.0)), "rise_time = 3600 s"),
+        ("source", cx.PlaneWave(pulse=cx.Gaussian(peak_pressure=1e5, width=100.0)), "width = 100 s"),
+        ("shells[0].layers[1].thickness", "0.3 m", "of its radius"),
     ],
 )
 def test_what_no_material_has_is_remarked(path, value, told):
     found = remarks(presets.load("bare").replace_path(path, value))
     assert found
     assert told in found[0]
+
+
+def test_a_shell_of_kilometres_is_remarked():
+    plane = presets.load("bare").replace(source=cx.PlaneShock(peak_pressure=1e5, decay_time=1e-4))
+    (told,) = remarks(plane.replace_path("shells[1].radius", "5 km"))
+    assert told.startswith("shells[1].radius = 5000 m (above 1000 m) is outside any shell that is built")
 
 
 def test_what_exists_is_not():
@@ -37,5 +53,7 @@ def test_what_exists_is_not():
             assert remarks(bare.replace_path("shells[0].layers[1].material", material)) == []
     ghost = cx.Elastic(name="ghost", density=1e-9, youngs_modulus=1e-3, poisson_ratio=0.3)  # a wall of next to nothing, on purpose
     assert remarks(bare.replace_path("shells[0].layers[1].material", ghost)) == []
+    plain = bare.replace(source=cx.PlaneWave(pulse=cx.Step(pressure=1.0)))  # units of the reader's own, and a sharp front
+    assert remarks(plain) == remarks(bare.replace_path("source", cx.PlaneShock(peak_pressure=1.0, decay_time=1.0))) == []
     for name in fluids.names():
         assert remarks(bare.replace_path("fluids[1]", name)) == []

@@ -22,11 +22,32 @@ densities from foams to osmium (22,590 kg/m^3): M. F. Ashby, Materials Selection
 and glass: CRC Handbook of Chemistry and Physics. A value outside that would be usual in another unit was probably meant in that one;
 one that would not, such as a wall of next to nothing, is somebody's intention."""
 
+EXTREME: dict[str, tuple[float, float, str, str]] = {
+    "peak_pressure": (
+        1e-2,
+        1e10,
+        "Pa",
+        "any pulse that is worth computing; is its unit right (mPa is a thousandth of a pascal, MPa a million)?",
+    ),
+    "pulse": (1e-8, 60.0, "s", "any shock; is its unit right (s, ms, us)?"),
+    "radius": (1e-4, 1e3, "m", "any shell that is built; is its unit right (m, mm)?"),
+    "distance": (1e-4, 1e5, "m", "any distance from which a shock arrives as a wave; is its unit right (m, km)?"),
+    "delay": (0.0, 600.0, "s", "any delay between shocks; is its unit right (s, ms, us)?"),
+}
+"""Least and largest value that is not remarked, its unit, and what to ask: far beyond what is built or fired, so that a model in other
+units (a pressure of 1, a radius of 1, a time of 1) passes. A gauge's threshold is 1 Pa, 1e10 Pa the surface of a charge, 500 m the longest
+ship; the longest shock lasts about a second."""
+THICKEST = 0.5
+"""Wall over mid-surface radius beyond which a shell is a thick cylinder, whatever theory."""
+
 
 def remarks(system: System) -> list[str]:
     """Return a remark on each magnitude that is out of its range, with the likely meaning, and those on measured records."""
     found: list[str] = []
     for i, shell in enumerate(system.shells):
+        found += _extreme(f"shells[{i}].radius", "radius", shell.radius)
+        if isinstance(shell, Shell):
+            found += _thick(f"shells[{i}]", sum(layer.thickness for layer in shell.layers), shell.radius)
         for j, layer in enumerate(shell.layers if isinstance(shell, Shell) else ()):
             for name in ("youngs_modulus", "density"):
                 found += _told(f"shells[{i}].layers[{j}].material.{name}", name, getattr(layer.material, name, None))
@@ -37,6 +58,13 @@ def remarks(system: System) -> list[str]:
         where = f"source[{i}]" if isinstance(system.source, tuple) else "source"
         if isinstance(source.pulse, Sampled):
             found += [f"{where}.pulse: {text}" for text in source.pulse.remarks]
+        else:
+            found += _extreme(f"{where}: the peak", "peak_pressure", source.pulse.peak)
+            for name in ("decay_time", "width", "rise_time", "centre"):
+                value = getattr(source.pulse, name, None)
+                found += _extreme(f"{where}: {name}", "pulse", value or None)  # a rise of 0 is a sharp front
+        for name in ("distance", "delay"):
+            found += _extreme(f"{where}.{name}", name, getattr(source, name, None))
     return list(dict.fromkeys(found))
 
 
@@ -47,3 +75,16 @@ def _told(where: str, name: str, value: Any) -> Iterator[str]:
     meant = next((word for factor, word in likely if least <= value * factor <= most), None)
     if meant is not None:
         yield f"{where} = {value:g} {unit} is outside {least:g} to {most:g} {unit}; is {value:g} {meant} meant?"
+
+
+def _extreme(where: str, name: str, value: Any) -> Iterator[str]:
+    least, most, unit, question = EXTREME[name]
+    if isinstance(value, float) and not least <= value <= most:
+        side = f"below {least:g}" if value < least else f"above {most:g}"
+        yield f"{where} = {value:g} {unit} ({side} {unit}) is outside {question}"
+
+
+def _thick(where: str, thickness: float, radius: float) -> Iterator[str]:
+    if thickness > THICKEST * radius:
+        ratio = f"{thickness / radius:.3g} of its radius {radius:g} m"
+        yield f"{where}: the wall of {thickness:g} m is {ratio}, more than {THICKEST:g}; is its unit right (m, mm)?"
