@@ -159,7 +159,7 @@ GAINS = "control={proportional=-2e4,derivative=-150}"
         ("iakovlev-double", GAINS, ["control.shells", "shells[0] has no sensor layer"]),
         ("bare", "control={proportional=-1,derivative=-1,shells=[5]}", ["control.shells", "5", "0 to 1"]),
         ("active", "control.shells=inner,inner", ["control.shells", "only once"]),
-        ("active", "control.shells=middle", ["control.shells", "'middle'", "'inner', 'outer'"]),
+        ("active", "control.shells=middle", ["control.shells", "'middle'", "'inner' or 'outer'"]),
         ("active", "control.proportional=inf", ["control.proportional", "inf", "finite"]),
         ("active", "control.field_limit=0", ["control.field_limit", "0", "greater than 0"]),
         ("active", "control.saturation=perhaps", ["control.saturation", "perhaps"]),

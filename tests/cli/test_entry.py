@@ -68,7 +68,7 @@ def test_version(run):
 def test_unknown_command(refused):
     message = refused("solve")
     assert "'solve'" in message
-    assert "allowed: run, presets, init, info, record, figure" in message
+    assert "allowed: run, presets, init, info, record, plot, figure" in message
 
 
 def test_unknown_option(refused):

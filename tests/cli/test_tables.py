@@ -25,7 +25,7 @@ def printed(table, width):
 
 def test_says_the_same_as_the_plain_table(summary):
     drawn = printed(summary_table(summary), 100).split()
-    plain = str(summary).splitlines()
+    plain = str(summary).partition("estimated relative errors")[0].splitlines()  # what follows is the same text on both
     rows = [line.split()[1:] for line in plain if line.startswith(("inner ", "outer "))]
     assert len(rows) >= 12
     for row in rows:

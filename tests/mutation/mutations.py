@@ -443,10 +443,10 @@ MUTATIONS = (
     ),
     Mutation(
         "reduction",
-        "cli/comparison.py",
-        "100.0 * (1.0 - value / reference)",
-        "100.0 * (1.0 - reference / value)",
-        "reduction against which run",
-        "cli/test_compare.py",
+        "model/prefixes.py",
+        "ratio = value / reference",
+        "ratio = reference / value",
+        "smaller or larger than which run",
+        "model/test_prefixes.py",
     ),
 )

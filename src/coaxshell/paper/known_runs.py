@@ -160,7 +160,9 @@ def unpacked(arrays: Mapping[str, Any], values: Mapping[str, Any]) -> Observed:
     from coaxshell.response.summary import ShellSummary
 
     def shell(plain: Mapping[str, Any]) -> ShellSummary:
-        whole: dict[str, Any] = {name: Peak(**value) if isinstance(value, dict) else value for name, value in plain.items()}
+        whole: dict[str, Any] = {
+            name: Peak(**value) if isinstance(value, dict) and name != "errors" else value for name, value in plain.items()
+        }
         return ShellSummary(**whole)
 
     split = {tuple(name.split()): np.asarray(array, dtype=np.float64) for name, array in arrays.items()}

@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.plotting.histories import TIME_LABEL
-from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
 if TYPE_CHECKING:
@@ -66,7 +65,7 @@ def figure_curve_sheet(panels: Sequence[SheetPanel], columns: int = 2) -> Figure
 
 def _panel(ax: Axes, panel: SheetPanel) -> None:
     for curve in panel.curves:
-        ax.plot(curve.time, curve.values, color=COLOURS[curve.colour], linestyle=curve.dash, label=literal(curve.name))
+        ax.plot(curve.time, curve.values, color=COLOURS[curve.colour], linestyle=curve.dash, label=curve.name)
     ax.axhline(0.0, color=COLOURS["grey"], linewidth=0.5, zorder=1)
     ax.set_xlim(0.0, max(float(curve.time[-1]) for curve in panel.curves))
     ax.set_title(panel.title, loc="left", fontweight="bold")

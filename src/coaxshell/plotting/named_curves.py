@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from coaxshell.errors import InputError
 from coaxshell.plotting.histories import TIME_LABEL, History
 from coaxshell.plotting.insets import add_inset, window_around
-from coaxshell.plotting.names import literal
 from coaxshell.plotting.scales import Scale, common_scales
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -95,10 +94,9 @@ def figure_named_curves(
             if index // columns == rows - 1:
                 ax.set_xlabel(TIME_LABEL)
         lines = axes.flat[0].lines[: len(names)]
-        labels = [literal(name) for name in names]
         figure.legend(
             handles=lines,
-            labels=labels,
+            labels=names,
             loc="outside lower center",
             ncols=legend_columns,
             title=legend_title or None,
@@ -115,7 +113,7 @@ def plot_named_curves(curves: Mapping[str, History], ax: Axes) -> Axes:
     ax : Axes
     """
     for (name, curve), (colour, dash, width) in zip(curves.items(), LOOKS, strict=False):
-        ax.plot(curve.time, curve.values, color=colour, linestyle=dash, linewidth=width, label=literal(name))
+        ax.plot(curve.time, curve.values, color=colour, linestyle=dash, linewidth=width, label=name)
     ax.axhline(0.0, color=COLOURS["grey"], linewidth=0.5, zorder=1)
     ax.set_xlim(0.0, max(float(curve.time[-1]) for curve in curves.values()))
     return ax
