@@ -164,9 +164,10 @@ def test_a_full_disk_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 HOLDING = """
-import sys, time
+import signal, sys, time
 from pathlib import Path
 from coaxshell.numerics.files import replacing
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it, and so would its children
 with replacing(Path(sys.argv[1])) as made:
     made.write_text("half")
     print("begun", flush=True)
