@@ -176,7 +176,7 @@ class Sampled(Described):
 
     @cached_property
     def spectrum(self) -> tuple[FloatArray, FloatArray]:
-        """Frequencies (Hz) and the energy density |P(f)|^2 (Pa^2 s^2) of the history."""
+        """Frequencies (Hz) and the energy density ``|P(f)|^2`` (Pa^2 s^2) of the history."""
         from coaxshell.model.records.measures import spectrum
 
         return spectrum(*self.curve)
