@@ -70,7 +70,7 @@ def _target(source: str, to: str, output: Path | None, force: bool) -> Path:
     """Return where to write to, refused now if that cannot be."""
     stem = Path(source).stem
     if to == "paraview":
-        from coaxshell.export import PARAVIEW_PARTS
+        from coaxshell.export.paraview import PARAVIEW_PARTS
 
         return Outputs(force).folder(output or Path(f"{stem}-paraview"), "--output", PARAVIEW_PARTS)
     return Outputs(force).file(output or Path(f"{stem}.{to}"), "--output", (f".{to}",))

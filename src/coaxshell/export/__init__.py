@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from coaxshell.export.paraview import PARAVIEW_PARTS, check_grid, export_paraview
+from coaxshell.export.paraview import check_grid, export_paraview
 from coaxshell.export.tables import export_csv, export_mat
 from coaxshell.response.tables import history_table
 
-__all__ = ["PARAVIEW_PARTS", "check_grid", "export_csv", "export_mat", "export_paraview", "history_table"]
+__all__ = ["check_grid", "export_csv", "export_mat", "export_paraview", "history_table"]

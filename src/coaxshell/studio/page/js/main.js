@@ -209,6 +209,17 @@ function fail(error, full = false) {
   if (page.problems[0].where) form.mark(page.problems);
   if (!full) stale(true);
   say();
+  if (error.status === 0) later(page.problems);
+}
+
+// What the server could not be asked is asked again once it answers.
+function later(problems) {
+  setTimeout(() => {
+    if (page.problems !== problems) return;
+    if (!page.reachable) return later(problems);
+    page.problems = [];
+    again();
+  }, 1500);
 }
 
 function progress(job) {
