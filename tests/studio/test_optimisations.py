@@ -194,7 +194,7 @@ BAD = {
         {"variables": {f"absorbers[*].{name}": {"from": 1, "to": 2} for name in ("mass", "damping", "linear_stiffness")}},
         "variables",
     ),
-    "no path": ({"variables": {"\ud800": {"from": 1, "to": 2}}}, "variables"),
+    "no path": ({"variables": {"\u2603": {"from": 1, "to": 2}}}, "variables"),
     "no objective": ({"objectives": []}, "objectives"),
     "three objectives": ({"objectives": ["inner.peak_stress", "outer.peak_stress", "absorbers.mass"]}, "objectives"),
     "one twice": ({"objectives": ["inner.peak_stress", "inner.peak_stress"]}, "objectives"),

@@ -131,7 +131,7 @@ class Studio:
         while True:
             await asyncio.sleep(limits.REST_SECONDS / 8)
             resting = self.workers.rest(limits.REST_SECONDS)
-            if resting and not rested:
+            if resting and (not rested or len(self.curves)):
                 self.curves.clear()
                 memory.give_back()
             rested = resting
