@@ -16,7 +16,7 @@ import numpy.typing as npt
 from scipy import special
 from scipy.special import ive
 
-ComplexArray = npt.NDArray[np.complex128]
+from coaxshell.numerics.arrays import ComplexArray
 
 # Below this |z|/m the asymptotic ratio is forgotten quickly enough by the downward recurrence (each step shrinks its
 # error by |R|^2 <= 0.21 here) and I_m itself would begin to underflow; above it, ive gives the start exactly.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 
 _FIRST = 16
 """Instants summed before the others are judged by what they can reach."""

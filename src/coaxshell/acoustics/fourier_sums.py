@@ -9,18 +9,18 @@ complex sets over the whole period and took 2.3 times as long here.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft, sparse
 from scipy.special import i0
 
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _OVERSAMPLING = 1.5
 _WIDTH = 14  # grid cells under the kernel; with the shape below the error is about 1e-11 of the largest sum
 _SHAPE = np.pi * np.sqrt((_WIDTH * (1.0 - 0.5 / _OVERSAMPLING)) ** 2 - 0.8)
 
 
-def exponential_sums(times: npt.NDArray[np.float64], weights: npt.NDArray[np.float64], grid: LaplaceGrid) -> npt.NDArray[np.complex128]:
+def exponential_sums(times: FloatArray, weights: FloatArray, grid: LaplaceGrid) -> ComplexArray:
     """Return sum_j c_j e^{-s t_j} at all nodes s of a Laplace grid.
 
     Parameters
@@ -41,12 +41,12 @@ def exponential_sums(times: npt.NDArray[np.float64], weights: npt.NDArray[np.flo
     spread = _spreading(position, np.exp(-grid.shift * times), cells) @ weights
     fine = np.zeros((weights.shape[1], cells))
     fine[:, : spread.shape[0]] = spread.T
-    spectrum: npt.NDArray[np.complex128] = fft.rfft(fine, axis=-1, workers=WORKERS)[:, : grid.nodes.size]
+    spectrum: ComplexArray = fft.rfft(fine, axis=-1, workers=WORKERS)[:, : grid.nodes.size]
     spectrum *= _deconvolution(np.arange(grid.nodes.size) / cells)
     return spectrum
 
 
-def _spreading(position: npt.NDArray[np.float64], damping: npt.NDArray[np.float64], cells: int) -> sparse.csr_array:
+def _spreading(position: FloatArray, damping: FloatArray, cells: int) -> sparse.csr_array:
     """Return the matrix that spreads weights at fractional positions onto periodic cells, delayed by half the kernel's width.
 
     Cells above the highest that is reached are left out.
@@ -60,7 +60,7 @@ def _spreading(position: npt.NDArray[np.float64], damping: npt.NDArray[np.float6
     return sparse.csr_array((kernel.ravel(), ((cell % cells).ravel(), column.ravel())), shape=shape)
 
 
-def _deconvolution(frequency: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+def _deconvolution(frequency: FloatArray) -> ComplexArray:
     """Return the inverse of the kernel's transform, in cycles per cell, advanced by half its width."""
     root = np.sqrt(_SHAPE**2 - (np.pi * _WIDTH * frequency) ** 2)
     transform = _WIDTH * np.sinh(root) / (root * i0(_SHAPE))

@@ -14,11 +14,11 @@ from typing import Protocol
 import numpy as np
 
 from coaxshell.acoustics import bessel_ratios as br
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.fourier_sums import exponential_sums
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions
+from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.rays import surface_rays
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 SurfaceLoad = Callable[[RadialFunctions, slice], ComplexArray]
 """From the exterior fluid's radial functions at r = 1 and the slice of grid nodes they stand for to L_m(s), (orders, nodes)."""

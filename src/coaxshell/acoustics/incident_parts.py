@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.incident import IncidentWave, SphericalGeometry
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions
+from coaxshell.acoustics.operators import RadialFunctions
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 
 def incident_parts(

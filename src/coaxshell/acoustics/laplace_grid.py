@@ -17,8 +17,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 WRAP_AROUND = 1e-10
 """e^{-sigma P}: damping of what wraps around the period; rounding is amplified by at most its inverse square root."""
@@ -81,59 +82,59 @@ class LaplaceGrid:
         return np.pi / self.time_step
 
     @cached_property
-    def nodes(self) -> npt.NDArray[np.complex128]:
+    def nodes(self) -> ComplexArray:
         """s_k = sigma + i omega_k for k = 0..samples//2."""
         return np.asarray(self.shift + 1j * self.frequency_step * np.arange(self.samples // 2 + 1), dtype=np.complex128)
 
     @cached_property
-    def time(self) -> npt.NDArray[np.float64]:
+    def time(self) -> FloatArray:
         """0, dt, ..., steps * dt."""
         return np.asarray(self.time_step * np.arange(self.steps + 1), dtype=np.float64)
 
-    def taper(self, roll_off: float = ROLL_OFF) -> npt.NDArray[np.float64]:
+    def taper(self, roll_off: float = ROLL_OFF) -> FloatArray:
         """Return 1 over the band and a cos^2 descent to 0 over its top fraction ``roll_off``, at ``nodes``."""
         position = np.linspace(0.0, 1.0, self.nodes.size)
-        descent: npt.NDArray[np.float64] = np.cos(0.5 * np.pi * np.maximum(0.0, position - (1.0 - roll_off)) / roll_off) ** 2
+        descent: FloatArray = np.cos(0.5 * np.pi * np.maximum(0.0, position - (1.0 - roll_off)) / roll_off) ** 2
         return descent
 
-    def lanczos(self) -> npt.NDArray[np.float64]:
+    def lanczos(self) -> FloatArray:
         """Return sinc(omega/omega_max) at ``nodes``: for spectra that decay slowly (pressures, accelerations)."""
-        window: npt.NDArray[np.float64] = np.sinc(np.linspace(0.0, 1.0, self.nodes.size))
+        window: FloatArray = np.sinc(np.linspace(0.0, 1.0, self.nodes.size))
         return window
 
-    def invert(self, spectrum: npt.NDArray[np.complex128], window: npt.NDArray[np.float64] | None = None) -> npt.NDArray[np.float64]:
+    def invert(self, spectrum: ComplexArray, window: FloatArray | None = None) -> FloatArray:
         """Return time histories on ``time`` from their transforms at ``nodes`` (last axis).
 
         ``window`` weights the spectrum; by default ``taper()``. A stronger one costs accuracy in smooth quantities.
         """
         weighted = spectrum * (self.taper() if window is None else window)
         histories = fft.irfft(weighted, self.samples, axis=-1, workers=WORKERS, overwrite_x=True)[..., : self.steps + 1]
-        result: npt.NDArray[np.float64] = histories * (np.exp(self.shift * self.time) / self.time_step)
+        result: FloatArray = histories * (np.exp(self.shift * self.time) / self.time_step)
         return result
 
-    def beyond(self, spectrum: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    def beyond(self, spectrum: ComplexArray) -> FloatArray:
         """Return what :meth:`invert` leaves out: the rest of the period after ``time``, of which wrap_around returns to its beginning.
 
         Rounding is amplified there by up to 1/wrap_around.
         """
         histories = fft.irfft(spectrum * self.taper(), self.samples, axis=-1, workers=WORKERS, overwrite_x=True)[..., self.steps + 1 :]
         rest = self.time_step * np.arange(self.steps + 1, self.samples)
-        result: npt.NDArray[np.float64] = histories * (np.exp(self.shift * rest) / self.time_step)
+        result: FloatArray = histories * (np.exp(self.shift * rest) / self.time_step)
         return result
 
-    def transform(self, histories: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+    def transform(self, histories: FloatArray) -> ComplexArray:
         """Return dt * sum_n x(t_n) e^{-s t_n} at ``nodes`` (last axis): the transform of samples, the partner of ``invert``."""
         damped = histories * (np.exp(-self.shift * self.time) * self.time_step)
-        spectrum: npt.NDArray[np.complex128] = fft.rfft(damped, self.samples, axis=-1, workers=WORKERS)
+        spectrum: ComplexArray = fft.rfft(damped, self.samples, axis=-1, workers=WORKERS)
         return spectrum
 
     @cached_property
-    def hat(self) -> npt.NDArray[np.complex128]:
+    def hat(self) -> ComplexArray:
         """(sinh(s dt/2)/(s dt/2))^2 at ``nodes``: transform of the hat, two steps wide, that joins samples by straight lines."""
         half = 0.5 * self.time_step * self.nodes
         return np.asarray((np.sinh(half) / half) ** 2, dtype=np.complex128)
 
-    def transform_linear(self, histories: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+    def transform_linear(self, histories: FloatArray) -> ComplexArray:
         """Return the transforms at ``nodes`` of functions that are linear between their samples (last axis)."""
         spectrum = self.transform(histories)
         spectrum *= self.hat

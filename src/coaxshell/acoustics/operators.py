@@ -15,12 +15,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.acoustics import bessel_ratios as br
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 
 def all_orders(max_order: int) -> FloatArray:

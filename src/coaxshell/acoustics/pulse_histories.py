@@ -7,8 +7,8 @@ import math
 import numpy as np
 from scipy.special import erf
 
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
+from coaxshell.numerics.arrays import FloatArray
 
 
 def pulse_history(pulse: Pulse, t: FloatArray, time_scale: float, pressure_scale: float) -> FloatArray:

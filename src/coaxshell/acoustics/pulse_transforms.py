@@ -7,9 +7,9 @@ import math
 import numpy as np
 from scipy.special import erfcx
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.sampled_transforms import piecewise_linear
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
+from coaxshell.numerics.arrays import ComplexArray
 
 
 def pulse_transform(pulse: Pulse, s: ComplexArray, time_scale: float, pressure_scale: float) -> ComplexArray:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 
 
 class SurfaceRays(NamedTuple):

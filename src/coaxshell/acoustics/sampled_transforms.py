@@ -17,9 +17,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import WORKERS
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _MOMENTS = 14
 _FEW = 4_000_000

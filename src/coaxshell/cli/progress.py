@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from coaxshell.numerics.progress import Progress
 
 if TYPE_CHECKING:
     from coaxshell.numerics.cost import Cost
 
 from coaxshell.cli.streams import printable
-
-Report = Callable[[float, str], None]
 
 _LINES = 10
 
@@ -26,7 +26,7 @@ def tell_time(cost: Cost, what: str, quiet: bool) -> None:
 
 
 @contextmanager
-def progress(quiet: bool = False, *, left: bool = False) -> Iterator[Report | None]:
+def progress(quiet: bool = False, *, left: bool = False) -> Iterator[Progress | None]:
     """Yield a function of (fraction done, stage) that shows them, with the time *left* if asked; None when nothing is to be shown."""
     if quiet:
         yield None
@@ -38,9 +38,10 @@ def progress(quiet: bool = False, *, left: bool = False) -> Iterator[Report | No
 
 
 @contextmanager
-def _bar(left: bool) -> Iterator[Report]:
+def _bar(left: bool) -> Iterator[Progress]:
+    from rich import progress as rich_progress
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, ProgressColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, ProgressColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     columns: tuple[ProgressColumn, ...] = (
         TextColumn("{task.description:<20}", markup=False),
@@ -50,7 +51,7 @@ def _bar(left: bool) -> Iterator[Report]:
     )
     if left:
         columns = (*columns, TextColumn("left"), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with rich_progress.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("solving", total=1.0)
 
         def report(fraction: float, stage: str) -> None:
@@ -59,7 +60,7 @@ def _bar(left: bool) -> Iterator[Report]:
         yield report
 
 
-def _lines(left: bool) -> Report:
+def _lines(left: bool) -> Progress:
     """Return a report that writes a line whenever a stage passes another tenth."""
     last: dict[str, int] = {}
     begun: dict[str, tuple[float, float]] = {}

@@ -14,7 +14,7 @@ from coaxshell.cli.values import named_as_options, number
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
-    from coaxshell.acoustics.response_functions import FloatArray
+    from coaxshell.numerics.arrays import FloatArray
     from coaxshell.plotting.response_functions import ResponseFunction
 
 REGIONS = ("exterior", "interior", "gap")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,15 +13,16 @@ import numpy.typing as npt
 from coaxshell.errors import InputError
 from coaxshell.export.vtk_xml import write_collection, write_image, write_lines
 from coaxshell.model import RigidShell
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing_folder
+from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
-Report = Callable[[float, str], None]
+Report = Progress
 
 PARAVIEW_PARTS = ("data", "field.pvd", "shells.pvd", "system.toml")
 """What an exported folder holds."""

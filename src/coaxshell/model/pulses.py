@@ -18,7 +18,7 @@ from coaxshell.model.units import AnyPressure, AnyTime, Delay, Pressure, Time, q
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from coaxshell.model.samples import FloatArray
+    from coaxshell.numerics.arrays import FloatArray
 
 
 class Exponential(Described):

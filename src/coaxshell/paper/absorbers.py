@@ -9,11 +9,11 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper import cases
 from coaxshell.paper.histories import named_warnings, point_name, solved_curves
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Report
 from coaxshell.plotting.absorber_counts import StressByCount, figure_absorber_counts
 from coaxshell.plotting.histories import QUANTITIES
 from coaxshell.plotting.offsets import figure_offsets
@@ -29,7 +29,7 @@ HEADS = (("inner", 0.0), ("outer", 0.0))
 _MEGA = 1e-6
 
 
-def offsets(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+def offsets(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
     """Draw Figure 8: the displacement at the heads for an absorber at 0 to 60 degrees beside them, up to t = 2."""
     solved, warnings = solved_curves(cases.offset(systems[0]), HEADS, "displacement", runs, progress, SHOWN)
     panels = {
@@ -41,10 +41,10 @@ def offsets(systems: list[System], runs: Runs, progress: Report | None) -> Drawn
 
 def counts(
     fine: Sequence[int] = cases.COUNTS, coarse: Sequence[int] = cases.COARSE_COUNTS
-) -> Callable[[list[System], Runs, Report | None], Drawn]:
+) -> Callable[[list[System], Runs, Progress | None], Drawn]:
     """Return what draws Figure 9: peak and RMS stress of both shells, for two lists of numbers of absorbers."""
 
-    def draw(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+    def draw(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
         if not all(isinstance(shell, Shell) for shell in (systems[0].shells[0], systems[0].shells[-1])):
             raise InputError("shells", "the innermost or the outermost one is rigid and has no stress", "give elastic ones")
         wanted = tuple(sorted({*fine, *coarse}))

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
+
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 
 if TYPE_CHECKING:
-    from coaxshell.paper.runs import Report
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
 Fields = Mapping[str, FloatArray]
 
 SNAPSHOTS = (1.0, 2.0, 3.0, 3.1, 4.0)
@@ -28,7 +28,7 @@ _FACE = 1e-9
 _RADII = {"interior": 25, "gap": 25, "exterior": 80}
 
 
-def fields_of(response: Response, progress: Report | None = None) -> dict[str, FloatArray]:
+def fields_of(response: Response, progress: Progress | None = None) -> dict[str, FloatArray]:
     """Return what is kept of the fields of a response with two shells and a shock; pressures are relative to the incident peak.
 
     - ``angle``: degrees from the head, 0 to 180 in steps of 2; ``snapshot time``; ``<region> radius``; ``<region> snapshot``

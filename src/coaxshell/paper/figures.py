@@ -7,11 +7,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper import cases
 from coaxshell.paper.histories import BOTH, INNER, MAGNIFIED, PER_LENGTH, hybrid, stress_study
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import Drawn, FigureRecipe, StudyRecipe
-from coaxshell.paper.runs import Report
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,37 +20,37 @@ if TYPE_CHECKING:
     from coaxshell.response import Response
 
 
-def _bare_histories(responses: list[Response], progress: Report | None) -> Figure:
+def _bare_histories(responses: list[Response], progress: Progress | None) -> Figure:
     from coaxshell.plotting.bare_histories import figure_bare_histories
 
     return figure_bare_histories(responses[0])
 
 
-def _snapshots(responses: list[Response], progress: Report | None) -> Figure:
+def _snapshots(responses: list[Response], progress: Progress | None) -> Figure:
     from coaxshell.plotting.snapshots import figure_snapshots
 
     return figure_snapshots(*responses, units="relative", progress=progress)
 
 
-def _pressure_rms(responses: list[Response], progress: Report | None) -> Figure:
+def _pressure_rms(responses: list[Response], progress: Progress | None) -> Figure:
     from coaxshell.plotting.pressure_rms import figure_pressure_rms
 
     return figure_pressure_rms(*responses)
 
 
-def _limiting_cases(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+def _limiting_cases(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
     from coaxshell.paper.limiting_cases import limiting_cases
 
     return limiting_cases(systems, runs, progress)
 
 
-def _offsets(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+def _offsets(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
     from coaxshell.paper.absorbers import offsets
 
     return offsets(systems, runs, progress)
 
 
-def _counts(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+def _counts(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
     from coaxshell.paper.absorbers import counts
 
     return counts()(systems, runs, progress)

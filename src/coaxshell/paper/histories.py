@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper import cases
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.observed import SIDES, Observed
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Report
 from coaxshell.plotting.histories import QUANTITIES, History, history
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def history_of(run: Observed, quantity: str, shell: str, turn: float) -> History
 
 
 def solved_curves(
-    systems: cases.Cases, points: Points, quantity: str, runs: Runs, progress: Report | None, last: float = math.inf
+    systems: cases.Cases, points: Points, quantity: str, runs: Runs, progress: Progress | None, last: float = math.inf
 ) -> tuple[Curves, tuple[str, ...]]:
     """Return the histories of each system at each point up to *last* transits, and the warnings with the systems' names."""
     curves: Curves = {}
@@ -64,17 +64,17 @@ def solved_curves(
 
 def stress_study(
     varied: Callable[[System], cases.Cases], points: Points, legend_title: str, magnified: float | None
-) -> Callable[[list[System], Runs, Report | None], Drawn]:
+) -> Callable[[list[System], Runs, Progress | None], Drawn]:
     """Return what draws the stress of varied systems at the given points."""
 
-    def draw(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+    def draw(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
         curves, warnings = solved_curves(varied(systems[0]), points, "stress", runs, progress)
         return Drawn(_figure(curves, legend_title, magnified), warnings)
 
     return draw
 
 
-def hybrid(responses: list[Response], progress: Report | None) -> Figure:
+def hybrid(responses: list[Response], progress: Progress | None) -> Figure:
     """Draw Figure 12: the stress at head and tail of both shells without control, with each kind and with both."""
     curves: Curves = {}
     for name, response in zip(("bare", "absorbers", "active", "hybrid"), responses, strict=True):

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper.fields import Fields, fields_of
 from coaxshell.paper.observed import Observed
-from coaxshell.paper.runs import Report, Resolution, Solver, solve_each
+from coaxshell.paper.runs import Resolution, Solver, solve_each
 from coaxshell.paper.shared_runs import FEWEST, Share, in_turn, shared_out
 from coaxshell.paper.store import Store, key_of
 
@@ -69,7 +70,7 @@ class Runs:
     def each(
         self,
         systems: Mapping[str, System],
-        progress: Report | None = None,
+        progress: Progress | None = None,
         *,
         resolution: Resolution | None = None,
         peaks_only: bool = False,
@@ -99,7 +100,7 @@ class Runs:
         for _ in solved:  # lets the solver report that it is through
             pass
 
-    def fields(self, system: System, progress: Report | None = None) -> Fields:
+    def fields(self, system: System, progress: Progress | None = None) -> Fields:
         """Return what is kept of the fields of a system (:func:`coaxshell.paper.fields.fields_of`).
 
         Raises

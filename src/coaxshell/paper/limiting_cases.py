@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.errors import InputError
 from coaxshell.model import VACUUM, RigidShell, Shell, System
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper.histories import named_warnings
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.observed import Observed
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Report, Resolution
+from coaxshell.paper.runs import Resolution
 from coaxshell.plotting.curve_sheets import SheetCurve, SheetPanel, figure_curve_sheet
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import dimensionless
-
-FloatArray = npt.NDArray[np.float64]
 
 THICKNESSES = {5e-3: "sky", 1e-2: "blue", 2e-2: "green", 4e-2: "orange"}
 """Of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
@@ -29,7 +28,7 @@ _COLOURS = {"outer": "blue", "inner": "orange"}
 _RELATIVE = "displacement / thickness, $w/h$"
 
 
-def limiting_cases(systems: list[System], runs: Runs, progress: Report | None) -> Drawn:
+def limiting_cases(systems: list[System], runs: Runs, progress: Progress | None) -> Drawn:
     """Draw Figure 2 for an evacuated shell, a filled one in several thicknesses, and a double one."""
     wanted = limiting_systems(systems)
     filled_ones = [name for name in wanted if name.startswith("filled")]

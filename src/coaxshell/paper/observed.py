@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.paper.cases import head_of
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from coaxshell.response import Response
     from coaxshell.response.summary import ShellSummary
 
-FloatArray = npt.NDArray[np.float64]
 
 SHELLS = ("inner", "outer")
 SIDES = {"head": 0.0, "tail": 180.0}

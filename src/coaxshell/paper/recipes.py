@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from coaxshell.paper.runs import Report
+from coaxshell.numerics.progress import Progress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +37,7 @@ class FigureRecipe:
     number: str
     title: str
     presets: tuple[str, ...]
-    draw: Callable[[list[Response], Report | None], Figure]
+    draw: Callable[[list[Response], Progress | None], Figure]
     caption: str
 
 
@@ -66,5 +66,5 @@ class StudyRecipe:
     number: str
     title: str
     presets: tuple[str, ...]
-    draw: Callable[[list[System], Runs, Report | None], Drawn]
+    draw: Callable[[list[System], Runs, Progress | None], Drawn]
     caption: str

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from coaxshell.errors import PhysicsWarning
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper.observed import Observed, observe
-from coaxshell.paper.runs import Report, Resolution, Solver
+from coaxshell.paper.runs import Resolution, Solver
 from coaxshell.studies.executors import completed
 from coaxshell.studies.threads import one_blas_thread
 
@@ -33,13 +34,13 @@ class Share:
     peaks_only: bool
 
 
-def in_turn(share: Share, progress: Report | None = None) -> Iterator[tuple[str, Observed]]:
+def in_turn(share: Share, progress: Progress | None = None) -> Iterator[tuple[str, Observed]]:
     """Yield (name, run) of each system, solved in this process."""
     for name, response in share.solver(share.systems, share.resolution, progress):
         yield name, observe(response, peaks_only=share.peaks_only)
 
 
-def shared_out(share: Share, workers: int, progress: Report | None = None) -> Iterator[tuple[str, Observed]]:
+def shared_out(share: Share, workers: int, progress: Progress | None = None) -> Iterator[tuple[str, Observed]]:
     """Yield (name, run) of each system, solved by several processes; in any order, the runs the same as in turn."""
     names, count, done = list(share.systems), len(share.systems), 0
     size = -(-count // (_SHARES * workers))

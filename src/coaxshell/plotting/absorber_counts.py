@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.scales import round_up
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _STEPS = 6
-FloatArray = npt.NDArray[np.float64]
 
 _LOOKS: dict[str, dict[str, Any]] = {
     "anywhere": {"color": COLOURS["sky"], "linewidth": 2.6, "marker": "none", "label": "peak anywhere"},

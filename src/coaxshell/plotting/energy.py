@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.histories import TIME_LABEL
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FloatArray = npt.NDArray[np.float64]
 
 _FIXED = {
     "interior fluid": COLOURS["sky"],

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
     STRESS_COLOURS,
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from coaxshell.model import System
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
 
 RING_WIDTH = 0.11
 """Drawn width of a shell, in a; true walls of a few millimetres would not be seen."""

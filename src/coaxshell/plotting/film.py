@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
 from coaxshell.plotting.field_scales import FieldScales, field_scales
 from coaxshell.plotting.film_canvas import Canvas
@@ -97,7 +98,7 @@ def check_film(path: Path, frames: int, fps: float) -> None:
     film_writer(path)
 
 
-def _times(responses: Sequence[Response], frames: int, until: float | None) -> npt.NDArray[np.float64]:
+def _times(responses: Sequence[Response], frames: int, until: float | None) -> FloatArray:
     if not responses:
         raise InputError("responses", "there are none", "give at least one response")
     end = min(float(response.time[-1]) for response in responses)
@@ -107,7 +108,7 @@ def _times(responses: Sequence[Response], frames: int, until: float | None) -> n
 
 
 def _film_scales(
-    responses: Sequence[Response], times: npt.NDArray[np.float64], view: FieldView, pressure: float | None, stress: float | None
+    responses: Sequence[Response], times: FloatArray, view: FieldView, pressure: float | None, stress: float | None
 ) -> FieldScales:
     """Return scales from instants spread over the film, on a coarse grid."""
     if pressure is not None and stress is not None:
@@ -118,7 +119,7 @@ def _film_scales(
 
 
 def _pictures(
-    canvas: Canvas, responses: Sequence[Response], times: npt.NDArray[np.float64], view: FieldView, memory: float, progress: Report | None
+    canvas: Canvas, responses: Sequence[Response], times: FloatArray, view: FieldView, memory: float, progress: Report | None
 ) -> Iterator[Bytes]:
     done = 0
     streams: list[Iterator[Frames]] = [

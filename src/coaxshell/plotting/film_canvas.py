@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from coaxshell.response import Response
 
 Bytes = npt.NDArray[np.uint8]
-FloatArray = npt.NDArray[np.float64]
 
 _DPI = 100
 _MARGIN, _GAP, _TOP, _BAR, _LABELS = 10, 12, 34, 14, 58  # at 450 pixels a panel; they grow with it

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +11,13 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
-Report = Callable[[float, str], None]
+Report = Progress
 
 RING_ANGLES: FloatArray = np.arange(360.0)
 """Where the stress of a shell is taken: every degree."""

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.style import COLOURS, COLUMN_WIDTH, new_figure, style
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
 TIME_LABEL = "time (acoustic transits $a/c_e$)"
 
 

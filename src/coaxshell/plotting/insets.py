@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.histories import History
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FloatArray = npt.NDArray[np.float64]
 
 WIDTH, HEIGHT = 0.42, 0.32
 """Size of an inset, shares of the panel."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.histories import TIME_LABEL
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.image import AxesImage
 
-FloatArray = npt.NDArray[np.float64]
 _MOST_FRONTS = 24
 
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 from coaxshell.plotting.units import scale
@@ -115,7 +115,7 @@ def plot_distribution(dataset: xr.Dataset, metric: str, ax: Axes | None = None) 
     ax.step(factor * np.sort(values), 100 * shares, where="mid", color=COLOURS["blue"], label="runs")
     for share, name in ((5, "p5"), (50, "p50"), (95, "p95")):
         value, low, high = factor * dataset[metric].sel(statistic=name).to_numpy()
-        reach: npt.NDArray[np.float64] = np.array([[value - low], [high - value]])
+        reach: FloatArray = np.array([[value - low], [high - value]])
         label = "percentiles" if share == 50 else None
         ax.errorbar([value], [share], xerr=reach, fmt="o", color=COLOURS["orange"], capsize=2.5, markersize=3.5, label=label)
     mean = float(factor * dataset[metric].sel(statistic="mean", estimate="value"))

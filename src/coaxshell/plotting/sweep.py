@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 from coaxshell.plotting.units import pretty, scale
@@ -91,7 +91,7 @@ def plot_sweep(dataset: xr.Dataset, metric: str, ax: Axes | None = None) -> Axes
     return ax
 
 
-def _two(ax: Axes, dataset: xr.Dataset, fields: list[str], scaled: npt.NDArray[np.float64], label: str, *, mapped: bool) -> None:
+def _two(ax: Axes, dataset: xr.Dataset, fields: list[str], scaled: FloatArray, label: str, *, mapped: bool) -> None:
     if mapped:
         fields = [str(name) for name in dataset[fields[0]].dims] + [str(name) for name in dataset[fields[1]].dims]
     x, y = _axis(ax.xaxis, dataset[fields[0]]), _axis(ax.yaxis, dataset[fields[1]])
@@ -108,7 +108,7 @@ def _two(ax: Axes, dataset: xr.Dataset, fields: list[str], scaled: npt.NDArray[n
         figure.colorbar(drawn, ax=ax, label=label)
 
 
-def _edges(centres: npt.NDArray[np.float64], scale: str) -> npt.NDArray[np.float64]:
+def _edges(centres: FloatArray, scale: str) -> FloatArray:
     """Return the edges of cells about the centres, halfway between neighbours on the scale of the axis."""
     logarithmic = scale == "log"
     at = np.log(centres) if logarithmic else centres
@@ -119,7 +119,7 @@ def _edges(centres: npt.NDArray[np.float64], scale: str) -> npt.NDArray[np.float
     return np.exp(edges) if logarithmic else edges
 
 
-def _axis(axis: object, coordinate: xr.DataArray) -> npt.NDArray[np.float64]:
+def _axis(axis: object, coordinate: xr.DataArray) -> FloatArray:
     """Label an axis with a field; return its values, those that are no numbers as 0, 1, ... with their names at the ticks."""
     name, unit = literal(str(coordinate.name)), pretty(str(coordinate.attrs.get("units", "1")))
     raw = coordinate.to_numpy()
@@ -135,7 +135,7 @@ def _axis(axis: object, coordinate: xr.DataArray) -> npt.NDArray[np.float64]:
     return values
 
 
-def _logarithmic(values: npt.NDArray[np.float64], scale: str) -> bool:
+def _logarithmic(values: FloatArray, scale: str) -> bool:
     """Return whether values are spread by their logarithms: as asked for, in equal ratios, or over decades rather than evenly."""
     different = np.unique(values)
     if different.size < 2 or different[0] <= 0:

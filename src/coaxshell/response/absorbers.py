@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import INWARD, angle_coordinate, time_coordinates
 from coaxshell.solver.solution import ModalSolution
-
-FloatArray = npt.NDArray[np.float64]
 
 SIDES = ("inner", "outer")
 

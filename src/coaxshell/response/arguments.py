@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
 from coaxshell.structure.section import Section
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def angles(angle: npt.ArrayLike) -> FloatArray:

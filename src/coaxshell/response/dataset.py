@@ -11,11 +11,11 @@ from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from coaxshell._version import __version__
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, time_coordinates
 from coaxshell.solver.solution import CAUSES, QUANTITIES, ModalSolution
@@ -70,7 +70,7 @@ def to_dataset(solution: ModalSolution) -> xr.Dataset:
     return dataset
 
 
-def checksum(arrays: Mapping[str, npt.NDArray[np.float64]], scenario: str, attributes: Mapping[Any, Any]) -> str:
+def checksum(arrays: Mapping[str, FloatArray], scenario: str, attributes: Mapping[Any, Any]) -> str:
     """Return the digest of all that a run consists of: arrays bit by bit, the scenario, settings, estimates and warnings."""
     digest = hashlib.sha256()
     texts = {"scenario": scenario, **{name: attributes[name] for name in ("settings", "warnings")}}

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.dataset import ERROR, ERRORS
 from coaxshell.solver.solution import CAUSES, QUANTITIES, ModalSolution
-
-FloatArray = npt.NDArray[np.float64]
 
 CAUSES_SHOWN = (*CAUSES, "combined")
 

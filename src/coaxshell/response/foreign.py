@@ -17,15 +17,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import SAVED_ARRAYS, SAVED_CHUNK, SAVED_STRUCTURE, SAVED_TEXT
 from coaxshell.numerics.allowance import at_most
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.seal import is_sealed
 from coaxshell.response.dataset import OURS
-
-FloatArray = npt.NDArray[np.float64]
 
 BROKEN = (OSError, ValueError, KeyError, TypeError, RuntimeError, AttributeError, IndexError, OverflowError, MemoryError, zlib.error)
 """What HDF5, h5py and our own readers raise on files that are damaged, or something else altogether."""

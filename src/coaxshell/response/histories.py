@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import INWARD, history, modal_array
@@ -14,8 +15,6 @@ from coaxshell.response.translation import relative_gain, relative_tangential_ga
 from coaxshell.response.voltages import actuator_values
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.stress import control_stress, place
-
-FloatArray = npt.NDArray[np.float64]
 
 TENSION = "positive in tension"
 COUNTERCLOCKWISE = "positive towards increasing angle"

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.solver.solution import ModalSolution
-
-FloatArray = npt.NDArray[np.float64]
 
 TRANSIT = "a/c_e"
 """Unit of dimensionless time: one acoustic transit of the outermost radius in the exterior fluid."""

@@ -8,15 +8,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.section import Section
 from coaxshell.structure.stress import Place, design_stress_gain, stress_gain
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class Gain(NamedTuple):

@@ -6,12 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.acoustics.circle import around, crest
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.synthesis import angle_basis, at_angles, mean_square, time_blocks
-
-FloatArray = npt.NDArray[np.float64]
 
 Amplitudes = Callable[[slice], FloatArray]
 """Gives the modal amplitudes (halves, M + 1, T) of a quantity at a slice of time indices."""

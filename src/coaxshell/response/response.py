@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Unpack
 
-import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, fields, histories, storage, voltages
 from coaxshell.response.display import response_card
 from coaxshell.response.energy import energy
@@ -25,8 +26,6 @@ from coaxshell.solver.finite import require_finite_solution
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
-
-FloatArray = npt.NDArray[np.float64]
 
 HEAD_AND_TAIL = (0.0, 180.0)
 
@@ -203,7 +202,7 @@ class Response:
         """Return the forces of the absorbers on their shells, N/m, positive inward, dims (absorber, side, time)."""
         return absorbers.absorber_force(self.solution)
 
-    def energy(self, every: int = 10, progress: Callable[[float, str], None] | None = None) -> xr.Dataset:
+    def energy(self, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
         """Return every store, flow and loss of energy and the closure residual, J per metre of length, at every so many instants.
 
         Takes ten to thirty seconds at the paper's resolution; *progress* is told how far it is.

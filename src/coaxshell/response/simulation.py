@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Literal
 
 from coaxshell import solver
@@ -10,6 +10,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.durations import transits
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
+from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.workshop import Workshop
@@ -24,7 +25,7 @@ def simulate(
     engine: str = "spectral",
     tolerance: float = 1e-3,
     refinement: int = 1,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> Response:
     """Return the response of a system to its sources.
 
@@ -80,7 +81,7 @@ class PreparedSystem:
         self,
         absorbers: Iterable[Absorber] | AbsorberRing | None = None,
         *,
-        progress: Callable[[float, str], None] | None = None,
+        progress: Progress | None = None,
     ) -> Response:
         """Return the response with the given absorbers, with the system's own if None, without any if empty.
 
@@ -123,7 +124,7 @@ def prepare(
     tolerance: float = 1e-3,
     refinement: int = 1,
     retunable: bool = False,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> PreparedSystem:
     """Solve once all that does not depend on the absorbers: shells, fluids, sources and feedback.
 

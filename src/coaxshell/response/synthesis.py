@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.special
 
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 BLOCK = 2**20
 """Values of one block of a field on the circle: 8 MiB, which stays in a processor's cache or near it."""

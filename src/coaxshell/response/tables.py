@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model import RigidShell
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 
 if TYPE_CHECKING:
     from coaxshell.response.response import Response
 
-FloatArray = npt.NDArray[np.float64]
 
 _POINTS = (("head", 0.0), ("tail", 180.0))
 UNITS = {"stress": "Pa", "displacement": "m", "sensor_voltage": "V", "actuator_voltage": "V"}

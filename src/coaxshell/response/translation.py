@@ -13,15 +13,13 @@ flows, while the deformation is bounded.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import time_coordinates
 from coaxshell.response.modal import Gain, displacement_gain
 from coaxshell.solver.solution import ModalSolution
-
-FloatArray = npt.NDArray[np.float64]
 
 LATE = 0.1
 """The last share of a window, over which growth is judged."""

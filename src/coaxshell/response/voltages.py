@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from coaxshell.acoustics.circle import circle_angles
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import history
@@ -19,8 +20,6 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import Segment, lower_half, segment_length, segment_mean
 from coaxshell.solver.scaling import ControlGains
 from coaxshell.solver.solution import ModalSolution
-
-FloatArray = npt.NDArray[np.float64]
 
 _PER_WAVE = 8
 _FEWEST = 64

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.model.absorbers import Absorber
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.excitation import projection
 from coaxshell.solver.scaling import Problem
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 

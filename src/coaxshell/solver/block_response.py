@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.absorbers import AbsorberSet
 
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions, annulus
+from coaxshell.acoustics.operators import RadialFunctions, annulus
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.ingredients import OWN, Radial
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.workshop import Workshop

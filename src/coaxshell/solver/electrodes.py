@@ -20,17 +20,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.acoustics.circle import around, crest
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.acoustics.pulse_band import pulse_band
 from coaxshell.errors import InputError
 from coaxshell.model.units import to_si
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 
-FloatArray = npt.NDArray[np.float64]
 Segment = float | str | None
 """Length of a segment, m or as text such as "50 mm"; "point" for the value at a point; None for what the pulse's band allows."""
 

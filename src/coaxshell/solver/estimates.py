@@ -13,16 +13,13 @@ the orders, 0.2 % of those for the step, are less than half of the true error.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.sampled_orders import SampledOrders
 from coaxshell.solver.solution import Estimates
 from coaxshell.solver.step_error import band_limit, march_error
-
-FloatArray = npt.NDArray[np.float64]
 
 ORDERS_FACTOR = 2.0
 STEP_FACTOR = 2.0

@@ -7,13 +7,13 @@ from threading import Lock
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.incident import IncidentWave, SurfaceLoad
 from coaxshell.acoustics.incident_parts import incident_parts
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions
+from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.workshop import Workshop
 

@@ -7,12 +7,10 @@ their whole contribution to as many blocks ahead is added at once, by FFT or, wh
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy import fft
 
 from coaxshell.acoustics.laplace_grid import WORKERS
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _BY_MATRIX = 16
 """Steps up to which a product with the Toeplitz matrix is faster than FFTs."""
@@ -36,7 +34,7 @@ class KernelTable:
         self.steps = kernels.shape[-1]
         self.present = kernels[..., 0].copy()
         self.kernels = kernels
-        self._transforms: dict[int, npt.NDArray[np.complex128]] = {}
+        self._transforms: dict[int, ComplexArray] = {}
         self._matrices: dict[tuple[int, int], FloatArray] = {}
 
     @property
@@ -45,7 +43,7 @@ class KernelTable:
         outputs, inputs, modes, _ = self.kernels.shape
         return outputs, inputs, modes
 
-    def transform(self, length: int) -> npt.NDArray[np.complex128]:
+    def transform(self, length: int) -> ComplexArray:
         """Return the transform of the first 2 * length samples, with k_0 = 0."""
         if length not in self._transforms:
             head = self.kernels[..., : 2 * length].copy()

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.incident import IncidentWave, LineGeometry, PlaneGeometry, SphericalGeometry
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions, all_orders
+from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.model.sources import Source
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.structure.ring import RingStiffness, ring_stiffness
 from coaxshell.structure.section import Section
 

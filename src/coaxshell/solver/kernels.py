@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.scaling import Problem
 
 

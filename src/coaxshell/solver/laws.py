@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.saturation import LimitedVoltages
 
 

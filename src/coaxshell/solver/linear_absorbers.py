@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.prepared import PreparedStructure
-from coaxshell.solver.spectral import Progress, over_blocks
+from coaxshell.solver.spectral import over_blocks
 
 _BLOCK_BYTES = 32 * 1024 * 1024
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.linear_absorbers import LinearAbsorberSpectra, admittance
 from coaxshell.solver.prepared import PreparedStructure

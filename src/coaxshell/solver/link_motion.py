@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.absorbers import AbsorberSet
 
 

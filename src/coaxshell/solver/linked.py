@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.ingredients import point_force_shares
 from coaxshell.solver.linear_absorbers import solve_linear
@@ -16,7 +16,6 @@ from coaxshell.solver.linear_ring import is_ring, solve_ring
 from coaxshell.solver.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.prepared import PreparedStructure
-from coaxshell.solver.spectral import Progress
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.block_response import LinkConstants, block_response, over_block
 from coaxshell.solver.history import HistorySum
@@ -31,7 +32,6 @@ from coaxshell.solver.newton import ConvergenceError, ImplicitStep
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.relaxation import Relaxation
 from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
-from coaxshell.solver.spectral import Progress
 
 _LONGEST_BLOCK = 32
 _BLOCK_UNKNOWNS = 512

@@ -11,9 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.estimates import ORDERS_FACTOR
 from coaxshell.solver.excitation import needs_sine_half

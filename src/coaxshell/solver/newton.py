@@ -16,7 +16,7 @@ from typing import Protocol
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 
 _MAX_DESCENTS = 200
 _SHORTEST = 2.0**-30

@@ -18,14 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linear_absorbers import admittance
 from coaxshell.solver.prepared import PreparedStructure
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
-
-FloatArray = npt.NDArray[np.float64]
 
 REST = 1e-7
 """A shell that moves less than this times the one that moves most has not been reached: what it shows is rounding."""

@@ -7,14 +7,15 @@ from functools import cached_property
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.history import KernelTable
 from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.spectral import LinearSpectra, Progress, linear_spectra
+from coaxshell.solver.spectral import LinearSpectra, linear_spectra
 from coaxshell.solver.workshop import Workshop
 
 

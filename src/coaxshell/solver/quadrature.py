@@ -18,7 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import node_blocks, over_blocks

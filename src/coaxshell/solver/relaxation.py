@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.laws import CubicSprings
 
 UNKNOWNS = 224

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
@@ -22,8 +21,6 @@ from coaxshell.solver.linear_absorbers import admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
 from coaxshell.solver.workshop import Workshop
-
-FloatArray = npt.NDArray[np.float64]
 
 NODES = slice(0, None, 16)
 """Every sixteenth node: poles are at least sigma from the contour; sums over nodes 4 sigma apart err by half for one such pole, by less

@@ -15,7 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import linalg
 from coaxshell.solver.scaling import Problem
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
-
-FloatArray = npt.NDArray[np.float64]
-
 
 QUANTITIES = ("displacement", "stress")
 CAUSES = ("orders", "time step", "march")

@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.actuation import pressure_asked
@@ -27,7 +28,7 @@ from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.solver.spectral import Progress, Stopwatch
+from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.tension import tensions
 from coaxshell.solver.workshop import Workshop

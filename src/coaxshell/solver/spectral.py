@@ -14,15 +14,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.workshop import Workshop
-
-Progress = Callable[[float, str], None]
 
 # A block of complex numbers of this many order-node pairs is 1 MB, small enough that a dozen of them share a cache.
 _BLOCK_ELEMENTS = 64 * 1024

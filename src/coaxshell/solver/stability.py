@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.coupling import ModalSystem, determinant, pressure_fed_back
 from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import ControlGains, Problem

@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.absorbers import InterfacePoints
 from coaxshell.solver.history import KernelTable
 from coaxshell.solver.kernels import voltage_weights
@@ -30,7 +30,6 @@ from coaxshell.solver.orders_left_out import Interface, relative
 from coaxshell.solver.prepared import ForcedParts, PreparedStructure
 from coaxshell.solver.sampled_orders import standing_for
 
-FloatArray = npt.NDArray[np.float64]
 Array = npt.NDArray[Any]
 
 WIDE_ROLL_OFF = 0.4

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 
 def turning(values: ComplexArray) -> FloatArray:

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.structure.section import PiezoelectricLayer, Section
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class RingStiffness(NamedTuple):

@@ -16,10 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.structure.ring import potential_gain
 from coaxshell.structure.section import PiezoelectricLayer, Section
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class StressGain(NamedTuple):

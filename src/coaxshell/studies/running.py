@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model.base import within
 from coaxshell.model.system import System
+from coaxshell.numerics.progress import Progress
 from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
 from coaxshell.studies.executors import capacity, completed
@@ -18,8 +19,6 @@ from coaxshell.studies.metrics import Metric
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import Store
 from coaxshell.studies.user_functions import OtherCodeError
-
-Report = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class How:
     workers: int | None = None
     store: str | Path | None = None
     resume: bool = False
-    progress: Report | None = None
+    progress: Progress | None = None
 
     def opened(self, parts: Mapping[str, Any], metrics: Sequence[Metric]) -> Store | None:
         """Return the store of a study, told from others by its *parts*; None if nothing is to be kept."""
@@ -77,7 +76,7 @@ def run_cases(
     workers: int | None = None,
     store: Store | None = None,
     keep: bool = False,
-    progress: Report | None = None,
+    progress: Progress | None = None,
 ) -> list[Outcome]:
     """Return the outcome of every case, in order.
 

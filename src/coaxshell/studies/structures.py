@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from coaxshell.model.system import System
+from coaxshell.numerics.progress import Progress
 from coaxshell.response import PreparedSystem, Response, prepare, simulate
 from coaxshell.studies.resolution import Resolution
-
-Report = Callable[[float, str], None]
 
 
 def structure_of(system: System) -> System:
@@ -32,7 +31,7 @@ class Structures:
         Called with the fraction of each run done and the name of its stage.
     """
 
-    def __init__(self, resolution: Resolution, prepared: PreparedSystem | None = None, progress: Report | None = None) -> None:
+    def __init__(self, resolution: Resolution, prepared: PreparedSystem | None = None, progress: Progress | None = None) -> None:
         self.resolution = resolution
         self._prepared = prepared
         self._structure = None if prepared is None else structure_of(prepared.system)
@@ -58,7 +57,7 @@ class Structures:
         return prepare(structure, progress=self._progress, **settings)
 
 
-def solve_each(systems: Mapping[str, System], resolution: Resolution, progress: Report | None = None) -> Iterator[tuple[str, Response]]:
+def solve_each(systems: Mapping[str, System], resolution: Resolution, progress: Progress | None = None) -> Iterator[tuple[str, Response]]:
     """Yield (name, response) of each system in turn. Neighbours that differ only in their absorbers share one prepared structure.
 
     Parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, Literal
@@ -12,6 +12,7 @@ from coaxshell.errors import InputError, PhysicsWarning
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.studies.design import Design, Points, design_of
 from coaxshell.studies.labelled import failures_text, labelled
 from coaxshell.studies.metrics import Metric, Metrics, metrics_of
@@ -38,7 +39,7 @@ def sweep(
     workers: int | None = None,
     store: str | Path | None = None,
     resume: bool = False,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return metrics of a system at many points of some of its fields.
 

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model import RigidShell, Shell
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
 from coaxshell.response.histories import combined
 from coaxshell.response.modal import displacement_gain, stress_gain_of, voltage_gain
@@ -18,8 +18,6 @@ from coaxshell.response.summary import Summary
 from coaxshell.response.voltages import actuator_values
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.studio.arrays import Item, Packed, packed
-
-FloatArray = npt.NDArray[np.float64]
 
 QUANTITIES = {
     "stress": ("hoop stress", "Pa"),
@@ -169,6 +167,6 @@ def _peak(peak: Peak) -> dict[str, Any]:
     return {"value": _finite(peak.value), "time": peak.time, "angle": peak.angle, "growing": peak.growing}
 
 
-def _finite(value: float | npt.NDArray[np.float64]) -> float | None:
+def _finite(value: float | FloatArray) -> float | None:
     number = float(value)
     return number if np.isfinite(number) else None

@@ -11,8 +11,7 @@ import numpy.typing as npt
 from coaxshell.model import Sampled, System
 from coaxshell.model.records.measures import measures
 from coaxshell.model.records.remarks import remarks
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 INTERVALS = 150
 """Equal intervals of the picture, in each of which the lowest and the highest sample are kept."""

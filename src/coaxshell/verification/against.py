@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
@@ -13,10 +12,11 @@ import numpy as np
 from coaxshell.errors import InputError, PhysicsWarning
 from coaxshell.model.naming import shell_name
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.files import write_text
+from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
-from coaxshell.verification.bench import FloatArray
 from coaxshell.verification.causes import likely_cause
 from coaxshell.verification.histories_csv import Column, Histories, read_histories
 from coaxshell.verification.rows import Curve, Panel, Row, Sheet, value
@@ -51,7 +51,7 @@ def against(
     time_step: float = 1e-3,
     modes: int = 150,
     tolerance: float = TOLERANCE,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> Report:
     """Return the report that compares the histories of a CSV file with ours.
 

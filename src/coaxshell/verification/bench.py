@@ -5,19 +5,18 @@ from __future__ import annotations
 import tomllib
 import warnings
 from collections import OrderedDict
-from collections.abc import Callable
 from importlib import resources
 from typing import Any, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import PhysicsWarning
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import ShareDone
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
 
-FloatArray = npt.NDArray[np.float64]
 T = TypeVar("T")
 
 _KEPT = 4
@@ -34,7 +33,7 @@ class Bench:
         Called with the fraction done of the check at work.
     """
 
-    def __init__(self, *, quick: bool = False, progress: Callable[[float], None] | None = None) -> None:
+    def __init__(self, *, quick: bool = False, progress: ShareDone | None = None) -> None:
         self.quick = quick
         self._progress = progress
         self._responses: OrderedDict[tuple[Any, ...], Response] = OrderedDict()

@@ -14,7 +14,8 @@ import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
+
 IntArray = npt.NDArray[np.int_]
 
 MUCH = 0.3

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_BYTES
@@ -15,9 +14,8 @@ from coaxshell.model.base import shown
 from coaxshell.model.records.columns import Column as FileColumn
 from coaxshell.model.records.columns import Table, factor_of
 from coaxshell.model.records.reader import table_of
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.reading import regular_bytes
-
-FloatArray = npt.NDArray[np.float64]
 
 TIMES = ("time", "t", "time seconds", "time transits", "zeit", "temps")
 TRANSITS = ("transits", "transit", "a/c", "a/c_e")

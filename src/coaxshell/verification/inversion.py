@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import gamma
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 
-
-def sharp_inverse(grid: LaplaceGrid, spectrum: npt.NDArray[np.complex128], lead: float, terms: int = 4) -> FloatArray:
+def sharp_inverse(grid: LaplaceGrid, spectrum: ComplexArray, lead: float, terms: int = 4) -> FloatArray:
     """Return the inverse of spectra that behave as s^-lead (c_0 + c_1/s + ...) at high frequency, fronts at t = 0 included.
 
     Terms (s + 1)^-p, p = lead, lead + 1, ..., are fitted to the upper three quarters of the band, taken off, and their known

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
-
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.model.fluids import VACUUM
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.verification.systems import WATER
 
 
-def surface_pressure(source: Source, grid: LaplaceGrid, modes: int, unit: float) -> npt.NDArray[np.complex128]:
+def surface_pressure(source: Source, grid: LaplaceGrid, modes: int, unit: float) -> ComplexArray:
     """Return the modal pressure on a rigid cylinder of 1 m in water, in units of ``unit`` (Pa), shape (modes + 1, nodes)."""
     problem = dimensionless(System(shells=[RigidShell(radius=1.0)], fluids=[VACUUM, WATER], source=source))
     orders = all_orders(modes)

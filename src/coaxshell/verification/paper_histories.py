@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.response import Response
-from coaxshell.verification.bench import FloatArray
 from coaxshell.verification.rows import Curve, Finding, close
 
 SIDES = {"head": 0.0, "tail": 180.0}

@@ -6,7 +6,7 @@ import math
 import platform
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -14,11 +14,10 @@ import numpy as np
 import scipy
 
 from coaxshell._version import __version__
+from coaxshell.numerics.progress import Progress
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import Check
 from coaxshell.verification.rows import Row, Sheet
-
-Progress = Callable[[float, str], None]
 
 SOURCES = (
     'Sources: "theory N" is section N of the theory manual, "reference" the values of high precision that come with the package, '

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 
 HIGHEST_ORDER = 2000
 

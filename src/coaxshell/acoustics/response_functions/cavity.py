@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.laplace_grid import WORKERS
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import Response
 from coaxshell.acoustics.response_functions.legs import legs, snapped
 from coaxshell.acoustics.response_functions.levels import levels
 from coaxshell.acoustics.response_functions.resonances import resonances
 from coaxshell.acoustics.response_functions.shapes import expansion
 from coaxshell.acoustics.response_functions.sums import cheap_together, is_uniform, sines
+from coaxshell.numerics.arrays import FloatArray
 
 _BLOCK = 24
 

@@ -14,11 +14,8 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _TERMS = 16
 _BANDS = ((0.0, 100.0, 16), (100.0, 300.0, 10), (300.0, 2e3, 7), (2e3, 3e4, 5), (3e4, 1e7, 3), (1e7, np.inf, 2))

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.response_functions.debye import Expansion, expand
+from coaxshell.numerics.arrays import ComplexArray
 
 
 class Response(NamedTuple):

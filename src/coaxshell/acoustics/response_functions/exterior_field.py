@@ -13,15 +13,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.radial_fields import exterior_field as laplace_field
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import waves
 from coaxshell.acoustics.response_functions.legs import leg_nodes
 from coaxshell.acoustics.response_functions.levels import ladder, lowest, needed
 from coaxshell.acoustics.response_functions.products import product
 from coaxshell.acoustics.response_functions.sums import sines
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _BLOCK = 32
 _NODES = 20

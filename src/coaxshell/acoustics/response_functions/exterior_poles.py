@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray, k_ratios
+from coaxshell.acoustics.bessel_ratios import k_ratios
+from coaxshell.numerics.arrays import ComplexArray
 
 TABLE = "exterior_poles.npz"
 _TOLERANCE = 1e-12

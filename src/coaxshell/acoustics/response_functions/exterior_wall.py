@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.exterior_field import exterior_field
 from coaxshell.acoustics.response_functions.exterior_poles import Poles, tabulated
+from coaxshell.numerics.arrays import FloatArray
 
 
 def exterior_at_wall(orders: npt.NDArray[np.int64], times: FloatArray) -> FloatArray:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import Response
+from coaxshell.numerics.arrays import FloatArray
 
 
 def arrivals(inner: float, outer: float, radius: float, driven: str, slowness: float, duration: float) -> list[tuple[float, bool]]:

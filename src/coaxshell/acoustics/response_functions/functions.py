@@ -14,11 +14,11 @@ import numpy.typing as npt
 
 from coaxshell.acoustics.response_functions.arguments import checked_orders, checked_positive, checked_radius, checked_times
 from coaxshell.acoustics.response_functions.cavity import cavity
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import Response
 from coaxshell.acoustics.response_functions.exterior_field import exterior_field
 from coaxshell.acoustics.response_functions.exterior_wall import exterior_at_wall
 from coaxshell.acoustics.response_functions.fronts import logarithms
+from coaxshell.numerics.arrays import FloatArray
 
 Orders = int | Sequence[int] | npt.NDArray[np.int64]
 

@@ -17,10 +17,9 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import Echoes, Response, Waves, echoes, waves
 from coaxshell.acoustics.response_functions.products import product
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _STEP = 0.14
 _FIRST, _LAST = -3.4, 38.0

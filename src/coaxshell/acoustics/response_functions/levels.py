@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import Response
+from coaxshell.numerics.arrays import FloatArray
 
 _GROWTH = 10.0  # the legs may grow by exp(_GROWTH/2) before they decay: two digits
 _OVERFLOW = 500.0  # e^{a/2 kappa} itself has to stay a number even where the decay outweighs it

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import jv, yv
 
-from coaxshell.acoustics.response_functions.debye import FloatArray, expand_slope, reach
+from coaxshell.acoustics.response_functions.debye import expand_slope, reach
+from coaxshell.numerics.arrays import FloatArray
 
 _DECAYED = 45.0
 """Where J_m has fallen to e^-45 and Y_m has risen to its inverse, the phase is pi/2 to rounding."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 
 _ONE_THREAD = 250_000  # OpenBLAS goes to several threads above 2^18 multiplications
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.phases import Phase, derivative_phase, rough_phase
+from coaxshell.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

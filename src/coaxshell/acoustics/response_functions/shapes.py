@@ -9,9 +9,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import jv, yv
 
-from coaxshell.acoustics.response_functions.debye import FloatArray, expand, reach
+from coaxshell.acoustics.response_functions.debye import expand, reach
 from coaxshell.acoustics.response_functions.echoes import Response
 from coaxshell.acoustics.response_functions.resonances import Resonances
+from coaxshell.numerics.arrays import FloatArray
 
 
 def expansion(modes: Resonances, response: Response) -> FloatArray:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.products import product
+from coaxshell.numerics.arrays import FloatArray
 
 _BLOCK = 2_000_000
 _COHERENT = 1e5  # x t above which the rounding of t_i + t_j would show at fronts, where all terms are in phase

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.acoustics.response_functions.cavity import cavity
-from coaxshell.acoustics.response_functions.debye import FloatArray
 from coaxshell.acoustics.response_functions.echoes import Response
 from coaxshell.acoustics.response_functions.exterior_wall import exterior_at_wall
+from coaxshell.numerics.arrays import FloatArray
 
 
 class AnnulusWalls(NamedTuple):

@@ -7,12 +7,10 @@ import binascii
 import hashlib
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_SAMPLES
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 
 def _content(time: FloatArray, pressure: FloatArray) -> bytes:

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.naming import plain, suggestion
 from coaxshell.model.records.columns import Column, Table, factor_of
 from coaxshell.model.units import to_si
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 READING = ("time_column", "pressure_column", "time_unit", "pressure_unit", "interval")
 """Entries that tell how a file is read; the other ones of a record tell what is made of it."""

@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-import numpy.typing as npt
-
 from coaxshell.errors import InputError
 from coaxshell.model.units import to_si
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 _BARE = (
     "s",

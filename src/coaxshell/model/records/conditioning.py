@@ -16,15 +16,13 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_SAMPLES
+from coaxshell.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     from coaxshell.model.pulses import Sampled
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def conditioned(record: Sampled) -> tuple[FloatArray, FloatArray]:

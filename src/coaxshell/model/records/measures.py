@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from scipy.fft import next_fast_len, rfft, rfftfreq
 
 from coaxshell.limits import RECORD_SAMPLES
 from coaxshell.model.records.conditioning import integral
+from coaxshell.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     from coaxshell.model.pulses import Sampled
 
-FloatArray = npt.NDArray[np.float64]
 
 BAND = 0.99
 """Share of the energy that lies below the upper end of the band."""

@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_COLUMNS, RECORD_SAMPLES
 from coaxshell.model.base import shown
 from coaxshell.model.records.columns import Column, Table, column
-
-FloatArray = npt.NDArray[np.float64]
 
 REMEDY = "give a pandas Series or DataFrame, an xarray DataArray or Dataset, or an array of shape (samples, 2): time in s, pressure in Pa"
 

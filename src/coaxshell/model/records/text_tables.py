@@ -13,15 +13,13 @@ from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_COLUMNS, RECORD_SAMPLES
 from coaxshell.model.base import shown
 from coaxshell.model.records.columns import Column, Table, column, factor_of, is_unit, split_heading
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.reading import decoded
-
-FloatArray = npt.NDArray[np.float64]
 
 COMMENTS = ("#", "%", "//", "!")
 PREAMBLE = 2000

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.paper import cases
 from coaxshell.paper.claims import systems
 from coaxshell.paper.claims.claim import Finding, graded
@@ -12,8 +12,6 @@ from coaxshell.paper.claims.measures import reduction, sentence_case
 from coaxshell.paper.claims.registry import claim
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.observed import Observed
-
-FloatArray = npt.NDArray[np.float64]
 
 _PLACE = "Multiple absorbers, Fig. 9"
 SHELLS = ("inner", "outer")

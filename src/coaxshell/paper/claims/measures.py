@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.paper.observed import SIDES, Observed
-
-FloatArray = npt.NDArray[np.float64]
 
 POINTS = tuple((shell, side) for shell in ("inner", "outer") for side in SIDES)
 RAPID = 4.0

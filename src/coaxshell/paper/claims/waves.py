@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.paper.claims import systems
 from coaxshell.paper.claims.claim import Finding, graded
 from coaxshell.paper.claims.measures import change, sentence_case
 from coaxshell.paper.claims.registry import claim
 from coaxshell.paper.fields import Fields
 from coaxshell.paper.known_runs import Runs
-
-FloatArray = npt.NDArray[np.float64]
 
 _PLACE = "Bare system, Fig. 4"
 MACH_INSTANTS = (2.0, 3.1)

@@ -6,10 +6,11 @@ import time
 from pathlib import Path
 from typing import Any
 
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper.reproduction.plan import Part, parts
 from coaxshell.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims
 from coaxshell.paper.reproduction.work import Job, carry_out
-from coaxshell.paper.runs import Report, Resolution
+from coaxshell.paper.runs import Resolution
 from coaxshell.paper.store import Store
 from coaxshell.studies.executors import completed, worker_count
 
@@ -26,7 +27,7 @@ def reproduce(
     only: frozenset[str] = frozenset(),
     film_suffix: str | None = ".mp4",
     workers: int | None = None,
-    progress: Report | None = None,
+    progress: Progress | None = None,
 ) -> Results:
     """Compute the paper's figures, claims and slips; what is finished in the folder already is taken up.
 

@@ -8,12 +8,13 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model import Absorber, System, absorber_ring, presets
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.paper import cases
-from coaxshell.paper.runs import Report, Resolution
+from coaxshell.paper.runs import Resolution
 from coaxshell.paper.slips.growth import Growth, growth
 from coaxshell.paper.slips.solving import solve_each
 from coaxshell.paper.slips.switches import with_permittivity
@@ -21,7 +22,6 @@ from coaxshell.paper.slips.switches import with_permittivity
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
-FloatArray = npt.NDArray[np.float64]
 
 OFF_AXIS = 30.0
 """Degrees between the head and the single absorber that stands for Figure 8."""
@@ -113,7 +113,7 @@ STUDIES: Sequence[tuple[tuple[str, ...], tuple[str, ...]]] = (
 def effects(
     resolution: Resolution | None = None,
     studies: Sequence[tuple[tuple[str, ...], tuple[str, ...]]] = STUDIES,
-    progress: Report | None = None,
+    progress: Progress | None = None,
 ) -> Iterator[Effect]:
     """Yield the effect of slips on configurations, one by one.
 

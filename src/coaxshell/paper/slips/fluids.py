@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import annulus, annulus_amplitudes
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.ingredients import Ingredients, Radial
 from coaxshell.solver.scaling import Problem
 

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.paper.slips.switches import slipped
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.excitation import projection
 from coaxshell.solver.ingredients import Ingredients

@@ -6,10 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.sources import Incident
 from coaxshell.solver.scaling import Problem, dimensionless
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def scattering_delay(system: System, radius: npt.ArrayLike, angle: npt.ArrayLike, time: npt.ArrayLike) -> FloatArray:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from scipy.integrate import quad
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.scaling import Problem
 from coaxshell.structure.ring import RingStiffness, bending_strain, membrane_strain, open_circuit_stiffness

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
-from coaxshell.paper.runs import Report, Resolution
+from coaxshell.numerics.progress import Progress
+from coaxshell.paper.runs import Resolution
 from coaxshell.paper.runs import solve_each as solve_each_corrected
 from coaxshell.paper.slips.growth import growth
 from coaxshell.paper.slips.switches import slipped
@@ -23,7 +24,7 @@ SELF_EXCITED = frozenset({"interior-derivative", "interior-function", "radiation
 """Slips under which a fluid need not be passive, so that growth is looked for; feedback is checked by the solver itself."""
 
 
-def simulate(system: System, resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Report | None = None) -> Response:
+def simulate(system: System, resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Progress | None = None) -> Response:
     """Return the response of a system with some slips turned on; without any, exactly :func:`coaxshell.simulate`'s.
 
     Raises
@@ -37,7 +38,7 @@ def simulate(system: System, resolution: Resolution, slips: frozenset[str] = COR
 
 
 def solve_each(
-    systems: Mapping[str, System], resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Report | None = None
+    systems: Mapping[str, System], resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Progress | None = None
 ) -> Iterator[tuple[str, Response]]:
     """Yield (name, response) of each system in turn, with some slips turned on.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.incident import SphericalGeometry
 from coaxshell.errors import InputError
 from coaxshell.model.pulses import Exponential
 from coaxshell.model.sources import Source
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.scaling import Problem
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.synthesis import angle_basis, at_angles

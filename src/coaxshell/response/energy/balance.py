@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
 from coaxshell.model.naming import shell_phrase
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.numerics.scalars import plain
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
@@ -23,8 +23,6 @@ from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.response.labels import time_coordinates
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.solution import ModalSolution
-
-Progress = Callable[[float, str], None]
 
 _ARRAYS = 40.0
 """Arrays of the size of all normal displacements that stand side by side at the worst, as measured."""
@@ -135,7 +133,7 @@ def _absorbers(motion: Motion) -> dict[str, Entry]:
     }
 
 
-def _fluids(motion: Motion, progress: Callable[[float], None]) -> dict[str, Entry]:
+def _fluids(motion: Motion, progress: ShareDone) -> dict[str, Entry]:
     regions = len(motion.problem.shells)
     entries: dict[str, Entry] = {}
     for i in range(regions):

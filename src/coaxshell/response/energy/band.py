@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.energy.motion import Motion
 
 NEGLIGIBLE, FAINT = 4e-7, 1e-5

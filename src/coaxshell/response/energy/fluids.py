@@ -16,10 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import WORKERS
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions, annulus_amplitudes
+from coaxshell.acoustics.operators import RadialFunctions, annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.progress import ShareDone
 from coaxshell.response.energy.band import band_of, radii_needed
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.sampling import Sampler
@@ -31,7 +32,6 @@ _BLOCK_ELEMENTS = 64 * 1024
 _WORK_BYTES = 200 * 1024 * 1024
 """Roughly what all threads together may use for the histories at their radii."""
 
-Progress = Callable[[float], None]
 Field = Callable[[RadialFunctions], tuple[list[ComplexArray], list[ComplexArray]]]
 """From the radial functions at a radius to the transforms of Pi and of dPi/dr, for every half of the Fourier series."""
 
@@ -49,7 +49,7 @@ class _Block(NamedTuple):
     field: Field
 
 
-def fluid_energy(motion: Motion, region: int, progress: Progress | None = None, radii: int | None = None) -> FluidEnergy | None:
+def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None, radii: int | None = None) -> FluidEnergy | None:
     """Return the energy of the fluid inside shell ``region``; None for a vacuum.
 
     Parameters

@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, all_orders
+from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution

@@ -12,9 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 
 class Sampler:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.ring import RingStiffness, bending_strain, open_circuit_stiffness, ring_stiffness

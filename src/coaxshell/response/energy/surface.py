@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.recompute import SolvedSpectra
 

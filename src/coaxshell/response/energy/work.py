@@ -14,9 +14,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _LEAD = 64
 """Steps before t = 0 from which work is counted: the roll-off of the spectra lets histories start a few steps early."""

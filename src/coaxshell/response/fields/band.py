@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 _FEWEST = 16
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.response.fields.regions import FloatArray, Region, regions
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.response.fields.regions import Region, regions
 from coaxshell.response.fields.request import positive
 from coaxshell.solver.scaling import Problem
 

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import WORKERS
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.band import band
 from coaxshell.response.fields.exact import Points, add_exact, grouped
 from coaxshell.response.fields.gridded import add_gridded, raster_radii
 from coaxshell.response.fields.grids import Grid
 from coaxshell.response.fields.modal_field import Quantity
-from coaxshell.response.fields.regions import FloatArray
 from coaxshell.response.fields.request import Request
 from coaxshell.response.fields.sources import Incident
 from coaxshell.solver.recompute import SolvedSpectra

@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.band import band
 from coaxshell.response.fields.inversion import few_offsets
 from coaxshell.response.fields.modal_field import Quantity, modal_field
-from coaxshell.response.fields.regions import FloatArray, reach, split
+from coaxshell.response.fields.regions import reach, split
 from coaxshell.response.fields.request import Request, Tell, mode_filter
 from coaxshell.response.synthesis import angle_basis
 from coaxshell.solver.recompute import SolvedSpectra

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.response.fields.evaluate import evaluate, settled
 from coaxshell.response.fields.grids import Grid, grid_of, labelled
-from coaxshell.response.fields.regions import FloatArray
-from coaxshell.response.fields.request import Progress, request, require_room, when_of
+from coaxshell.response.fields.request import request, require_room, when_of
 from coaxshell.solver.recompute import SolvedSpectra
 
 OUTWARD = "components along increasing radius and angle"

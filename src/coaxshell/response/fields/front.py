@@ -8,8 +8,8 @@ import numpy as np
 
 from coaxshell.acoustics.free_field import TimeFunction
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.band import window
-from coaxshell.response.fields.regions import FloatArray
 
 _REACH = 12
 """Time steps of the band on either side of a front within which its window is felt."""

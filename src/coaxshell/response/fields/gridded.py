@@ -7,10 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import WORKERS
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.band import band
 from coaxshell.response.fields.modal_field import Quantity, modal_field
 from coaxshell.response.fields.raster import TAPS_RADIUS, TAPS_THETA, Raster, Single, around, compensation, operator, raster_of
-from coaxshell.response.fields.regions import FloatArray, reach, split
+from coaxshell.response.fields.regions import reach, split
 from coaxshell.response.fields.request import Request, Tell, mode_filter
 from coaxshell.solver.recompute import SolvedSpectra
 

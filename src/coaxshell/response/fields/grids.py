@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.response.fields.regions import FloatArray
 from coaxshell.response.fields.request import Request, axis
 from coaxshell.response.labels import TRANSIT
 from coaxshell.solver.recompute import SolvedSpectra

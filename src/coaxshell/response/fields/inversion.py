@@ -9,11 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import fft
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.fields.band import window
-
-FloatArray = npt.NDArray[np.float64]
 
 _SINGLE_THREADED = 2**17
 """Multiplications of one matrix product: below its library's threshold for threads, which would fight with ours (measured: 15 times

@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.fields.inversion import Inversion
-from coaxshell.response.fields.regions import FloatArray, Region
+from coaxshell.response.fields.regions import Region
 from coaxshell.response.fields.slopes import wall_slopes
 from coaxshell.response.fields.transfer import CENTRE, Transfer
 from coaxshell.solver.recompute import SolvedSpectra

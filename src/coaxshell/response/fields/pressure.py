@@ -6,9 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.response.fields.evaluate import evaluate, settled
 from coaxshell.response.fields.grids import grid_of, labelled
-from coaxshell.response.fields.request import Progress, request, require_room, when_of
+from coaxshell.response.fields.request import request, require_room, when_of
 from coaxshell.solver.recompute import SolvedSpectra
 
 LONG_NAMES = {

@@ -14,7 +14,8 @@ import numpy.typing as npt
 from scipy import fft, sparse
 from scipy.special import i0
 
-from coaxshell.response.fields.regions import FloatArray, Region
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.response.fields.regions import Region
 
 Single = npt.NDArray[np.float32]
 

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import FluidRegion, Problem
-
-FloatArray = npt.NDArray[np.float64]
 
 SMEAR = 20
 """Resolutions by which the band limit smears a front, to about 1e-4."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypedDict
 
@@ -11,14 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.solver.recompute import SolvedSpectra
 
-FloatArray = npt.NDArray[np.float64]
-Progress = Callable[[float, str], None]
-Tell = Callable[[float], None]
+Tell = ShareDone
 
 PARTS = ("total", "incident", "diffracted", "radiated", "scattered")
 FILTERS = ("lanczos", "exponential")

@@ -6,13 +6,14 @@ import numpy as np
 import numpy.typing as npt
 import scipy.fft
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.response.fields.band import band
 from coaxshell.response.fields.domain import Domain, default_instants, domain_of
 from coaxshell.response.fields.grids import instants_of
 from coaxshell.response.fields.modal_field import modal_field
-from coaxshell.response.fields.regions import FloatArray
-from coaxshell.response.fields.request import Progress, Request, mode_filter, request, when_of
+from coaxshell.response.fields.request import Request, mode_filter, request, when_of
 from coaxshell.response.fields.sources import Incident
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.recompute import SolvedSpectra

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.response.fields.regions import Region
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.recompute import SolvedSpectra

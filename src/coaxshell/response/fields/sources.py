@@ -12,8 +12,8 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.front import banded
-from coaxshell.response.fields.regions import FloatArray
 from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.scaling import Problem
 

@@ -15,9 +15,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import ive, kve
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray, i_ratios
+from coaxshell.acoustics.bessel_ratios import i_ratios
 from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus_amplitudes
-from coaxshell.response.fields.regions import FloatArray, Region
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.response.fields.regions import Region
 from coaxshell.response.fields.slopes import WallSlopes
 
 Weight = FloatArray | ComplexArray

@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.direct.interface import ExplicitInterface
 from coaxshell.solver.direct.loads import surface_loads
@@ -22,7 +23,6 @@ from coaxshell.solver.direct.modal import ModalStep
 from coaxshell.solver.direct.result import DirectResult
 from coaxshell.solver.direct.weights import fluid_weights
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.spectral import Progress
 
 _REPORT_EVERY = 50
 _GROWTH = 1e6

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.direct.modal import ModalStep
 from coaxshell.solver.saturation import SaturatedShell

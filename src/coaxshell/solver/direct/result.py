@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.direct.modal import ModalStep
 from coaxshell.solver.scaling import Problem

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.cost import require_room
@@ -24,7 +25,7 @@ from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
-from coaxshell.solver.spectral import Progress, Stopwatch
+from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
 
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import ComplexArray
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.acoustics.operators import FloatArray, RadialFunctions
+from coaxshell.acoustics.operators import RadialFunctions
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.coupling import fluid_matrix
 from coaxshell.solver.kernels import exponential_weights
 from coaxshell.solver.scaling import Problem

@@ -12,13 +12,11 @@ from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import qmc, rankdata
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.studies.optimisation.targets import energy
-
-FloatArray = npt.NDArray[np.float64]
 
 Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """From points, shape (K, n), to objectives, shape (K, objectives), and violations, shape (K,)."""

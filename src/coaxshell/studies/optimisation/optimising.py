@@ -12,6 +12,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
+from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
 from coaxshell.studies.metrics import ANYWHERE
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
@@ -22,7 +23,7 @@ from coaxshell.studies.optimisation.search import Candidate, Crew, EnoughError, 
 from coaxshell.studies.optimisation.targets import Targets, targets_of
 from coaxshell.studies.optimisation.variables import Space, VariableLike, space_of
 from coaxshell.studies.resolution import Resolution
-from coaxshell.studies.running import How, Report
+from coaxshell.studies.running import How
 from coaxshell.studies.store import Store
 from coaxshell.studies.uncertainty.distributions import Uncertain, uncertain_of
 from coaxshell.studies.user_functions import UserCode
@@ -92,7 +93,7 @@ def optimise(
     workers: int | None = None,
     journal: str | Path | None = None,
     resume: bool = False,
-    progress: Report | None = None,
+    progress: Progress | None = None,
 ) -> Optimum:
     """Return the best system within some ranges; the system given is the baseline.
 
@@ -197,7 +198,7 @@ def optimise_problem(problem: Problem, how: How) -> Optimum:
         return searched(problem, crew, journal, how.progress)
 
 
-def searched(problem: Problem, crew: Runner, journal: Store | None = None, progress: Report | None = None) -> Optimum:
+def searched(problem: Problem, crew: Runner, journal: Store | None = None, progress: Progress | None = None) -> Optimum:
     """Search the best of a problem with whoever runs its systems; *progress* is told after every generation."""
     report = progress or (lambda fraction, stage: None)
     samples = problem.uncertain.scenarios

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.studies.evaluation import Outcome, forget
 from coaxshell.studies.executors import process_pool, worker_count
 from coaxshell.studies.optimisation.targets import FAILED, UNSOLVED, Targets
@@ -22,7 +22,6 @@ from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import run_cases
 from coaxshell.studies.store import Store
 
-FloatArray = npt.NDArray[np.float64]
 Scenarios = Callable[[System], Sequence[System | InputError]]
 """From a design to itself and, after it, its samples under uncertain properties."""
 

@@ -8,19 +8,17 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.limits import EXPRESSION
 from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, Dimension, to_si
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
 from coaxshell.studies.metrics import ANYWHERE, Metric, metrics_of
 from coaxshell.studies.uncertainty.statistics import ROBUST, statistic
 from coaxshell.studies.user_functions import UserCode
-
-FloatArray = npt.NDArray[np.float64]
 
 UNSOLVED, FAILED = 1e6, 1e12
 """Added to the violation of a design that breaks a limit before any run, and of one whose run is refused: worse than any limit broken

@@ -7,20 +7,18 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 from scipy.stats import qmc
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, to_si
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
 from coaxshell.studies.paths import Field, field_of, varied
 from coaxshell.studies.uncertainty.laws import ENTRIES, Distribution, LogNormal, Normal, Uniform, check, law_of
 
 __all__ = ["Coordinate", "Distribution", "LogNormal", "Normal", "Uncertain", "Uniform", "coordinates_of", "uncertain_of", "unit_points"]
 
-FloatArray = npt.NDArray[np.float64]
 LARGEST_CUT = 0.01
 """Share of a distribution that may lie beyond a field's limits; it is cut off and the rest scaled up."""
 MOST_SAMPLES = 2**16

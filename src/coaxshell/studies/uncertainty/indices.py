@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import bootstrap, sobol_indices
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.studies.uncertainty.distributions import unit_points
 from coaxshell.studies.uncertainty.statistics import RESAMPLES
 
-FloatArray = npt.NDArray[np.float64]
 NOTHING = 1e-12
 """A metric whose standard deviation is less than this share of its mean does not vary: it has no indices."""
 

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import PhysicsWarning
 from coaxshell.model.loading import SystemLike, as_system
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.labelled import CASE, failures_text, labelled
 from coaxshell.studies.metrics import Metrics, metrics_of
@@ -48,7 +49,7 @@ def sensitivity(
     workers: int | None = None,
     store: str | Path | None = None,
     resume: bool = False,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return how much of the variance of each metric each uncertain property is the cause of, and the statistics of the metrics.
 
@@ -111,7 +112,7 @@ def robustness(
     workers: int | None = None,
     store: str | Path | None = None,
     resume: bool = False,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return mean, standard deviation and percentiles of the metrics of a system whose properties are uncertain.
 
@@ -186,7 +187,7 @@ def _with_indices(plan: Plan, runs: xr.Dataset, found: xr.Dataset) -> xr.Dataset
     return found
 
 
-def _shaped(runs: xr.Dataset, name: str, plan: Plan) -> npt.NDArray[np.float64]:
+def _shaped(runs: xr.Dataset, name: str, plan: Plan) -> FloatArray:
     """Return the values of a metric, shape (blocks, samples)."""
-    values: npt.NDArray[np.float64] = runs[name].to_numpy().reshape(-1, plan.samples)
+    values: FloatArray = runs[name].to_numpy().reshape(-1, plan.samples)
     return values

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 from scipy.stats import bootstrap
 
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
+
 RESAMPLES = 999
 
 

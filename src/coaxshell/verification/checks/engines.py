@@ -12,8 +12,9 @@ from coaxshell.model.absorbers import Absorber, absorber_ring
 from coaxshell.model.pulses import Gaussian
 from coaxshell.model.sources import LineShock, SphericalWave
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.response import Response
-from coaxshell.verification.bench import Bench, FloatArray
+from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, at_least, distance, within
 from coaxshell.verification.systems import GAINS, PLANE_STEP

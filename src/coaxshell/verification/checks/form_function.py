@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import h1vp, hankel1, jv, jvp
 
 from coaxshell.acoustics.incident import PlaneGeometry
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.radial_fields import outgoing
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.verification.bench import Bench, FloatArray
+from coaxshell.verification.bench import Bench
 from coaxshell.verification.independent.walls import Wall
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, within
 from coaxshell.verification.systems import evacuated, ring
-
-ComplexArray = npt.NDArray[np.complex128]
 
 ORDERS = all_orders(60)
 M = ORDERS[:, None]

@@ -12,7 +12,8 @@ from coaxshell.model.absorbers import Absorber
 from coaxshell.model.fluids import VACUUM, Fluid
 from coaxshell.model.sources import PlaneWave
 from coaxshell.model.system import System
-from coaxshell.verification.bench import Bench, FloatArray
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.verification.bench import Bench
 from coaxshell.verification.independent import RadialElements
 from coaxshell.verification.independent.radial_elements import ELEMENT
 from coaxshell.verification.registry import check

@@ -9,9 +9,10 @@ import numpy as np
 from coaxshell.model import presets
 from coaxshell.model.pulses import Gaussian
 from coaxshell.model.sources import PlaneWave, Source
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.response import Response
 from coaxshell.response.synthesis import mean_square
-from coaxshell.verification.bench import Bench, FloatArray
+from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, at_least, close, distance, orders, within
 

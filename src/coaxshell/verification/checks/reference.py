@@ -9,8 +9,9 @@ import numpy as np
 from coaxshell.model import materials, presets
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.response import Response
-from coaxshell.verification.bench import Bench, FloatArray, bare_double_shell
+from coaxshell.verification.bench import Bench, bare_double_shell
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, distance, value, within
 

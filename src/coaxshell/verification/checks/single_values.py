@@ -8,9 +8,10 @@ import numpy as np
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra
-from coaxshell.verification.bench import Bench, FloatArray, tables
+from coaxshell.verification.bench import Bench, tables
 from coaxshell.verification.inversion import sharp_inverse
 from coaxshell.verification.loads import surface_pressure
 from coaxshell.verification.registry import check

@@ -10,7 +10,8 @@ from coaxshell.model import presets
 from coaxshell.model.pulses import Gaussian
 from coaxshell.model.sources import LineShock, PlaneShock, PlaneWave, Source, SphericalShock
 from coaxshell.model.system import System
-from coaxshell.verification.bench import Bench, FloatArray
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, at_least, distance, orders, within
 

@@ -11,10 +11,11 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model import presets
 from coaxshell.model.fluids import VACUUM
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.response import Response
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra
-from coaxshell.verification.bench import Bench, FloatArray
+from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, close, value, within
 from coaxshell.verification.systems import PLANE_STEP, STEP, WATER, evacuated, ring

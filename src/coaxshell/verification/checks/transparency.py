@@ -5,20 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import ive, kve
 
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model.sources import LineShock, PlaneShock, Source, SphericalShock
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Finding, close, distance, within
 from coaxshell.verification.systems import WATER, ring
-
-ComplexArray = npt.NDArray[np.complex128]
 
 GRID = LaplaceGrid(0.02, 250)
 M = np.arange(41.0)[:, None]

@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.verification.independent.elements import RadialMatrices, elements
 from coaxshell.verification.independent.walls import Wall
-
-FloatArray = npt.NDArray[np.float64]
 
 MARGIN = 0.1
 """How far beyond the reach of the last echo the exterior is cut, in a."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 DEGREE = 8
 

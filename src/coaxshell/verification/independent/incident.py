@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import legendre
 from scipy.special import erf
 
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Step
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 POINTS = 80
 

@@ -9,11 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.verification.independent.assembly import Assembly
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def shape(half: int, m: int, angle: float) -> float:

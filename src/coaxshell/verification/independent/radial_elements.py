@@ -12,11 +12,10 @@ from scipy.sparse.linalg import splu
 
 from coaxshell.model.absorbers import Absorber
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.verification.independent.assembly import Assembly
 from coaxshell.verification.independent.incident import incident
 from coaxshell.verification.independent.links import Links, Places, shape
-
-FloatArray = npt.NDArray[np.float64]
 
 ELEMENT = 0.125
 """Longest radial element, in a."""

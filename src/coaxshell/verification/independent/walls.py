@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.model.elastic import Elastic
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.shells import Shell
-
-FloatArray = npt.NDArray[np.float64]
+from coaxshell.numerics.arrays import FloatArray
 
 
 @dataclass(frozen=True)
