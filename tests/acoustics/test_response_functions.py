@@ -13,11 +13,10 @@ from coaxshell.acoustics.response_functions import (
     exterior_wall,
     gap,
     interior,
-    levels,
+    sums,
     wall_functions,
 )
-from coaxshell.acoustics.response_functions.exterior_field import exterior_field
-from coaxshell.acoustics.response_functions.exterior_poles import fit, tabulated
+from coaxshell.acoustics.response_functions.exterior_response import exterior_field, fit, tabulated
 from coaxshell.errors import InputError
 
 # mpmath, 25 digits, Talbot's contour: order, r, time since the front, xi_e
@@ -146,7 +145,7 @@ def test_results_do_not_depend_on_where_the_contour_is_turned(monkeypatch):
         lambda: exterior(orders, times, radius=2.0),
     )
     first = [call() for call in calls]
-    monkeypatch.setattr(levels, "_GROWTH", 5.0)
+    monkeypatch.setattr(sums, "_GROWTH", 5.0)
     for call, values in zip(calls, first, strict=True):
         np.testing.assert_allclose(call(), values, rtol=0, atol=2e-9)
 

@@ -394,7 +394,7 @@ MUTATIONS = (
     ),
     Mutation(
         "gap-transfer",
-        "response/fields/transfer.py",
+        "response/fields/modal_field.py",
         "(slopes.outer - eps_k * slopes.inner)",
         "(slopes.outer + eps_k * slopes.inner)",
         "pressure inside the gap from the walls' motion",
@@ -402,7 +402,7 @@ MUTATIONS = (
     ),
     Mutation(
         "field-recurrence",
-        "response/fields/transfer.py",
+        "response/fields/modal_field.py",
         "((m + 1) / self.kappa * step)",
         "(m / self.kappa * step)",
         "recurrence of outgoing waves over the orders",

@@ -13,9 +13,8 @@ from scipy.special import gammainc, iv
 import coaxshell as cx
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
-from coaxshell.response.energy.fluids import fluid_energy
+from coaxshell.response.energy.fluids import Sampler, fluid_energy
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.energy.sampling import Sampler
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.solver.excitation import SurfaceLoads, incident_on_surface
 from coaxshell.solver.recompute import SolvedSpectra

@@ -9,9 +9,8 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.response import Response
-from coaxshell.response.fields import gridded
-from coaxshell.response.fields.band import band
-from coaxshell.response.fields.inversion import Inversion
+from coaxshell.response.fields import scattered
+from coaxshell.response.fields.inversion import Inversion, band
 
 COARSE = {"duration": 2.0, "time_step": 0.01, "modes": 40}
 SHOCK = {"peak_pressure": 2.5e4, "decay_time": 1.314e-4}
@@ -66,7 +65,7 @@ def test_interpolated_grids_equal_exact_ones(answer, quantity):
     times = [0.35, 1.2, 2.0]
     read = getattr(answer, quantity)
     whole = read(AXIS, AXIS, time=times).values
-    assert gridded.raster_radii(answer._spectra, _Asked, np.linspace(0, 3.5, 9)) < 1000
+    assert scattered.raster_radii(answer._spectra, _Asked, np.linspace(0, 3.5, 9)) < 1000
     for row in (3, 44, 61):
         exact = read(AXIS, AXIS[row], time=times).values[..., 0, :]
         assert abs(whole[..., row, :] - exact).max() < 5e-4 * abs(whole).max()

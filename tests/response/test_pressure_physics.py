@@ -11,7 +11,7 @@ from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field, exterior_field
 from coaxshell.response import Response
 from coaxshell.response.fields.modal_field import modal_field
-from coaxshell.response.fields.regions import regions
+from coaxshell.response.fields.request import regions
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 

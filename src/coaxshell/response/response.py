@@ -161,7 +161,7 @@ class Response:
 
         Give *x* and *y* or *radius* and *angle* (degrees), lengths in units of a, and *time* in transits;
         *part* is "total", "incident", "diffracted", "radiated" or "scattered", *front* "sharp" or, for pictures, "matched".
-        See :func:`coaxshell.response.fields.pressure.pressure`.
+        See :func:`coaxshell.response.fields.evaluate.pressure`.
         """
         return fields.pressure(self._spectra, x, y, **options)
 
@@ -170,7 +170,7 @@ class Response:
     ) -> xr.DataArray:
         """Return the particle velocity, m/s, with a dimension component, on the same grids as the pressure.
 
-        See :func:`coaxshell.response.fields.flow.velocity`.
+        See :func:`coaxshell.response.fields.evaluate.velocity`.
         """
         return fields.velocity(self._spectra, x, y, **options)
 
@@ -179,7 +179,7 @@ class Response:
     ) -> xr.DataArray:
         """Return the acoustic intensity p v, W/m^2, with a dimension component, on the same grids as the pressure.
 
-        See :func:`coaxshell.response.fields.flow.intensity`.
+        See :func:`coaxshell.response.fields.evaluate.intensity`.
         """
         return fields.intensity(self._spectra, x, y, **options)
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from coaxshell.model import System
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.response.fields.sources import Incident
+from coaxshell.response.fields.incident import Incident
 from coaxshell.solver.scaling import Problem, dimensionless
 
 

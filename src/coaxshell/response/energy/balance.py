@@ -18,8 +18,7 @@ from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.shells import actuator_work, shell_energy
-from coaxshell.response.energy.surface import surface_pressures
-from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.response.energy.work import SurfaceWork, surface_pressures
 from coaxshell.response.labels import time_coordinates
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.solution import ModalSolution

@@ -1,4 +1,19 @@
-"""Energy of the enclosed fluids, integrated from the field itself: pressure and particle velocity of every order at many radii.
+"""Energy of the enclosed fluids, and how much of the spectrum and how many radii it needs.
+
+Every K-th instant of many modal histories from their transforms, without computing the instants between.
+
+A sum over the nodes at the times n K dt does not see multiples of the frequency 2 pi/(K dt): nodes that differ by one are added
+up first, and a short FFT does the rest. K need not divide the number of samples; its greatest common divisor with it does.
+
+How much of the spectrum and how many radii the energy of a fluid region needs.
+
+Waves of phase h across the region (frequency times slowness times width) make an energy density with 2 h/(2 pi) periods, which
+h/2 Gauss points integrate. Nearly all the energy lies far below the highest frequency, so the whole band would be a waste. The field is
+kept up to the frequency above which a part NEGLIGIBLE of the walls' kinetic energy lies, with a roll-off around it: what is left
+out meets what is kept only within the roll-off, so the energy loses a part of about that size. Full resolution is given to
+frequencies up to the one above which a part FAINT lies, half as much to the rest.
+
+Energy of the enclosed fluids, integrated from the field itself: pressure and particle velocity of every order at many radii.
 
 In a fluid of density ratio rho and slowness alpha, with Pi = p/s the time integral of the pressure (rho v = -grad Pi),
 
@@ -9,22 +24,108 @@ exact in theta by Parseval, by Gauss-Legendre points in r. Nothing here knows th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from scipy import fft
 
-from coaxshell.acoustics.laplace_grid import WORKERS
+from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.progress import ShareDone
-from coaxshell.response.energy.band import band_of, radii_needed
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.energy.sampling import Sampler
 from coaxshell.solver.scaling import FluidRegion
+
+
+class Sampler:
+    """The instants 0, K, 2 K, ... of histories whose transforms are known at the lowest nodes of a grid.
+
+    Parameters
+    ----------
+    grid : LaplaceGrid
+    every : int
+        K.
+    """
+
+    def __init__(self, grid: LaplaceGrid, every: int) -> None:
+        divisor = math.gcd(every, grid.samples)
+        self.length = grid.samples // divisor
+        times = grid.time[::every]
+        self._gain = np.exp(grid.shift * times) / (grid.time_step * divisor)
+        self._instants = slice(0, 1 + (times.size - 1) * (every // divisor), every // divisor)
+
+    def blocks(self, count: int, width: int) -> Iterator[slice]:
+        """Yield slices of the nodes 0..count - 1 of at most *width*, none of them across a multiple of the short length."""
+        start = 0
+        while start < count:
+            stop = min(start + width, count, (start // self.length + 1) * self.length)
+            yield slice(start, stop)
+            start = stop
+
+    def add(self, total: ComplexArray, spectrum: ComplexArray, block: slice) -> None:
+        """Add the transforms at one block of nodes to the sums (..., length), in place."""
+        start = block.start % self.length
+        total[..., start : start + spectrum.shape[-1]] += spectrum
+
+    def finish(self, total: ComplexArray) -> FloatArray:
+        """Return the histories at the instants; nodes above the lowest must have been counted twice, for their conjugates."""
+        mirrored = total[..., -np.arange(self.length // 2 + 1)]
+        hermitian = 0.5 * (total[..., : self.length // 2 + 1] + mirrored.conj())  # real part of the sum, by a real transform
+        samples = fft.irfft(hermitian, self.length, axis=-1, overwrite_x=True)[..., self._instants]
+        return np.asarray(samples * self._gain, dtype=np.float64)
+
+
+NEGLIGIBLE, FAINT = 4e-7, 1e-5
+
+MAX_RADII = 500
+
+_FULL, _NONE = 0.9, 1.2
+"""The roll-off begins and ends at these multiples of the frequency."""
+
+
+class Band(NamedTuple):
+    """What is kept of the spectrum in one region.
+
+    Attributes
+    ----------
+    window : ndarray, shape (nodes kept,)
+        Weights of the lowest nodes of the grid; all but the first count double, for their conjugates.
+    highest, strong : float
+        Frequencies at which the window ends and above which a part FAINT of the walls' energy lies.
+    """
+
+    window: FloatArray
+    highest: float
+    strong: float
+
+
+def band_of(motion: Motion, walls: tuple[int, ...]) -> Band:
+    """Return the band for the field between the given walls."""
+    grid = motion.grid
+    taper, step = grid.taper(), grid.frequency_step
+    needed = strong = 1
+    for wall in walls:
+        power = np.einsum("m,hmk->k", motion.circle, np.abs(motion.normal_velocity[wall]) ** 2) * taper**2
+        above = np.cumsum(power[::-1])[::-1]
+        needed = max(needed, int(np.count_nonzero(above > NEGLIGIBLE * above[0])))
+        strong = max(strong, int(np.count_nonzero(above > FAINT * above[0])))
+    position = (np.arange(taper.size) / needed - _FULL) / (_NONE - _FULL)
+    kept = max(2, int(np.count_nonzero(position < 1.0)))
+    window: FloatArray = taper[:kept] * np.cos(0.5 * np.pi * np.clip(position[:kept], 0.0, 1.0)) ** 2
+    window[1:] *= 2.0
+    return Band(window, kept * step, strong * step)
+
+
+def radii_needed(band: Band, phase: float, orders: int) -> int:
+    """Return the number of Gauss points in a region *phase* wide (slowness times width) for modes r^m up to m = orders - 1."""
+    waves = max(0.25 * band.highest, 0.45 * band.strong) * phase
+    return min(MAX_RADII, int(12 + 2.0 * math.sqrt(orders) + waves))
+
 
 _BLOCK_ELEMENTS = 64 * 1024
 """Order-node pairs of one block of fields: 1 MB an array."""

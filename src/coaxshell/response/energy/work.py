@@ -1,4 +1,8 @@
-"""Work of a pressure on a moving surface, integrated over time exactly rather than by a quadrature of samples.
+"""Pressures on the outermost surface and the work they do.
+
+The pressure on the outermost surface, taken apart: incident, rigidly scattered and radiated, at all orders and Laplace nodes.
+
+Work of a pressure on a moving surface, integrated over time exactly rather than by a quadrature of samples.
 
 Inverted from the grid's nodes, a modal history is e^{sigma t} times a trigonometric polynomial. The power of a pressure on a
 velocity is then e^{2 sigma t} times another one of twice the bandwidth, which is sampled without loss at half the time step and
@@ -11,11 +15,41 @@ integrated term by term,
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy import fft
 
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.solver.excitation import incident_on_surface
+from coaxshell.solver.recompute import SolvedSpectra
+
+
+class SurfacePressures(NamedTuple):
+    """Transforms of the modal pressures on the outermost surface; incident and scattered may lack a sine half that is zero.
+
+    Attributes
+    ----------
+    incident, scattered : ndarray, shape (1 or 2, M + 1, nodes)
+        Of the undisturbed wave, and of the wave that a rigid cylinder would add.
+    radiated : ndarray, shape (halves, M + 1, nodes)
+        Of the surface's own motion.
+    """
+
+    incident: ComplexArray
+    scattered: ComplexArray
+    radiated: ComplexArray
+
+
+def surface_pressures(spectra: SolvedSpectra) -> SurfacePressures:
+    """Return the three parts of the pressure on the outermost surface of a finished run."""
+    orders, s = all_orders(spectra.max_order), spectra.grid.nodes
+    surface = RadialFunctions(s, 1.0, orders)
+    incident, slope = incident_on_surface(spectra.problem, spectra.grid, surface)
+    return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * spectra.normal[-1])
+
 
 _LEAD = 64
 """Steps before t = 0 from which work is counted: the roll-off of the spectra lets histories start a few steps early."""

@@ -1,7 +1,6 @@
 """Acoustic fields of a finished run: pressure, particle velocity and intensity on grids, and their means over a region."""
 
-from coaxshell.response.fields.flow import intensity, velocity
-from coaxshell.response.fields.pressure import pressure
+from coaxshell.response.fields.evaluate import intensity, pressure, velocity
 from coaxshell.response.fields.request import FieldOptions, PartOptions, PressureOptions, RmsOptions
 from coaxshell.response.fields.rms import pressure_rms
 

@@ -1,21 +1,191 @@
-"""Modal histories of the field at radii of one region: the radial transfer of its walls, then the inverse transform to given instants."""
+"""Modal histories of the field at radii of one region, from the motion of its walls.
+
+What drives the field of a region: the transforms of the modal slope dp/dr at its walls.
+
+A wall that moves inward by w makes (rho/rho_e) s^2 W; the rigidly scattered wave makes minus the slope of the incident one at the
+outermost shell. Everything else about a region is its transfer.
+
+From the walls of a region to radii inside it, order by order, for a block of radii at once.
+
+Every field here is p = J_m A_m + E_m B_m with J_m = I_m(kr)/I_m(k r_b), r_b the outer wall, and E_m = K_m(kr)/K_m(k r_a), r_a the
+inner wall; A and B hold the walls' slopes and do not depend on r. E_m follows from the recurrence of K_m, stable upward,
+
+    E_{m+1} = (2m/(kr)) E_m/S_m(k r_a) + E_{m-1}/(S_m(k r_a) S_{m-1}(k r_a)),
+
+without a division or a Bessel function but those of order 0 and 1; J_m from ratios, as I_m is stable downward only.
+
+Modal histories of the field at radii of one region: the radial transfer of its walls, then the inverse transform to given instants.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import ive, kve
 
+from coaxshell.acoustics.bessel_ratios import i_ratios
 from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus_amplitudes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.fields.inversion import Inversion
-from coaxshell.response.fields.regions import Region
-from coaxshell.response.fields.slopes import wall_slopes
-from coaxshell.response.fields.transfer import CENTRE, Transfer
+from coaxshell.response.fields.request import Region
+from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.recompute import SolvedSpectra
+
+SCATTERED = {"radiated": ("radiated",), "diffracted": ("diffracted",), "scattered": ("radiated", "diffracted")}
+SCATTERED["total"] = SCATTERED["scattered"]
+
+
+@dataclass(frozen=True)
+class WallSlopes:
+    """Modal slopes at the inner and the outer wall of a region, each (halves, M + 1, nodes) or None where nothing drives it."""
+
+    inner: ComplexArray | None
+    outer: ComplexArray | None
+
+
+def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part: str) -> WallSlopes | None:
+    """Return the slopes that make a part of the scattered field in a region; None if that part vanishes there."""
+    parts = SCATTERED.get(part, ())
+    if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
+        return None
+    nodes = grid.nodes
+    problem, orders = spectra.problem, all_orders(spectra.max_order)
+    acceleration = region.fluid.density * nodes * nodes
+
+    def radial(slowness: float, radius: float) -> RadialFunctions:
+        return RadialFunctions(slowness * nodes, radius, orders)
+
+    def radiated(shell: int) -> ComplexArray:
+        motion = spectra.normal[shell, ..., : nodes.size] * acceleration
+        return np.asarray(motion * problem.ingredients.felt_motion(problem, region.index, shell, radial))
+
+    inner: ComplexArray | None = None
+    outer: ComplexArray | None = None
+    if "radiated" in parts:
+        if region.index > 0:
+            inner = radiated(region.index - 1)
+        if not region.exterior:
+            outer = radiated(region.index)
+    if "diffracted" in parts and region.exterior:
+        rigid = -incident_on_surface(problem, grid, radial(1.0, 1.0))[1]
+        inner = rigid if inner is None else _sum_of_halves(inner, rigid)
+    return WallSlopes(inner, outer)
+
+
+def _sum_of_halves(one: ComplexArray, other: ComplexArray) -> ComplexArray:
+    """Return the sum of two modal arrays of which either may lack the sine half."""
+    large, small = (one, other) if one.shape[0] >= other.shape[0] else (other, one)
+    result = large.copy()
+    result[: small.shape[0]] += small
+    return result
+
+
+Weight = FloatArray | ComplexArray
+
+CENTRE = 1e-9
+"""Least radius at which a disc is evaluated."""
+
+
+class Transfer:
+    """The field of one region in the Laplace domain.
+
+    Parameters
+    ----------
+    region : Region
+        Must hold a fluid.
+    slopes : WallSlopes
+    nodes : ndarray, shape (nodes,)
+        Laplace variable.
+    max_order : int
+    """
+
+    def __init__(self, region: Region, slopes: WallSlopes, nodes: ComplexArray, max_order: int) -> None:
+        assert region.fluid is not None
+        self.region, self.max_order = region, max_order
+        self.kappa = np.asarray(region.fluid.slowness * nodes, dtype=np.complex128)
+        orders = all_orders(max_order + 1)  # one more: slopes need the next order
+        self._inner = RadialFunctions(self.kappa, region.inner, orders) if region.index > 0 else None
+        self._outer = RadialFunctions(self.kappa, region.outer, orders) if not region.exterior else None
+        self.standing, self.outgoing = self._amplitudes(slopes)
+        driven = self.standing if self.standing is not None else self.outgoing
+        assert driven is not None
+        self.halves = driven.shape[0]
+
+    def _amplitudes(self, slopes: WallSlopes) -> tuple[ComplexArray | None, ComplexArray | None]:
+        """Return A and B, each (halves, M + 1, nodes) or None."""
+        inner, outer, keep = self._inner, self._outer, slice(0, self.max_order + 1)
+        if inner is None or outer is None:
+            standing = None if outer is None or slopes.outer is None else slopes.outer * outer.disc[keep]
+            outgoing = None if inner is None or slopes.inner is None else slopes.inner * inner.exterior[keep]
+            return standing, outgoing
+        assert slopes.inner is not None
+        assert slopes.outer is not None
+        eps_i, eps_k, determinant = (x[keep] for x in annulus_amplitudes(inner, outer))
+        return (
+            (slopes.outer - eps_k * slopes.inner) * (outer.disc[keep] / determinant),
+            (slopes.inner - eps_i * slopes.outer) * (inner.exterior[keep] / determinant),
+        )
+
+    def pressure(self, radii: FloatArray, weight: Weight) -> Iterator[tuple[int, ComplexArray]]:
+        """Yield (m, weighted transforms of the pressure at all radii, shape (halves, radii, nodes)) for m = 0..M."""
+        for m, parts in self._shapes(radii):
+            yield m, _total([here * (amplitude[:, None, m] * weight) for amplitude, here, _ in parts])
+
+    def slope(self, radii: FloatArray, weight: Weight) -> Iterator[tuple[int, ComplexArray]]:
+        """Yield (m, weighted transforms of dp/dr) as :meth:`pressure` does, from z f_m' = m f_m +- z f_{m+1} (DLMF 10.29.2)."""
+        column = np.maximum(radii, CENTRE)[:, None]
+        for m, parts in self._shapes(radii):
+            yield m, _total([(m / column * here + higher) * (amplitude[:, None, m] * weight) for amplitude, here, higher in parts])
+
+    def _shapes(self, radii: FloatArray) -> Iterator[tuple[int, list[tuple[ComplexArray, ComplexArray, ComplexArray]]]]:
+        """Yield (m, [(A, J_m, k I_{m+1}(kr)/I_m(k r_b)), (B, E_m, -k K_{m+1}(kr)/K_m(k r_a))]), the latter two of shape (radii, nodes)."""
+        radii = np.maximum(radii, CENTRE)
+        standing = self._standing(radii) if self.standing is not None else None
+        outgoing = self._outgoing(radii) if self.outgoing is not None else None
+        for m in range(self.max_order + 1):
+            parts = []
+            if standing is not None and self.standing is not None:
+                parts.append((self.standing, *next(standing)))
+            if outgoing is not None and self.outgoing is not None:
+                parts.append((self.outgoing, *next(outgoing)))
+            yield m, parts
+
+    def _standing(self, radii: FloatArray) -> Iterator[tuple[ComplexArray, ComplexArray]]:
+        assert self._outer is not None
+        wall, count = self._outer, radii.size
+        z = np.multiply.outer(radii, self.kappa)
+        # The continuation beyond the wall (r > r_b) is as good: ratios only.
+        ratios = i_ratios(self.max_order, z.ravel()).reshape(-1, count, self.kappa.size)
+        here = ive(0, z) / ive(0, wall.argument) * np.exp(z.real - wall.argument.real)
+        for m in range(self.max_order + 1):
+            higher = here * ratios[m]
+            yield here, self.kappa * higher
+            here = higher / wall.i_ratios[m]
+
+    def _outgoing(self, radii: FloatArray) -> Iterator[tuple[ComplexArray, ComplexArray]]:
+        assert self._inner is not None
+        wall = self._inner
+        inverse = 1.0 / wall.k_ratios
+        z = np.multiply.outer(radii, self.kappa)
+        order_zero, phase = 1.0 / kve(0, wall.argument), np.exp(wall.argument - z)
+        here = kve(0, z) * order_zero * phase
+        higher = kve(1, z) * order_zero * phase * inverse[0]
+        per_radius = (2.0 / radii)[:, None]
+        for m in range(self.max_order + 1):
+            yield here, (-self.kappa * wall.k_ratios[m]) * higher
+            step = inverse[m + 1]
+            here, higher = higher, (per_radius * higher) * ((m + 1) / self.kappa * step) + here * (step * inverse[m])
+
+
+def _total(parts: list[ComplexArray]) -> ComplexArray:
+    return parts[0] if len(parts) == 1 else parts[0] + parts[1]
+
 
 Quantity = Literal["pressure", "slope", "radial", "angular"]
 """Pressure, its radial slope, and the particle velocity outward and towards increasing angle; all dimensionless."""

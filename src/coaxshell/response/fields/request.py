@@ -1,11 +1,18 @@
-"""What a user asks of a field, checked: where, when, which part, how smooth, within how much memory."""
+"""What a user asks of a field, checked: where, when, which part, how smooth, within how much memory; and the region it lies in.
+
+What a user asks of a field, checked: where, when, which part, how smooth, within how much memory.
+
+The fluid regions between the mid-surfaces, and which one a radius lies in.
+
+The domain of a mean: which region, up to which radius, at which instants, by which quadrature.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +24,7 @@ from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.scaling import FluidRegion, Problem
 
 Tell = ShareDone
 
@@ -91,7 +99,7 @@ def require_room(name: str, place: Sequence[object], when: FloatArray, quantitie
 
 
 class FieldOptions(TypedDict, total=False):
-    """Keyword arguments of a field beside its place; see :func:`coaxshell.response.fields.pressure.pressure`."""
+    """Keyword arguments of a field beside its place; see :func:`coaxshell.response.fields.evaluate.pressure`."""
 
     radius: npt.ArrayLike | None
     angle: npt.ArrayLike | None
@@ -177,3 +185,119 @@ def mode_filter(name: str | None, max_order: int) -> FloatArray:
         case "exponential":
             return np.exp(-36.0 * ratio**6)
     return np.ones_like(ratio)
+
+
+SMEAR = 20
+"""Resolutions by which the band limit smears a front, to about 1e-4."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """One fluid between two mid-surfaces.
+
+    Attributes
+    ----------
+    index : int
+        Counted from the inside; the exterior is the last.
+    inner, outer : float
+        Radii of its walls in units of a: 0 inside a disc, infinity outside.
+    fluid : FluidRegion or None
+        None is a vacuum.
+    exterior : bool
+    """
+
+    index: int
+    inner: float
+    outer: float
+    fluid: FluidRegion | None
+    exterior: bool
+
+    @property
+    def spacing(self) -> float:
+        """Radial distance per time that a wave needs at least to be resolved alike: 1 in the exterior, less in slower fluids."""
+        return 1.0 if self.fluid is None else 1.0 / max(1.0, self.fluid.slowness)
+
+
+class Members(NamedTuple):
+    """A region and the positions of the radii that lie in it."""
+
+    region: Region
+    at: npt.NDArray[np.int64]
+
+
+def regions(problem: Problem) -> tuple[Region, ...]:
+    """Return the fluid regions from the inside out."""
+    edges = [0.0, *(shell.radius for shell in problem.shells), np.inf]
+    last = len(problem.fluids) - 1
+    return tuple(Region(i, edges[i], edges[i + 1], fluid, i == last) for i, fluid in enumerate(problem.fluids))
+
+
+def split(problem: Problem, radius: FloatArray) -> list[Members]:
+    """Return the regions that hold some of the radii; walls have no thickness, and a radius on a mid-surface lies outside of it."""
+    edges = np.array([shell.radius for shell in problem.shells])
+    index = np.searchsorted(edges, radius, side="right")
+    return [Members(region, np.flatnonzero(index == region.index)) for region in regions(problem) if np.any(index == region.index)]
+
+
+def reach(problem: Problem, times: FloatArray, resolution: float) -> float:
+    """Return the radius beyond which there is no scattered wave yet at any of the times: 1 + t after the first front, and its smear."""
+    first = min(source.delay for source in problem.system.sources) / problem.scales.time
+    return float(1.0 + times.max() - first + SMEAR * resolution)
+
+
+EXTERIOR_RADIUS = 3.0
+"""Default outer radius of the exterior, in a."""
+
+INSTANTS = 500
+"""Intervals between the default instants, at most twice as many."""
+
+
+@dataclass(frozen=True)
+class Domain:
+    """An annulus (or disc) of one fluid."""
+
+    region: Region
+    outer: float
+
+    def rule(self, resolution: float) -> tuple[FloatArray, FloatArray]:
+        """Return Gauss radii and weights of the mean over the area, enough for squares of waves resolved in time by *resolution*."""
+        inner, width = self.region.inner, self.outer - self.region.inner
+        count = int(0.5 * np.pi / (resolution * self.region.spacing) * width) + 24
+        x, w = np.polynomial.legendre.leggauss(count)
+        radii = inner + 0.5 * width * (1.0 + x)
+        return radii, w * radii / (self.outer + inner)
+
+
+def domain_of(problem: Problem, name: str | int, radius: float | None) -> Domain:
+    """Return the domain of a region named by a user, the exterior up to *radius*; InputError if either is not allowed."""
+    region = _region(problem, name)
+    if not region.exterior:
+        if radius is not None:
+            raise InputError("radius", f"{radius!r} is not allowed for the region {name!r}", "only the exterior has a radius to choose")
+        return Domain(region, region.outer)
+    outer = EXTERIOR_RADIUS if radius is None else positive("radius", radius, "a")
+    if outer <= region.inner:
+        raise InputError("radius", f"{outer:g} is not outside the outermost shell", f"give more than {region.inner:g}")
+    return Domain(region, outer)
+
+
+def _region(problem: Problem, name: str | int) -> Region:
+    known = regions(problem)
+    gaps = known[1:-1]
+    if name == "interior":
+        return known[0]
+    if name == "exterior":
+        return known[-1]
+    if name == "gap":
+        if len(gaps) == 1:
+            return gaps[0]
+        remedy = f"name the fluid by its number, 1 to {len(gaps)} from the inside" if gaps else 'use "interior" or "exterior"'
+        raise InputError("region", f"{len(gaps) or 'no'} gaps lie between {len(problem.shells)} shells", remedy)
+    if isinstance(name, int) and not isinstance(name, bool) and 0 <= name < len(known):
+        return known[name]
+    raise InputError("region", f"{name!r} is unknown", f'allowed: "interior", "gap", "exterior" or a number from 0 to {len(known) - 1}')
+
+
+def default_instants(time: FloatArray) -> FloatArray:
+    """Return every k-th instant of a run, k the largest number that leaves at least 500 intervals."""
+    return time[:: max(1, (time.size - 1) // INSTANTS)]

@@ -9,12 +9,11 @@ import scipy.fft
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
-from coaxshell.response.fields.band import band
-from coaxshell.response.fields.domain import Domain, default_instants, domain_of
 from coaxshell.response.fields.grids import instants_of
+from coaxshell.response.fields.incident import Incident
+from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.modal_field import modal_field
-from coaxshell.response.fields.request import Request, mode_filter, request, when_of
-from coaxshell.response.fields.sources import Incident
+from coaxshell.response.fields.request import Domain, Request, default_instants, domain_of, mode_filter, request, when_of
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.scaling import Problem
@@ -45,7 +44,7 @@ def pressure_rms(
     time : float or array_like, optional
         Instants in transits; by default equal steps of the run, 500 to 1000 of them.
     part, filter, time_resolution, memory, progress
-        As in :func:`coaxshell.response.fields.pressure.pressure`.
+        As in :func:`coaxshell.response.fields.evaluate.pressure`.
 
     Raises
     ------
