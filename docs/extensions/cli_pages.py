@@ -6,7 +6,7 @@ from typing import Any
 
 from typer.main import get_command
 
-from coaxshell.cli.app import app
+from coaxshell.cli.app import application
 
 HEAD = """# Command line
 
@@ -19,7 +19,7 @@ else. Progress and warnings go to stderr, results to stdout. `--debug`, anywhere
 
 def command_reference() -> str:
     """Return the page as Markdown."""
-    group: Any = get_command(app)
+    group: Any = get_command(application())
     return "\n\n".join([HEAD, *(_section(name, command) for name, command in group.commands.items() if not command.hidden)]) + "\n"
 
 

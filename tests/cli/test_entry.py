@@ -14,7 +14,7 @@ import typer
 
 import coaxshell
 from coaxshell.cli import main
-from coaxshell.cli.app import app
+from coaxshell.cli.app import application
 from coaxshell.cli.progress import progress
 
 COMMANDS = (
@@ -41,7 +41,7 @@ def test_every_command_has_help(run, command):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_help_has_what_a_terminal_takes_for_markup(command):
-    known = typer.main.get_command(app).commands[command]
+    known = typer.main.get_command(application()).commands[command]
     for text in (known.help, *(getattr(parameter, "help", None) or "" for parameter in known.params)):
         assert "[" not in text
 
@@ -54,7 +54,7 @@ METAVARS = {
 
 @pytest.mark.parametrize("command", [*COMMANDS, "plot"])
 def test_values_of_options_are_named_in_one_style(command):
-    known = typer.main.get_command(app).commands[command]
+    known = typer.main.get_command(application()).commands[command]
     for option in known.params:
         if option.param_type_name == "option" and not option.is_flag and "--help" not in option.opts:
             parts = (option.metavar or "").removesuffix(",...").split("|")  # a list, or a choice of kinds and words

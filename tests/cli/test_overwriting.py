@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from typer.main import get_command
 
-from coaxshell.cli.app import app
+from coaxshell.cli.app import application
 
 COARSE = ("--modes", "4", "--time-step", "0.05", "--duration", "1", "--quiet")
 WRITING = {"--output", "--figure", "--energy", "--csv", "--template"}
@@ -14,7 +14,7 @@ GOING_ON = {"reproduce"}
 
 
 def test_every_command_that_writes_can_be_forced():
-    commands = get_command(app).commands
+    commands = get_command(application()).commands
     writing = {name for name, command in commands.items() if WRITING & {option for one in command.params for option in one.opts}}
     assert len(writing) >= 10
     forced = {name for name, command in commands.items() if "--force" in {option for one in command.params for option in one.opts}}

@@ -88,9 +88,11 @@ def test_importing_the_package_imports_nothing_heavy():
 
 
 # What a run does not use, seconds of imports: labels (xarray and pandas), units beyond the usual (pint, and dask through it), films,
-# files, and the rooms of scipy that only studies, energies, saturation and the direct engine enter.
+# files, the rooms of our own that only fields, energies and the direct engine need, and those of scipy that only these, studies and
+# saturation enter.
 NOT_FOR_A_RUN = (
     *("xarray", "pandas", "pint", "dask", "jinja2", "yaml", "psutil", "matplotlib", "PIL", "h5py", "h5netcdf", "rich"),
+    *(f"coaxshell.{room}" for room in ("response.fields", "response.energy", "solver.direct.solve", "cli.verify")),
     *(f"scipy.{room}" for room in ("signal", "stats", "optimize", "spatial", "interpolate", "integrate", "linalg", "ndimage")),
 )
 

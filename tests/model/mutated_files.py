@@ -90,7 +90,7 @@ def plain_reading(content, separator, decimal):
         except (ValueError, KeyError, IndexError):
             return None
     values = [[_number(cell, decimal) for cell in row] for row in rows]
-    if any(len(row) != 2 or None in row for row in values):
+    if not values or any(len(row) != 2 or None in row for row in values):
         return None
     return [[value[0] * factor for value in column] for column, factor in zip(zip(*values, strict=True), factors, strict=True)]
 

@@ -3,35 +3,43 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated
 
 import typer
 
 from coaxshell._version import __version__
-from coaxshell.cli.animate import animate
-from coaxshell.cli.export import export
-from coaxshell.cli.figure import figure
-from coaxshell.cli.info import info
-from coaxshell.cli.init import init
-from coaxshell.cli.optimise import optimise
-from coaxshell.cli.plot import plot
-from coaxshell.cli.presets import presets
-from coaxshell.cli.record import record
-from coaxshell.cli.reproduce import reproduce
-from coaxshell.cli.response_function import response_function
-from coaxshell.cli.run import run
-from coaxshell.cli.sensitivity import sensitivity
-from coaxshell.cli.snapshots import snapshots
 from coaxshell.cli.streams import echo
-from coaxshell.cli.studio import studio
-from coaxshell.cli.sweep import sweep
-from coaxshell.cli.verify import verify
 
-app = typer.Typer(
-    rich_markup_mode="rich" if sys.stdout.isatty() else None,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+COMMANDS = (
+    *("run", "presets", "init", "info", "record", "plot", "figure", "reproduce", "snapshots", "animate", "export"),
+    *("sweep", "optimise", "sensitivity", "verify", "response-function", "studio"),
 )
+"""In the order of the help; each is the function of the same name in the module of the same name."""
+
+
+def application(arguments: Sequence[str] = ()) -> typer.Typer:
+    """Return the program with the command that some arguments name, or with all.
+
+    Importing all and reading their signatures takes a tenth of a short run.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Those of the process. Without a command that is known there, as for the help, all are read.
+    """
+    app = typer.Typer(
+        rich_markup_mode="rich" if sys.stdout.isatty() else None,
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    )
+    app.callback(invoke_without_command=True)(coaxshell)
+    named = next((each for each in arguments if not each.startswith("-")), None)  # the program's own options take no values
+    for command in (named,) if named in COMMANDS else COMMANDS:
+        name = command.replace("-", "_")
+        app.command()(getattr(import_module(f"coaxshell.cli.{name}"), name))
+    return app
 
 
 def _print_version(asked: bool) -> None:
@@ -40,7 +48,6 @@ def _print_version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback(invoke_without_command=True)
 def coaxshell(
     context: typer.Context,
     version: Annotated[
@@ -54,25 +61,3 @@ def coaxshell(
     """
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())  # its colours are our own
-
-
-for _command in (
-    run,
-    presets,
-    init,
-    info,
-    record,
-    plot,
-    figure,
-    reproduce,
-    snapshots,
-    animate,
-    export,
-    sweep,
-    optimise,
-    sensitivity,
-    verify,
-    response_function,
-    studio,
-):
-    app.command()(_command)

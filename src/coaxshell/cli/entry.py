@@ -58,9 +58,9 @@ def _run(arguments: list[str], debug: bool) -> int:
 def _invoke(arguments: list[str]) -> int:
     from typer.main import get_command
 
-    from coaxshell.cli.app import app
+    from coaxshell.cli.app import application
 
-    outcome: Any = get_command(app).main(args=arguments, prog_name="coaxshell", standalone_mode=False)
+    outcome: Any = get_command(application(arguments)).main(args=arguments, prog_name="coaxshell", standalone_mode=False)
     return outcome if isinstance(outcome, int) else DONE
 
 

@@ -28,6 +28,7 @@ from coaxshell.model import (
     materials,
     presets,
 )
+from coaxshell.model.explanations import explanations
 
 _SOURCES: tuple[type[Described], ...] = (SphericalShock, PlaneShock, LineShock, UnderwaterExplosion, SphericalWave, PlaneWave, LineWave)
 _PULSES: tuple[type[Described], ...] = (Exponential, Step, Gaussian, Sampled)
@@ -97,8 +98,9 @@ def _kind(model: type[Described]) -> Iterator[str]:
 
 
 def _entries(model: type[Described]) -> Iterator[str]:
+    explained = explanations(model)
     for name, field in model.model_fields.items():
         if name == "type":
             continue
         shown = name if field.is_required() else f"({name})"
-        yield f"    {shown:<24} {' '.join((field.description or '').split())}"
+        yield f"    {shown:<24} {' '.join(explained.get(name, '').split())}"

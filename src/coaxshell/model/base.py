@@ -6,10 +6,11 @@ import reprlib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError
+from pydantic_core import CoreSchema, ErrorDetails
 
 from coaxshell.errors import InputError
+from coaxshell.model.explanations import explanations
 from coaxshell.model.naming import suggestion
 
 
@@ -93,7 +94,7 @@ class _Readable(ModelMetaclass):
 class Described(BaseModel, metaclass=_Readable):
     """A part of a description: immutable, unknown keys refused, every problem told as one :class:`InputError`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
     called: ClassVar[str] = ""
     """What errors call it, where its users do not know the name of the class."""
@@ -112,6 +113,16 @@ class Described(BaseModel, metaclass=_Readable):
             return super().model_validate(obj, **options)
         except ValidationError as error:
             raise _told(error, cls) from None
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        """Return the schema with the explanation of each entry."""
+        schema = handler(core_schema)
+        entries = handler.resolve_ref_schema(schema).get("properties", {})
+        for name, text in explanations(cls).items():
+            if name in entries:
+                entries[name].setdefault("description", text)
+        return schema
 
     def __dir__(self) -> list[str]:
         return sorted({*type(self).model_fields, *(name for name in dir(type(self)) if not name.startswith("_"))})

@@ -6,17 +6,17 @@ from collections.abc import Sequence
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy.typing as npt
 
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import Late
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
-from coaxshell.response import absorbers, arguments, errors, fields, histories, storage, voltages
+from coaxshell.response import absorbers, arguments, errors, histories, storage, voltages
 from coaxshell.response.display import response_card
-from coaxshell.response.energy import energy
 from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
@@ -26,6 +26,11 @@ from coaxshell.solver.finite import require_finite_solution
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
+
+if TYPE_CHECKING:  # no run needs them, and importing them takes as long as a tenth of one
+    from coaxshell.response import energy, fields
+else:
+    energy, fields = Late("coaxshell.response.energy"), Late("coaxshell.response.fields")
 
 HEAD_AND_TAIL = (0.0, 180.0)
 
@@ -208,7 +213,7 @@ class Response:
         Takes ten to thirty seconds at the paper's resolution; *progress* is told how far it is.
         See :func:`coaxshell.response.energy.energy`.
         """
-        return energy(self.solution, every, progress, spectra=self._spectra)
+        return energy.energy(self.solution, every, progress, spectra=self._spectra)
 
     def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> Summary:
         """Return peaks, RMS, error estimates and warnings within a window (start, end) in transits; print it for a table.

@@ -18,7 +18,6 @@ from coaxshell.solver import checks, estimates
 from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
-from coaxshell.solver.direct.solve import solve_by_marching
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.linked import LinkedSpectra, interface_of, solve_linked
@@ -52,6 +51,8 @@ def solve(system: System, *, settings: Settings | None = None, progress: Progres
     """
     settings = settings or Settings()
     if settings.engine == "direct":
+        from coaxshell.solver.direct.solve import solve_by_marching
+
         return solve_by_marching(system, settings, progress)
     return Prepared(system, settings, progress).solve()
 

@@ -12,6 +12,7 @@ from coaxshell.limits import PATH
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import PDControl
+from coaxshell.model.explanations import explanations
 from coaxshell.model.naming import item_places, plain, slug
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
@@ -109,7 +110,7 @@ def _described(path: str, kind: type[Described], name: str, present: Any) -> Fie
     marks = [*info.metadata, *(mark for part in get_args(info.annotation) for mark in getattr(part, "__metadata__", ()))]
     quantity = next((mark for mark in marks if isinstance(mark, Quantity)), None)
     integer = quantity is None and info.annotation is int
-    long_name = re.sub(r"\s*\([^()]*\)", "", (info.description or name).split(". ")[0].split("; ")[0]).rstrip(".")
+    long_name = re.sub(r"\s*\([^()]*\)", "", explanations(kind).get(name, name).split(". ")[0].split("; ")[0]).rstrip(".")
     units = (quantity.dimension.unit if quantity is not None else "") or "1"
     return Field(path, units, f"{long_name} ({path})", quantity, integer, present)
 
