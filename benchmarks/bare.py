@@ -18,7 +18,7 @@ SOLVE = "; cx.simulate(system)"
 class _UnitLoad:
     """Stand in for the sources: a load of 1 on every order, which costs nothing."""
 
-    halves = 1
+    parities = 1
 
     def __init__(self, problem: object, grid: object, orders: np.ndarray) -> None:
         self._orders = orders

@@ -15,7 +15,7 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.history import HistorySum, KernelTable
 from coaxshell.solver.linked import solve_linked
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 
 COUNTS = (1, 25, 300)
@@ -24,10 +24,10 @@ COUNTS = (1, 25, 300)
 class PlainHistorySum:
     """The same sums over the whole history at every step, O(N^2), vectorised over modes."""
 
-    def __init__(self, kernels: np.ndarray, halves: int) -> None:
+    def __init__(self, kernels: np.ndarray, parities: int) -> None:
         _, inputs, modes, steps = kernels.shape
         self._backward = np.ascontiguousarray(kernels[..., ::-1])
-        self._inputs = np.zeros((inputs, halves, modes, steps))
+        self._inputs = np.zeros((inputs, parities, modes, steps))
         self._steps, self._step = steps, 0
 
     def present(self) -> np.ndarray:
@@ -42,14 +42,14 @@ class PlainHistorySum:
         self._step += 1
 
 
-def prepared() -> PreparedStructure:
+def prepared() -> StructureSpectra:
     """Return the paper's structure with its feedback, everything linear computed."""
-    structure = PreparedStructure(dimensionless(cx.presets.load("hybrid")), LaplaceGrid(1e-3, 5000), 150)
+    structure = StructureSpectra(dimensionless(cx.presets.load("hybrid")), LaplaceGrid(1e-3, 5000), 150)
     structure.kernels, structure.linear_velocity, structure.linear_displacement  # noqa: B018 - computed when first asked for
     return structure
 
 
-def ring(structure: PreparedStructure, count: int) -> AbsorberSet:
+def ring(structure: StructureSpectra, count: int) -> AbsorberSet:
     """Return the paper's absorbers, ``count`` of them."""
     absorbers = cx.absorber_ring(count, mass=10, damping=1e6, linear_stiffness=1e9, cubic_stiffness=1e20).absorbers
     return absorber_set(structure.problem, absorbers, 1)

@@ -58,7 +58,7 @@ def double(ring: Callable[..., cx.Shell], shock: cx.PlaneShock) -> cx.System:
 
 @pytest.fixture(scope="session")
 def spectra() -> Callable[..., LinearSpectra]:
-    """Return a function from a system, a grid and the highest order to W and V (shells, halves, M + 1, nodes), dimensionless."""
+    """Return a function from a system, a grid and the highest order to W and V (shells, parities, M + 1, nodes), dimensionless."""
 
     def solve(system: cx.System, grid: LaplaceGrid, modes: int) -> LinearSpectra:
         return linear_spectra(dimensionless(system), grid, modes)

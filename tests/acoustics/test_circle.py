@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coaxshell.acoustics import circle
-from coaxshell.acoustics.circle import Crest, circle_angles, crest, on_circle, reachable
+from coaxshell.acoustics.circle import CirclePeak, circle_angles, on_circle, peak_on_circle, reachable
 
 SEVERAL = 400
 """Instants, many times as many as are summed before the others are judged."""
@@ -21,25 +21,25 @@ def modal() -> np.ndarray:
 
 def plain(modal: np.ndarray, *, finer: int = 1) -> np.ndarray:
     """Return what :func:`on_circle` does, order by order."""
-    halves, orders, _ = modal.shape
-    arguments = np.radians(np.outer(circle_angles(orders, halves, finer=finer), np.arange(orders)))
+    parities, orders, _ = modal.shape
+    arguments = np.radians(np.outer(circle_angles(orders, parities, finer=finer), np.arange(orders)))
     sums = np.cos(arguments) @ modal[0]
-    return np.asarray(sums if halves == 1 else sums + np.sin(arguments) @ modal[1])
+    return np.asarray(sums if parities == 1 else sums + np.sin(arguments) @ modal[1])
 
 
-def histories(halves: int, *, seed: int = 3) -> np.ndarray:
+def histories(parities: int, *, seed: int = 3) -> np.ndarray:
     """Return orders that fall off, with a pulse in time, as those of a shell do."""
     random = np.random.default_rng(seed)
     fall = np.exp(-0.4 * np.arange(12))[None, :, None] * np.exp(-(((np.arange(SEVERAL) - 150) / 60) ** 2))
     values = random.standard_normal((2, 12, SEVERAL)) * fall
     values[1, 0] = 0.0
-    return np.asarray(values[:halves])
+    return np.asarray(values[:parities])
 
 
-@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("parities", [1, 2])
 @pytest.mark.parametrize("finer", [1, 2])
-def test_on_circle_is_the_sum_at_its_angles(modal: np.ndarray, halves: int, finer: int) -> None:
-    modal = np.concatenate([modal] * 12, axis=1)[:halves]  # 108 orders: finer than whole degrees
+def test_on_circle_is_the_sum_at_its_angles(modal: np.ndarray, parities: int, finer: int) -> None:
+    modal = np.concatenate([modal] * 12, axis=1)[:parities]  # 108 orders: finer than whole degrees
     modal[1:, 0] = 0.0
     np.testing.assert_allclose(on_circle(modal, finer=finer), plain(modal, finer=finer), rtol=0, atol=1e-11)
 
@@ -53,23 +53,23 @@ def test_circle_is_fine_enough_and_holds_whole_degrees(orders: int, step: float)
     np.testing.assert_allclose(whole[:: len(whole) // 360], np.arange(360.0), rtol=1e-14)
 
 
-@pytest.mark.parametrize("halves", [1, 2])
-def test_nothing_exceeds_what_is_reachable(halves: int) -> None:
-    modal = histories(halves)
+@pytest.mark.parametrize("parities", [1, 2])
+def test_nothing_exceeds_what_is_reachable(parities: int) -> None:
+    modal = histories(parities)
     highest = np.abs(plain(modal)).max(axis=0)
     assert np.all(highest <= reachable(modal) * (1 + 1e-12))
-    alone = np.zeros((halves, 5, 1))
-    alone[:, 3, 0] = [3.0, 4.0][:halves]
-    assert reachable(alone) == pytest.approx(np.hypot(*alone[:, 3, 0]) if halves == 2 else 3.0)
+    alone = np.zeros((parities, 5, 1))
+    alone[:, 3, 0] = [3.0, 4.0][:parities]
+    assert reachable(alone) == pytest.approx(np.hypot(*alone[:, 3, 0]) if parities == 2 else 3.0)
 
 
-@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("parities", [1, 2])
 @pytest.mark.parametrize("seed", range(5))
-def test_crest_is_the_largest_of_the_whole_field(halves: int, seed: int) -> None:
-    modal = histories(halves, seed=seed)
+def test_crest_is_the_largest_of_the_whole_field(parities: int, seed: int) -> None:
+    modal = histories(parities, seed=seed)
     field = np.abs(plain(modal))
     place, instant = np.unravel_index(field.argmax(), field.shape)
-    found = crest(modal)
+    found = peak_on_circle(modal)
     assert found is not None
     assert (found.place, found.instant) == (place, instant)
     assert found.value == pytest.approx(field.max(), rel=1e-12)
@@ -82,34 +82,34 @@ def test_crest_is_found_where_few_instants_promise_it() -> None:
     modal[0, 0, 300] = 0.9
     highest = np.abs(plain(modal))
     assert highest[:, 100].max() < 0.9
-    assert crest(modal) == Crest(0.9, 0, 300)
+    assert peak_on_circle(modal) == CirclePeak(0.9, 0, 300)
 
 
 def test_crest_of_equal_values_is_the_first() -> None:
     modal = np.zeros((1, 3, SEVERAL))
     modal[0, 0, 7::40] = -2.0
-    assert crest(modal) == Crest(2.0, 0, 7)
+    assert peak_on_circle(modal) == CirclePeak(2.0, 0, 7)
 
 
 def test_crest_of_nothing() -> None:
-    assert crest(np.zeros((2, 4, 30))) == Crest(0.0, 0, 0)
-    assert crest(np.zeros((2, 4, 30)), above=0.0) is None
+    assert peak_on_circle(np.zeros((2, 4, 30))) == CirclePeak(0.0, 0, 0)
+    assert peak_on_circle(np.zeros((2, 4, 30)), above=0.0) is None
 
 
 @pytest.mark.parametrize("times", [1, 3])
 def test_crest_of_few_instants(times: int) -> None:
     modal = histories(2)[..., 150 : 150 + times]
-    found = crest(modal)
+    found = peak_on_circle(modal)
     assert found is not None
     assert found.value == pytest.approx(np.abs(plain(modal)).max(), rel=1e-12)
 
 
 def test_crest_above_a_limit() -> None:
     modal = histories(1)
-    largest = crest(modal)
+    largest = peak_on_circle(modal)
     assert largest is not None
-    assert crest(modal, above=0.999 * largest.value) == largest
-    assert crest(modal, above=largest.value) is None
+    assert peak_on_circle(modal, above=0.999 * largest.value) == largest
+    assert peak_on_circle(modal, above=largest.value) is None
     reach = float(reachable(modal).max())
     assert largest.value < 0.9 * reach, "the orders must not add up, or the next line shows nothing"
-    assert crest(modal, above=0.5 * (largest.value + reach)) is None
+    assert peak_on_circle(modal, above=0.5 * (largest.value + reach)) is None

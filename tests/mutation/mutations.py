@@ -322,8 +322,8 @@ MUTATIONS = (
     Mutation(
         "saturation-beta",
         "solver/saturation.py",
-        "np.tile(np.where(orders == 0, 2.0, 1.0), halves)",
-        "np.tile(np.where(orders == 0, 1.0, 1.0), halves)",
+        "np.tile(np.where(orders == 0, 2.0, 1.0), parities)",
+        "np.tile(np.where(orders == 0, 1.0, 1.0), parities)",
         "projection of what saturated actuators give: beta of order 0",
         "solver/test_saturation.py",
     ),

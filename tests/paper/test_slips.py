@@ -18,7 +18,7 @@ from coaxshell.paper.slips.switches import slipped
 from coaxshell.paper.slips.waves import PrintedPotential
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import incident_wave
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra
 
@@ -87,7 +87,7 @@ def test_an_absorber_without_projection_is_one_whose_force_is_larger():
     system = BARE.replace(absorbers=[cx.Absorber(angle=0, mass=10, linear_stiffness=1e9, damping=1e4)])
     response = simulate(system, TINY, frozenset({"missing-projection"}))
     problem, grid = dimensionless(system), LaplaceGrid(TINY.time_step, 250)
-    structure = PreparedStructure(problem, grid, TINY.modes)
+    structure = StructureSpectra(problem, grid, TINY.modes)
     scales, s = problem.scales, grid.nodes
     law = (1e9 + 1e4 * s / scales.time) / scales.pressure
     mass = 10.0 * scales.velocity**2 / (scales.pressure * scales.length**2) * s**2
@@ -122,8 +122,8 @@ def test_exact_and_marched_rings_agree(slips):
 def test_cosines_only_are_two_halves_of_an_absorber(cubic):
     law = {"mass": 10.0, "damping": 1e4, "linear_stiffness": 1e9, "cubic_stiffness": cubic}
     alone = BARE.replace(absorbers=[cx.Absorber(angle=25, **law)])
-    halves = BARE.replace(absorbers=[cx.Absorber(angle=a, **{name: value / 2 for name, value in law.items()}) for a in (25, -25)])
-    slipped, pair = simulate(alone, TINY, frozenset({"cosine-only"})), solved(halves)
+    parities = BARE.replace(absorbers=[cx.Absorber(angle=a, **{name: value / 2 for name, value in law.items()}) for a in (25, -25)])
+    slipped, pair = simulate(alone, TINY, frozenset({"cosine-only"})), solved(parities)
     for shell in ("inner", "outer"):
         same(stress(slipped, shell), stress(pair, shell), 1e-7)
         assert np.abs(stress(slipped, shell) - stress(solved(alone), shell)).max() > 1e-3 * np.abs(stress(pair, shell)).max()

@@ -48,9 +48,9 @@ def limit(name: str, case: Case) -> float:
 
 
 def mismatch(found: np.ndarray, expected: np.ndarray) -> float:
-    """Return |found - expected|/|expected| of modal amplitudes (shells, halves, M + 1, T), all shells together; a missing half is zero."""
-    halves = max(found.shape[1], expected.shape[1])
-    found, expected = (np.pad(x, [(0, 0), (0, halves - x.shape[1]), (0, 0), (0, 0)]) for x in (found, expected))
+    """Return |found - expected|/|expected|, modal amplitudes (shells, parities, M + 1, T), all shells in one; a missing parity is zero."""
+    parities = max(found.shape[1], expected.shape[1])
+    found, expected = (np.pad(x, [(0, 0), (0, parities - x.shape[1]), (0, 0), (0, 0)]) for x in (found, expected))
     size = float(np.linalg.norm(expected))
     return float(np.linalg.norm(found - expected)) / size if size else float(np.linalg.norm(found))
 
@@ -154,8 +154,8 @@ def superposition(case: Case, response: cx.Response) -> float | None:
     if len(case.system.sources) < 2 or "cubic" in case.kind or "saturated" in case.kind:
         return None
     parts = [run(case, case.system.replace(source=one)) for one in case.system.sources]
-    halves = max(part.shape[1] for part in parts)
-    return mismatch(sum(np.pad(x, [(0, 0), (0, halves - x.shape[1]), (0, 0), (0, 0)]) for x in parts), response.solution.normal)
+    parities = max(part.shape[1] for part in parts)
+    return mismatch(sum(np.pad(x, [(0, 0), (0, parities - x.shape[1]), (0, 0), (0, 0)]) for x in parts), response.solution.normal)
 
 
 def delay(case: Case, response: cx.Response) -> float:

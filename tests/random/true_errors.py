@@ -14,7 +14,7 @@ NOISE = 1e-10
 
 
 def motions(response: cx.Response, every: int = 1) -> np.ndarray:
-    """Return modal displacement and strain, shape (shells, 2, halves, M + 1, T): what the printed errors are about."""
+    """Return modal displacement and strain, shape (shells, 2, parities, M + 1, T): what the printed errors are about."""
     w, v = (x[..., ::every] for x in (response.solution.normal, response.solution.tangential))
     m = np.arange(w.shape[2])[:, None]
     return np.stack([w, m * v - w], axis=1)
@@ -22,11 +22,11 @@ def motions(response: cx.Response, every: int = 1) -> np.ndarray:
 
 def distance(found: np.ndarray, true: np.ndarray) -> np.ndarray:
     """Return the relative L2 distance over surface and time, shape (shells, 2); NaN for a rigid shell."""
-    halves, orders = (max(found.shape[i], true.shape[i]) for i in (2, 3))
+    parities, orders = (max(found.shape[i], true.shape[i]) for i in (2, 3))
     steps = min(found.shape[4], true.shape[4])
 
     def padded(x: np.ndarray) -> np.ndarray:
-        full = np.zeros((*x.shape[:2], halves, orders, steps))
+        full = np.zeros((*x.shape[:2], parities, orders, steps))
         full[:, :, : x.shape[2], : x.shape[3]] = x[..., :steps]
         return full
 

@@ -51,7 +51,7 @@ def rates_of(phase: np.ndarray, frequency: np.ndarray, time: np.ndarray) -> np.n
 def make() -> Callable[..., ModalSolution]:
     """Return a maker of solutions: amplitudes 1e-4 sin(omega t + phase)/(1 + m), at random but repeatable."""
 
-    def build(system: System | None = None, *, halves: int = 2, modes: int = M, steps: int = STEPS, rates: bool = False) -> ModalSolution:
+    def build(system: System | None = None, *, parities: int = 2, modes: int = M, steps: int = STEPS, rates: bool = False) -> ModalSolution:
         system = system_of() if system is None else system
         problem = dimensionless(system.replace(control=None))
         gains = None if system.control is None else ControlGains(system.control.proportional, system.control.derivative)
@@ -59,7 +59,7 @@ def make() -> Callable[..., ModalSolution]:
         problem = replace(problem, system=system, shells=elastic)
         random = np.random.default_rng(7)
         time = STEP * np.arange(steps + 1)
-        shape = (len(problem.shells), halves, modes + 1)
+        shape = (len(problem.shells), parities, modes + 1)
         scale = 1e-4 / (1 + np.arange(modes + 1.0))[:, None]
         parts = {}
         for name in ("normal", "tangential"):
@@ -106,7 +106,7 @@ def rigid_core(make: Callable[..., ModalSolution]) -> Response:
         fluids=["vacuum", WATER, WATER],
         source=SOURCE,
     )
-    return Response(make(system, halves=1))
+    return Response(make(system, parities=1))
 
 
 @pytest.fixture(scope="session")

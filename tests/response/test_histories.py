@@ -42,7 +42,7 @@ def test_design_stress_is_eq_22(response: Response) -> None:
 
 
 def test_inward_displacement_compresses(response: Response, make: object) -> None:
-    solution = make(halves=1)
+    solution = make(parities=1)
     solution.tangential[:] = 0.0
     solution.normal[:, :, 0] = 1.0
     solution.normal[:, :, 1:] = 0.0

@@ -18,10 +18,10 @@ from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.link_motion import marched_motion
 from coaxshell.solver.march import march
 from coaxshell.solver.newton import ConvergenceError, ImplicitStep
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.studies.reading import Reading
+from coaxshell.studies.reading import MetricSource
 
 pytestmark = pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 
@@ -62,7 +62,7 @@ def test_what_they_take_is_force_squared_over_damping(damping: float, cubic: flo
     seconds = 0.005 * dimensionless(system()).scales.time
     expected = float(np.trapezoid((fine.to_numpy() ** 2).sum(axis=(0, 1)), dx=seconds)) / damping
     found = solved(damping, cubic_stiffness=cubic)
-    assert Reading(found).dissipated_energy == pytest.approx(expected, rel=limit)
+    assert MetricSource(found).dissipated_energy == pytest.approx(expected, rel=limit)
     assert balance(damping, cubic_stiffness=cubic)["damper_dissipation"][-1] == pytest.approx(expected, rel=limit)
 
 
@@ -116,4 +116,4 @@ def test_only_what_is_there_is_called_too_stiff_for_the_step(preset: str, blamed
     problem = dimensionless(found)
     links = absorber_set(problem, found.absorber_list, 1)
     with pytest.raises(InputError, match=f"too coarse for the {blamed}: their forces"):
-        march(PreparedStructure(problem, LaplaceGrid(0.02, 20), 3), links, saturate=True)
+        march(StructureSpectra(problem, LaplaceGrid(0.02, 20), 3), links, saturate=True)

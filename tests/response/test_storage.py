@@ -45,7 +45,7 @@ def test_round_trip(response: Response, tmp_path: Path, compression: bool) -> No
 
 
 def test_round_trip_without_absorbers(make: Callable[..., ModalSolution], rigid_core: Response, tmp_path: Path) -> None:
-    solution = make(rigid_core.system, halves=1)
+    solution = make(rigid_core.system, parities=1)
     solution.normal[0, 0, 1, 4] = -0.0
     path = Response(solution).save(str(tmp_path / "run.nc"))
     loaded = load_response(str(path)).solution
@@ -54,7 +54,7 @@ def test_round_trip_without_absorbers(make: Callable[..., ModalSolution], rigid_
 
 
 def test_a_file_with_nan_is_refused(make: Callable[..., ModalSolution], rigid_core: Response, tmp_path: Path) -> None:
-    solution = make(rigid_core.system, halves=1)
+    solution = make(rigid_core.system, parities=1)
     solution.normal[0, 0, 1, 3] = np.nan
     path = save(solution, tmp_path / "run.nc")
     with pytest.raises(InputError, match=r"run.nc: the normal displacement is nan first at shell 0, half 0, order 1, t = "):

@@ -102,7 +102,7 @@ def test_resultants_do_the_work_of_the_modal_stiffness(lopsided_section: Section
 
 def test_by_hand_in_every_layer(make: Callable[..., ModalSolution]) -> None:
     """Compare a response of order 2 alone with strain, modulus and potential written out with the materials' own constants."""
-    solution = make(System(shells=[Shell(radius=0.5, layers=_layers())], fluids=[VACUUM, WATER], source=SOURCE), halves=1)
+    solution = make(System(shells=[Shell(radius=0.5, layers=_layers())], fluids=[VACUUM, WATER], source=SOURCE), parities=1)
     for part in (solution.normal, solution.tangential):
         part[:, :, :2] = part[:, :, 3:] = 0.0
     w, v = 0.5 * solution.normal[0, 0, 2], 0.5 * solution.tangential[0, 0, 2]  # metres: a = 0.5 m

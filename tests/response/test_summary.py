@@ -18,10 +18,10 @@ from coaxshell.solver.solution import ModalSolution
 FINE = np.arange(-180.0, 180.0, 0.025) + 0.025
 
 
-@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("parities", [1, 2])
 @pytest.mark.parametrize("window", [None, (0.5, 1.2)])
-def test_peaks_and_rms(make: Callable[..., ModalSolution], halves: int, window: tuple[float, float] | None) -> None:
-    response = Response(make(halves=halves))
+def test_peaks_and_rms(make: Callable[..., ModalSolution], parities: int, window: tuple[float, float] | None) -> None:
+    response = Response(make(parities=parities))
     summary, means = response.summary(window, segment="point"), response.summary(window, segment="90 mm")
     for i, shell in enumerate(summary.shells):
         field = response.stress(i, FINE).sel(time=slice(*(-1, 9) if window is None else (window[0] - 1e-9, window[1] + 1e-9)))
@@ -65,7 +65,7 @@ def test_head_is_where_the_first_source_is(make: Callable[..., ModalSolution], r
 
 
 def test_symmetric_peaks_are_told_between_head_and_tail(make: Callable[..., ModalSolution]) -> None:
-    solution = make(halves=1)
+    solution = make(parities=1)
     solution.tangential[:] = 0.0
     solution.normal[:, :, 1:] = 0.0
     assert all(0.0 <= shell.stress.angle <= 180.0 for shell in Response(solution).summary().shells)

@@ -28,12 +28,12 @@ def modal() -> np.ndarray:
     return values
 
 
-@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("parities", [1, 2])
 @pytest.mark.parametrize("component", ["normal", "tangential"])
-def test_at_angles_is_the_plain_sum(modal: np.ndarray, halves: int, component: str) -> None:
-    modal = modal[:halves]
+def test_at_angles_is_the_plain_sum(modal: np.ndarray, parities: int, component: str) -> None:
+    modal = modal[:parities]
     expected = [[plain_sum(modal, theta, k, component) for theta in ANGLES] for k in range(5)]
-    np.testing.assert_allclose(at_angles(modal, angle_basis(ANGLES, 9, halves, component)), expected, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(at_angles(modal, angle_basis(ANGLES, 9, parities, component)), expected, rtol=0, atol=1e-13)
 
 
 def test_head_and_tail_are_exact() -> None:
@@ -45,10 +45,10 @@ def test_head_and_tail_are_exact() -> None:
     np.testing.assert_array_equal(basis[2, 0, :4], [1, 0, -1, 0])
 
 
-@pytest.mark.parametrize("halves", [1, 2])
-def test_mean_square_is_the_mean_over_pixels(modal: np.ndarray, halves: int) -> None:
-    modal = modal[:halves]
-    field = at_angles(modal, angle_basis(np.arange(0.0, 360.0, 0.5), 9, halves))
+@pytest.mark.parametrize("parities", [1, 2])
+def test_mean_square_is_the_mean_over_pixels(modal: np.ndarray, parities: int) -> None:
+    modal = modal[:parities]
+    field = at_angles(modal, angle_basis(np.arange(0.0, 360.0, 0.5), 9, parities))
     np.testing.assert_allclose(mean_square(modal), (field**2).mean(axis=1), rtol=1e-13)
 
 

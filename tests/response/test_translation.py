@@ -16,9 +16,9 @@ from coaxshell.solver.solution import ModalSolution
 AROUND = np.arange(0.0, 360.0, 2.0)
 
 
-@pytest.mark.parametrize("halves", [1, 2])
-def test_translation_is_the_mean_motion_of_the_section(make: Callable[..., ModalSolution], halves: int) -> None:
-    response = Response(make(halves=halves))
+@pytest.mark.parametrize("parities", [1, 2])
+def test_translation_is_the_mean_motion_of_the_section(make: Callable[..., ModalSolution], parities: int) -> None:
+    response = Response(make(parities=parities))
     inward, along = (response.displacement(1, AROUND, component).values for component in ("normal", "tangential"))
     cosine, sine = np.cos(np.radians(AROUND)), np.sin(np.radians(AROUND))
     expected = np.stack([(-inward * cosine - along * sine).mean(axis=1), (-inward * sine + along * cosine).mean(axis=1)], axis=1)
@@ -52,7 +52,7 @@ def test_a_shell_that_only_translates_is_not_deformed(make: Callable[..., ModalS
 
 
 def test_breathing_and_the_rest_of_order_1_are_left(make: Callable[..., ModalSolution]) -> None:
-    solution = make(halves=1)
+    solution = make(parities=1)
     solution.normal[:, :, 2:] = 0.0
     solution.tangential[:] = 0.0
     w = solution.problem.scales.length * solution.normal[0, 0]
@@ -73,7 +73,7 @@ def test_breathing_and_the_rest_of_order_1_are_left(make: Callable[..., ModalSol
     ids=["drift", "ringing", "faster", "settled", "back", "none"],
 )
 def test_what_still_grows(make: Callable[..., ModalSolution], history: Callable[[np.ndarray], np.ndarray], grows: bool) -> None:
-    solution = make(halves=1)
+    solution = make(parities=1)
     solution.normal[:, :, 1] = solution.tangential[:, :, 1] = history(solution.time / solution.time[-1])
     assert still_grows(solution, 0, slice(0, len(solution.time))) is grows
     assert Response(solution).summary().shells[0].displacement_head.growing >= grows

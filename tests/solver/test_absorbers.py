@@ -11,7 +11,7 @@ import coaxshell as cx
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.linked import solve_linked
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 
 SETTINGS = {"duration": 1.5, "time_step": 5e-3, "modes": 20}
@@ -44,20 +44,20 @@ def test_dimensionless_constants() -> None:
 
 
 @pytest.mark.parametrize(
-    ("angles", "carried", "halves"),
+    ("angles", "carried", "parities"),
     [
         ([0], 1, 1), ([180], 1, 1), ([0, 180], 2, 1), ([30, -30], 1, 1), ([30, 330], 1, 1), ([30], 1, 2), ([30, -31], 2, 2),
         ([90, 270, 0], 2, 1), ([0, 0], 2, 1), ([], 0, 1),
     ],
 )  # fmt: skip
-def test_mirror_images_are_carried_once(angles: list[float], carried: int, halves: int) -> None:
+def test_mirror_images_are_carried_once(angles: list[float], carried: int, parities: int) -> None:
     absorbers = tuple(cx.Absorber(angle=angle, **CUBIC) for angle in angles)
     links = absorber_set(dimensionless(BARE), absorbers, 1)
-    assert (links.count, links.halves) == (carried, halves)
+    assert (links.count, links.parities) == (carried, parities)
     assert links.multiplicity.sum() == len(angles)
     assert len(links.member) == len(angles)
     off_axis = absorber_set(dimensionless(BARE), absorbers, 2)
-    assert (off_axis.count, off_axis.halves) == (len(angles), 2)
+    assert (off_axis.count, off_axis.parities) == (len(angles), 2)
 
 
 def test_evaluation_and_projection_are_adjoint() -> None:
@@ -97,7 +97,7 @@ def test_a_ring_keeps_mirror_symmetry(count: int, law: dict[str, float]) -> None
 @pytest.mark.parametrize("law", [LINEAR, CUBIC], ids=["linear", "cubic"])
 def test_both_halves_give_the_same_to_rounding(law: dict[str, float]) -> None:
     problem = dimensionless(BARE)
-    structure = PreparedStructure(problem, LaplaceGrid(5e-3, 200), 20)
+    structure = StructureSpectra(problem, LaplaceGrid(5e-3, 200), 20)
     absorbers = cx.absorber_ring(6, **law).absorbers
     folded = solve_linked(structure, absorber_set(problem, absorbers, 1))
     whole = solve_linked(structure, absorber_set(problem, absorbers, 2))
@@ -124,9 +124,9 @@ def test_turning_everything_turns_the_answer(turn: float) -> None:
 def test_one_absorber_in_a_cosine_series_stands_for_two_of_half_strength(law: dict[str, float]) -> None:
     # The paper's Fig. 8 (theory manual, slips): one absorber off the axis in a cosine-only series.
     problem = dimensionless(BARE)
-    structure = PreparedStructure(problem, LaplaceGrid(5e-3, 200), 20)
+    structure = StructureSpectra(problem, LaplaceGrid(5e-3, 200), 20)
     full = absorber_set(problem, (cx.Absorber(angle=40, **law),), 1)
-    cosine_only = replace(full, halves=1)
+    cosine_only = replace(full, parities=1)
     half = {name: value / 2 for name, value in law.items()}
     pair = absorber_set(problem, (cx.Absorber(angle=40, **half), cx.Absorber(angle=-40, **half)), 1)
     one, two = (solve_linked(structure, links, exact=False) for links in (cosine_only, pair))

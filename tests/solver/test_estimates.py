@@ -62,7 +62,7 @@ GAP = cx.System(
 
 
 def motions(response: cx.Response, every: int = 1) -> np.ndarray:
-    """Return displacement and strain, shape (shells, 2, halves, M + 1, T)."""
+    """Return displacement and strain, shape (shells, 2, parities, M + 1, T)."""
     w, v = (x[..., ::every] for x in (response.solution.normal, response.solution.tangential))
     return np.stack([w, np.arange(w.shape[2])[:, None] * v - w], axis=1)
 

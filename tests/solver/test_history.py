@@ -10,7 +10,7 @@ import coaxshell as cx
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.history import HistorySum, KernelTable
 from coaxshell.solver.kernels import exponential_weights, velocity_weights
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 
 
@@ -20,7 +20,7 @@ def march(table: KernelTable, inputs: np.ndarray, block: int = 8) -> np.ndarray:
     sums = []
     for start in range(0, inputs.shape[-1], block):
         pushed = inputs[..., start : start + block]
-        before = history.ahead(pushed.shape[-1]).copy()
+        before = history.forcing(pushed.shape[-1]).copy()
         sums.append(before + history.push(pushed))
     np.testing.assert_array_equal(history.inputs, inputs)
     return np.concatenate(sums, axis=-1)
@@ -54,7 +54,7 @@ def test_the_present_weight_belongs_to_the_block_itself() -> None:
     history = HistorySum(table, 1)
     own = history.push(np.eye(1, 4)[None, None] * np.ones((1, 1, 2, 1)))
     np.testing.assert_allclose(own[:, 0], kernels[0, ..., :4], rtol=1e-14)
-    np.testing.assert_allclose(history.ahead(4)[:, 0], kernels[0, ..., 4:8], rtol=1e-14)
+    np.testing.assert_allclose(history.forcing(4)[:, 0], kernels[0, ..., 4:8], rtol=1e-14)
 
 
 @pytest.mark.parametrize(("decay", "tolerance"), [(1e-6, 1e-11), (0.3, 1e-11), (5.0, 1e-11), (200.0, 1e-11)])
@@ -78,7 +78,7 @@ class TestProductIntegration:
     def error(self, step: float) -> float:
         problem = dimensionless(cx.presets.load("active"))
         grid = LaplaceGrid(step, round(1.6 / step))
-        structure = PreparedStructure(problem, grid, 12)
+        structure = StructureSpectra(problem, grid, 12)
         weights = velocity_weights(problem, grid, structure.compliance)
         s, width, centre = grid.nodes, 0.06, 0.5
         history = np.exp(-(((grid.time - centre) / width) ** 2) / 2)
@@ -100,7 +100,7 @@ def test_weights_cannot_make_energy() -> None:
     # The symbol of a passive shell's own weights has a positive real part at every frequency.
     problem = dimensionless(cx.presets.load("bare"))
     grid = LaplaceGrid(5e-3, 400)
-    weights = velocity_weights(problem, grid, PreparedStructure(problem, grid, 20).compliance)
+    weights = velocity_weights(problem, grid, StructureSpectra(problem, grid, 20).compliance)
     for i in (0, 1):
         damped = weights[i, i] * np.exp(-grid.shift * grid.time)
         symbol = np.fft.rfft(damped, 4 * grid.time.size, axis=-1).real

@@ -10,7 +10,7 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.linear_absorbers import admittance, solve_linear
 from coaxshell.solver.linear_ring import is_ring, solve_ring
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 
 PAPERS = {"mass": 10, "damping": 1e6, "linear_stiffness": 1e9}
@@ -18,13 +18,13 @@ SETTINGS = {"duration": 1.0, "time_step": 1e-2, "modes": 12}
 
 
 @pytest.fixture(scope="module")
-def structure() -> PreparedStructure:
-    return PreparedStructure(dimensionless(cx.presets.load("bare")), LaplaceGrid(1e-2, 100), 12)
+def structure() -> StructureSpectra:
+    return StructureSpectra(dimensionless(cx.presets.load("bare")), LaplaceGrid(1e-2, 100), 12)
 
 
 @pytest.mark.parametrize("offset", [0.0, 7.3])
 @pytest.mark.parametrize("count", [1, 2, 5, 6, 24, 25, 40])
-def test_a_ring_equals_any_layout(structure: PreparedStructure, count: int, offset: float) -> None:
+def test_a_ring_equals_any_layout(structure: StructureSpectra, count: int, offset: float) -> None:
     links = absorber_set(structure.problem, cx.absorber_ring(count, offset=offset, **PAPERS).absorbers, 1)
     assert is_ring(links)
     by_symmetry = solve_ring(structure, links)
@@ -34,7 +34,7 @@ def test_a_ring_equals_any_layout(structure: PreparedStructure, count: int, offs
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * abs(expected).max(), err_msg=name)
 
 
-def test_what_is_no_ring(structure: PreparedStructure) -> None:
+def test_what_is_no_ring(structure: StructureSpectra) -> None:
     ring = list(cx.absorber_ring(6, **PAPERS).absorbers)
     others = (
         ring[:5],
@@ -46,7 +46,7 @@ def test_what_is_no_ring(structure: PreparedStructure) -> None:
         assert not is_ring(absorber_set(structure.problem, tuple(layout), 1))
 
 
-def test_admittance_meets_the_equations_of_motion(structure: PreparedStructure) -> None:
+def test_admittance_meets_the_equations_of_motion(structure: StructureSpectra) -> None:
     links = absorber_set(structure.problem, (cx.Absorber(angle=20, **PAPERS), cx.Absorber(angle=50, mass=0, linear_stiffness=1e8)), 1)
     s = structure.grid.nodes[::10]
     own, other, mass = admittance(links, s)
@@ -66,7 +66,7 @@ def test_no_absorber_is_bare() -> None:
         np.testing.assert_array_equal(without.solution.normal, bare.solution.normal)
 
 
-def test_weak_absorbers_add(structure: PreparedStructure) -> None:
+def test_weak_absorbers_add(structure: StructureSpectra) -> None:
     # To first order in their stiffness, two absorbers act as the sum of each alone.
     one, other = (cx.Absorber(angle=angle, mass=10, linear_stiffness=1e3) for angle in (30, 100))
     system = cx.presets.load("bare")

@@ -10,9 +10,9 @@ import pytest
 import coaxshell as cx
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
-from coaxshell.solver.linked import LinkedSpectra, solve_linked
+from coaxshell.solver.linked import AbsorberSolution, solve_linked
 from coaxshell.solver.march import MarchResult, march
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.saturation import circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
 
@@ -24,7 +24,7 @@ def relative(found: object, expected: object) -> float:
     return float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
 
 
-def strain(structure: PreparedStructure, linked: LinkedSpectra) -> np.ndarray:
+def strain(structure: StructureSpectra, linked: AbsorberSolution) -> np.ndarray:
     """Return m V - W of every mode in time, which the stress is proportional to."""
     orders = np.arange(structure.max_order + 1)[:, None]
     return structure.grid.invert(orders * linked.tangential - linked.normal)
@@ -39,7 +39,7 @@ class TestOrderOfLinearAbsorbers:
     @staticmethod
     def error(step: float) -> float:
         problem = dimensionless(cx.presets.load("bare").replace(absorbers=cx.absorber_ring(5, **PAPERS)))
-        structure = PreparedStructure(problem, LaplaceGrid(step, round(2.0 / step)), 40)
+        structure = StructureSpectra(problem, LaplaceGrid(step, round(2.0 / step)), 40)
         links = absorber_set(problem, problem.system.absorber_list, 1)
         marched = strain(structure, solve_linked(structure, links, exact=False))
         exact = strain(structure, solve_linked(structure, links, exact=True))
@@ -162,7 +162,7 @@ class TestDiscreteLaws:
     """A marched run put back into its own equations: forces by the law of the links, voltages by that of the actuators."""
 
     @staticmethod
-    def answers(structure: PreparedStructure, pressure: np.ndarray) -> np.ndarray:
+    def answers(structure: StructureSpectra, pressure: np.ndarray) -> np.ndarray:
         kernels, steps = structure.kernels_with_voltage.kernels, pressure.shape[-1]
         spectra = np.einsum("ijmk,jhmk->ihmk", np.fft.rfft(kernels, 2 * steps), np.fft.rfft(pressure, 2 * steps))
         return np.fft.irfft(spectra, 2 * steps)[..., :steps]
@@ -176,15 +176,15 @@ class TestDiscreteLaws:
         ring = cx.absorber_ring(7, **PAPERS, cubic_stiffness=cubic)
         problem = dimensionless(hybrid.replace(control=control, source=shock, absorbers=ring))
         grid = LaplaceGrid(4e-3, 150)
-        structure = PreparedStructure(problem, grid, 30)
+        structure = StructureSpectra(problem, grid, 30)
         links = absorber_set(problem, problem.system.absorber_list, 1 if angle == 0.0 else 2)
         found = march(structure, links, saturate=True)
         answers = self.answers(structure, found.modal_pressure)
         self.check_actuators(structure, links, found, answers[2:])
         self.check_links(structure.open_loop, links, found, answers[:2])
 
-    def check_actuators(self, structure: PreparedStructure, links: AbsorberSet, found: MarchResult, asked: np.ndarray) -> None:
-        evaluate, project = circle(structure.max_order + 1, links.halves)
+    def check_actuators(self, structure: StructureSpectra, links: AbsorberSet, found: MarchResult, asked: np.ndarray) -> None:
+        evaluate, project = circle(structure.max_order + 1, links.parities)
         linear = structure.voltage_without_actuators
         asked[:, : linear.shape[1]] += linear
         assert found.saturated
@@ -197,7 +197,7 @@ class TestDiscreteLaws:
             given = found.actuation[shell].reshape(expected.shape)
             np.testing.assert_allclose(given[:, 1:], expected[:, 1:], rtol=0, atol=1e-9 * abs(given).max())
 
-    def check_links(self, structure: PreparedStructure, links: AbsorberSet, found: MarchResult, velocity: np.ndarray) -> None:
+    def check_links(self, structure: StructureSpectra, links: AbsorberSet, found: MarchResult, velocity: np.ndarray) -> None:
         points, n = InterfacePoints(structure.problem, links, structure.max_order), links.count
         half = 0.5 * structure.grid.time_step
         v, pull = points.evaluate(velocity), found.force[:n] + found.force[n:]
@@ -213,7 +213,7 @@ class TestDiscreteLaws:
 
 def test_linear_absorbers_are_marched_only_when_asked() -> None:
     problem = dimensionless(cx.presets.load("absorbers").replace(absorbers=cx.absorber_ring(5, **PAPERS)))
-    structure = PreparedStructure(problem, LaplaceGrid(1e-2, 100), 10)
+    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 100), 10)
     links = absorber_set(problem, problem.system.absorber_list, 1)
     assert solve_linked(structure, links).iterations == 0
     assert solve_linked(structure, links, exact=False).iterations >= 100

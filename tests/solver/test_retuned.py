@@ -11,8 +11,8 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.solver import coupling, excitation
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.shared_parts import shared_parts
 from coaxshell.solver.solve import Prepared, solve
-from coaxshell.solver.workshop import Workshop
 
 SETTINGS = Settings(duration=1.0, time_step=5e-3, modes=15)
 RING = cx.absorber_ring(5, mass=10, damping=2e5, linear_stiffness=1e9, cubic_stiffness=1e21)
@@ -157,20 +157,20 @@ def test_retunable_shares_from_its_first_retuning_on(counted: dict[str, int]) ->
     np.testing.assert_array_equal(response.stress("inner"), cx.simulate(ACTIVE, **settings).stress("inner"))
 
 
-class TestWorkshop:
+class TestSharedParts:
     def test_it_keeps_and_lets_go_of_the_longest_unused(self) -> None:
-        workshop, made = Workshop(room=3 * 80), []
+        shared, made = shared_parts(room=3 * 80), []
 
         def part(name: str) -> np.ndarray:
-            return workshop.part(name, lambda: made.append(name) or np.zeros(10))
+            return shared.get_or_make(name, lambda: made.append(name) or np.zeros(10))
 
         first = part("a")
         part("b")
         part("c")
         assert part("a") is first
-        assert workshop.taken == 240
+        assert shared.bytes == 240
         part("d")  # b goes
-        assert workshop.taken == 240
+        assert shared.bytes == 240
         for name in "acd":
             part(name)
         assert made == list("abcd")
@@ -178,6 +178,6 @@ class TestWorkshop:
         assert made == list("abcdb")
 
     def test_what_is_larger_than_the_room_is_not_kept(self) -> None:
-        workshop = Workshop(room=79)
-        workshop.part("a", lambda: np.zeros(10))
-        assert workshop.taken == 0
+        shared = shared_parts(room=79)
+        shared.get_or_make("a", lambda: np.zeros(10))
+        assert shared.bytes == 0

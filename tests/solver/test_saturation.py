@@ -12,25 +12,25 @@ from coaxshell.solver.scaling import dimensionless
 MODES = 7
 
 
-def amplitudes(halves: int) -> np.ndarray:
-    """Return amplitudes (halves, MODES) whose sum passes 1 here and there; order 0 has no sine."""
-    values = np.random.default_rng(3).normal(size=(halves, MODES))
+def amplitudes(parities: int) -> np.ndarray:
+    """Return amplitudes (parities, MODES) whose sum passes 1 here and there; order 0 has no sine."""
+    values = np.random.default_rng(3).normal(size=(parities, MODES))
     values[1:, 0] = 0.0
     return values
 
 
-@pytest.mark.parametrize("halves", [1, 2])
-def test_to_the_circle_and_back(halves: int) -> None:
-    evaluate, project = circle(MODES, halves)
-    given = amplitudes(halves).ravel()
+@pytest.mark.parametrize("parities", [1, 2])
+def test_to_the_circle_and_back(parities: int) -> None:
+    evaluate, project = circle(MODES, parities)
+    given = amplitudes(parities).ravel()
     np.testing.assert_allclose(project @ (evaluate @ given), given, rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("halves", [1, 2])
-def test_what_limited_voltages_give(halves: int) -> None:
-    given = amplitudes(halves)
+@pytest.mark.parametrize("parities", [1, 2])
+def test_what_limited_voltages_give(parities: int) -> None:
+    given = amplitudes(parities)
     theta = np.linspace(0.0, 2.0 * np.pi, 20_001)
-    shapes = np.stack([np.cos, np.sin][:halves], dtype=object)
+    shapes = np.stack([np.cos, np.sin][:parities], dtype=object)
     basis = np.array([[shape(m * theta) for m in range(MODES)] for shape in shapes])
     volts = np.einsum("hm,hmt->t", given, basis)
     assert volts.max() > 1.5
@@ -38,8 +38,8 @@ def test_what_limited_voltages_give(halves: int) -> None:
     cut = np.where(volts > 1.0, 1.0, np.where(volts < -1.0, -1.0, volts))
     expected = np.trapezoid(cut * basis, theta, axis=-1) / np.pi
     expected[:, 0] /= 2.0
-    law = LimitedVoltages(1, halves, MODES)
-    found = law.excess(given.ravel()).reshape(halves, MODES)
+    law = LimitedVoltages(1, parities, MODES)
+    found = law.nonlinear_part(given.ravel()).reshape(parities, MODES)
     assert law.saturated
     # Corners of the clipped voltage lie between the points of the circle: second order in their distance, 2 degrees or less.
     np.testing.assert_allclose(found, expected, rtol=0, atol=6e-4 * np.abs(expected).max())
@@ -47,7 +47,7 @@ def test_what_limited_voltages_give(halves: int) -> None:
 
 def test_voltages_within_the_limit_are_given() -> None:
     law, volts = LimitedVoltages(1, 1, MODES), np.full(MODES, 0.99 / MODES)
-    np.testing.assert_array_equal(law.excess(volts), volts)
+    np.testing.assert_array_equal(law.nonlinear_part(volts), volts)
     assert not law.saturated
 
 

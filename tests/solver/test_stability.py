@@ -32,7 +32,7 @@ def controlled(proportional: float, derivative: float, **changes: object) -> cx.
 )
 def test_refused_before_any_march(gains: tuple[float, float], words: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     module = sys.modules["coaxshell.solver.solve"]  # the room's own name for it is the function
-    monkeypatch.setattr(module, "PreparedStructure", lambda *_, **__: pytest.fail("the work was started"))
+    monkeypatch.setattr(module, "StructureSpectra", lambda *_, **__: pytest.fail("the work was started"))
     with pytest.raises(InputError, match="makes the closed loop unstable") as raised:
         cx.simulate(controlled(*gains), duration=2, time_step=5e-3, modes=30)
     for word in (*words, "negative gains stiffen and damp"):

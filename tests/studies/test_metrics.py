@@ -9,7 +9,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.studies.metrics import metric_names, metrics_of
-from coaxshell.studies.reading import Reading
+from coaxshell.studies.reading import MetricSource
 
 SUMMARY = {
     "peak_stress": lambda shell: shell.stress.value,
@@ -39,7 +39,7 @@ def response(hybrid, quick):
 
 @pytest.fixture(scope="module")
 def value(response):
-    return lambda name: metrics_of([name], response.system)[0](Reading(response))
+    return lambda name: metrics_of([name], response.system)[0](MetricSource(response))
 
 
 @pytest.mark.parametrize("quantity", SUMMARY)
@@ -90,7 +90,7 @@ def test_functions_of_the_user(response, tmp_path):
     (tmp_path / "mine.py").write_text('def twice(response):\n    """Twice two."""\n    return 4\n\n\ntwice.units = "Pa"\n')
     asked = {"ratio": head_to_tail, "four": f"{tmp_path / 'mine.py'}:twice", "stress": "inner.peak_stress"}
     ratio, four, stress = metrics_of(asked, response.system)
-    reading = Reading(response)
+    reading = MetricSource(response)
     assert ratio(reading) == head_to_tail(response)
     assert ratio.long_name == "Return the ratio of the head's stress to the tail's"
     assert (four(reading), four.units, four.long_name) == (4.0, "Pa", "Twice two")

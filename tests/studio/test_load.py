@@ -25,9 +25,9 @@ def test_many_clients_moving_sliders(client):
 def test_what_is_kept_is_bounded():
     import numpy as np
 
-    from coaxshell.numerics.cache import Cache, held_bytes
+    from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
 
-    cache = Cache(1000, held_bytes)
+    cache = ByteBoundedCache(1000, held_bytes)
     for number in range(50):
         cache.put(number, np.zeros(30))
         assert cache.bytes <= 1000

@@ -1,6 +1,6 @@
 """Sums of circumferential orders over the whole circle by FFT, and the largest of them.
 
-A modal array has the shape (halves, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
+A modal array has the shape (parities, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ FINE = 40
 """Steps into which a step of the circle is cut around the largest value found on it."""
 
 
-class Crest(NamedTuple):
+class CirclePeak(NamedTuple):
     """The largest magnitude on the circle: its value, the index of its angle in :func:`circle_angles` and that of its instant."""
 
     value: float
@@ -27,7 +27,7 @@ class Crest(NamedTuple):
     instant: int
 
 
-def circle_angles(orders: int, halves: int, *, finer: int = 1) -> FloatArray:
+def circle_angles(orders: int, parities: int, *, finer: int = 1) -> FloatArray:
     """Return the angles in degrees of :func:`on_circle`: steps of 1 degree or a whole fraction of it, four to the shortest wave at least.
 
     0 to 180 for one half (the rest is its mirror image), 0 to below 360 for two.
@@ -36,13 +36,13 @@ def circle_angles(orders: int, halves: int, *, finer: int = 1) -> FloatArray:
     ----------
     orders : int
         M + 1.
-    halves : int
+    parities : int
         1 or 2.
     finer : int
         Times as many to the shortest wave.
     """
     count = 360 * max(1, -(-4 * finer * orders // 360))
-    return np.arange(count // 2 + 1 if halves == 1 else count, dtype=np.float64) * (360.0 / count)
+    return np.arange(count // 2 + 1 if parities == 1 else count, dtype=np.float64) * (360.0 / count)
 
 
 def on_circle(modal: FloatArray, *, finer: int = 1) -> FloatArray:
@@ -50,7 +50,7 @@ def on_circle(modal: FloatArray, *, finer: int = 1) -> FloatArray:
 
     Parameters
     ----------
-    modal : ndarray, shape (halves, M + 1, T)
+    modal : ndarray, shape (parities, M + 1, T)
     finer : int
         As for the angles.
 
@@ -58,9 +58,9 @@ def on_circle(modal: FloatArray, *, finer: int = 1) -> FloatArray:
     -------
     ndarray, shape (angles, T)
     """
-    halves, orders, times = modal.shape
-    points = len(circle_angles(orders, halves, finer=finer))
-    if halves == 1:  # even: the cosine transform does half the work
+    parities, orders, times = modal.shape
+    points = len(circle_angles(orders, parities, finer=finer))
+    if parities == 1:  # even: the cosine transform does half the work
         cosine = np.zeros((points, times))
         cosine[0] = modal[0, 0]
         cosine[1:orders] = 0.5 * modal[0, 1:]
@@ -76,14 +76,14 @@ def reachable(modal: FloatArray) -> FloatArray:
     return np.asarray((np.abs(modal[0]) if len(modal) == 1 else np.hypot(*modal)).sum(axis=0), dtype=np.float64)
 
 
-def crest(modal: FloatArray, *, above: float = -1.0, finer: int = 1) -> Crest | None:
+def peak_on_circle(modal: FloatArray, *, above: float = -1.0, finer: int = 1) -> CirclePeak | None:
     """Return the largest magnitude of a sum of orders over the circle and all instants, the first if there are several.
 
     Few instants can reach the largest value: a few of the most promising ones are summed first, then those that can reach more.
 
     Parameters
     ----------
-    modal : ndarray, shape (halves, M + 1, T)
+    modal : ndarray, shape (parities, M + 1, T)
     above : float
         Values up to this one do not count.
     finer : int
@@ -103,7 +103,7 @@ def crest(modal: FloatArray, *, above: float = -1.0, finer: int = 1) -> Crest | 
     field = np.abs(on_circle(modal[..., instants], finer=finer))
     place, which = np.unravel_index(int(field.argmax()), field.shape)
     value = float(field[place, which])
-    return Crest(value, int(place), int(instants[which])) if value > above else None
+    return CirclePeak(value, int(place), int(instants[which])) if value > above else None
 
 
 def around(modal: FloatArray, place: int) -> tuple[FloatArray, FloatArray]:
@@ -111,16 +111,16 @@ def around(modal: FloatArray, place: int) -> tuple[FloatArray, FloatArray]:
 
     Parameters
     ----------
-    modal : ndarray, shape (halves, M + 1, T)
+    modal : ndarray, shape (parities, M + 1, T)
     place : int
 
     Returns
     -------
     tuple of ndarray, shapes (A,) and (T, A)
     """
-    halves, orders, _ = modal.shape
-    grid = circle_angles(orders, halves)
+    parities, orders, _ = modal.shape
+    grid = circle_angles(orders, parities)
     angles = grid[place] + (grid[1] - grid[0]) / FINE * np.arange(-FINE, FINE + 1)
     phase = np.radians(angles)[:, None] * np.arange(orders)
-    basis = [np.cos(phase), np.sin(phase)][:halves]
+    basis = [np.cos(phase), np.sin(phase)][:parities]
     return angles, np.asarray(sum(part.T @ wave.T for part, wave in zip(modal, basis, strict=True)), dtype=np.float64)

@@ -1,50 +1,77 @@
-"""A bounded cache: the least recently used go first when the bytes run out."""
+"""A cache bounded by bytes: the least recently used go first when they run out."""
 
 from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable
-from typing import Any, Generic, TypeVar
+from threading import Lock
+from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
+
+
+class Sized(Protocol):
+    """Anything that tells its size."""
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes it takes."""
+        ...
+
 
 T = TypeVar("T")
 
 
-class Cache(Generic[T]):
-    """Keep values by key up to a number of bytes in all.
+def own_bytes(value: Sized) -> int:
+    """Return the bytes that a value says it takes."""
+    return value.nbytes
+
+
+class ByteBoundedCache(Generic[T]):
+    """Keep values by keys that hold all that they depend on, up to a number of bytes in all. Several threads may share one.
 
     Parameters
     ----------
     most : int
-        Bytes.
+        Bytes. 0 keeps nothing.
     size : callable
-        Bytes of a value; asked again at every use, because prepared structures grow with it.
+        Bytes of a value; asked again at every put, because prepared structures grow with use.
     """
 
     def __init__(self, most: int, size: Callable[[T], int]) -> None:
         self.most, self.size = most, size
         self._held: OrderedDict[Hashable, tuple[T, int]] = OrderedDict()
         self._bytes = 0
+        self._lock = Lock()
 
     def get(self, key: Hashable) -> T | None:
         """Return a value, or None."""
-        found = self._held.get(key)
-        if found is None:
-            return None
-        self._held.move_to_end(key)
-        return found[0]
+        with self._lock:
+            found = self._held.get(key)
+            if found is None:
+                return None
+            self._held.move_to_end(key)
+            return found[0]
 
     def put(self, key: Hashable, value: T) -> None:
         """Keep a value, or weigh it again; the oldest others leave for it. One that is too large alone is not kept, and they stay."""
         size = self.size(value)
-        self._bytes -= self._held.pop(key, (value, 0))[1]
-        if size > self.most:
-            return
-        self._held[key] = (value, size)
-        self._bytes += size
-        while self._bytes > self.most:
-            self._bytes -= self._held.popitem(last=False)[1][1]
+        with self._lock:
+            self._bytes -= self._held.pop(key, (value, 0))[1]
+            if size > self.most:
+                return
+            self._held[key] = (value, size)
+            self._bytes += size
+            while self._bytes > self.most:
+                self._bytes -= self._held.popitem(last=False)[1][1]
+
+    def get_or_make(self, key: Hashable, make: Callable[[], T]) -> T:
+        """Return the value of a key, made now if it is not here; it must not be changed. Threads make different values at the same time."""
+        found = self.get(key)
+        if found is None:
+            found = make()
+            self.put(key, found)
+        return found
 
     def clear(self) -> None:
         """Let go of everything."""

@@ -133,11 +133,11 @@ def modal(solution: ModalSolution, shell: int, quantity: str = "displacement") -
         "sensor_voltage": ("open-circuit voltage of the sensor", "V"),
     }
     quantity = arguments.one_of("quantity", quantity, names)
-    halves = COSINE
+    parities = COSINE
     match quantity:
         case "tangential":
             values = solution.problem.scales.length * solution.tangential[shell]
-            halves = ("sin", "-cos")
+            parities = ("sin", "-cos")
         case "displacement":
             values = amplitudes(solution, shell, displacement_gain(solution))
         case "stress":
@@ -145,4 +145,4 @@ def modal(solution: ModalSolution, shell: int, quantity: str = "displacement") -
         case _:
             values = amplitudes(solution, shell, voltage_gain(solution, shell))
     long_name, units = names[quantity]
-    return modal_array(solution, values, shell, name=f"modal_{quantity}", long_name=f"modal {long_name}", units=units, halves=halves)
+    return modal_array(solution, values, shell, name=f"modal_{quantity}", long_name=f"modal {long_name}", units=units, parities=parities)

@@ -63,11 +63,11 @@ def history(
 
 
 def modal_array(
-    solution: ModalSolution, values: FloatArray, shell: int, *, name: str, long_name: str, units: str, halves: tuple[str, str]
+    solution: ModalSolution, values: FloatArray, shell: int, *, name: str, long_name: str, units: str, parities: tuple[str, str]
 ) -> xr.DataArray:
-    """Return modal amplitudes of shape (halves, M + 1, T) as a labelled array, dims (half, mode, time)."""
+    """Return modal amplitudes of shape (parities, M + 1, T) as a labelled array, dims (half, mode, time)."""
     mode = xr.Variable("mode", np.arange(values.shape[1]), {"long_name": "circumferential order m"})
-    half = xr.Variable("half", list(halves[: values.shape[0]]), {"long_name": "circumferential function of m theta"})
+    half = xr.Variable("half", list(parities[: values.shape[0]]), {"long_name": "circumferential function of m theta"})
     return xr.DataArray(
         values,
         dims=("half", "mode", "time"),

@@ -14,7 +14,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.section import Section
-from coaxshell.structure.stress import Place, design_stress_gain, stress_gain
+from coaxshell.structure.stress import WallPoint, design_stress_gain, stress_gain
 
 
 class Gain(NamedTuple):
@@ -43,7 +43,7 @@ def displacement_gain(solution: ModalSolution) -> Gain:
     return Gain(np.zeros_like(m), np.full_like(m, solution.problem.scales.length))
 
 
-def stress_gain_of(solution: ModalSolution, shell: int, where: Place | None = None) -> Gain:
+def stress_gain_of(solution: ModalSolution, shell: int, where: WallPoint | None = None) -> Gain:
     """Return the gain of the hoop stress, Pa: of the core at the mid-surface (Eq. 22), or at a point of the wall (Eqs. A.4, A.5)."""
     section = elastic_section(solution.problem, shell)
     m = orders(solution)
@@ -73,7 +73,7 @@ def amplitudes(solution: ModalSolution, shell: int, gain: Gain, window: slice = 
 
     Returns
     -------
-    ndarray, shape (halves, M + 1, T)
+    ndarray, shape (parities, M + 1, T)
     """
     result: FloatArray = solution.normal[shell, :, :, window] * gain.w[:, None]
     if np.any(gain.v):

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.circle import around, crest
+from coaxshell.acoustics.circle import around, peak_on_circle
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.synthesis import angle_basis, at_angles, mean_square, time_blocks
 
 Amplitudes = Callable[[slice], FloatArray]
-"""Gives the modal amplitudes (halves, M + 1, T) of a quantity at a slice of time indices."""
+"""Gives the modal amplitudes (parities, M + 1, T) of a quantity at a slice of time indices."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def peak_anywhere(amplitudes: Amplitudes, time: FloatArray, window: slice, width
     """
     highest, instant, place = -1.0, window.start, 0
     for block in time_blocks(window, width):
-        found = crest(amplitudes(block), above=highest)
+        found = peak_on_circle(amplitudes(block), above=highest)
         if found is not None:
             highest, instant, place = found.value, block.start + found.instant, found.place
     return _refined(amplitudes, time, window, instant, place)

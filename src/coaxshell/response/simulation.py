@@ -13,7 +13,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.workshop import Workshop
+from coaxshell.solver.shared_parts import shared_parts
 
 
 def simulate(
@@ -144,4 +144,4 @@ def prepare(
     system = as_system(system)
     times = (transits(duration, system), transits(time_step, system, "time_step"))
     settings = Settings(*times, modes, "spectral", tolerance, refinement)
-    return PreparedSystem(solver.Prepared(system, settings, progress, workshop=Workshop() if retunable else None))
+    return PreparedSystem(solver.Prepared(system, settings, progress, shared=shared_parts() if retunable else None))

@@ -1,6 +1,6 @@
 """Sums of circumferential orders at given angles, by a cosine matrix, and their mean squares.
 
-A modal array has the shape (halves, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
+A modal array has the shape (parities, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ BLOCK = 2**20
 """Values of one block of a field on the circle: 8 MiB, which stays in a processor's cache or near it."""
 
 
-def angle_basis(angle: npt.ArrayLike, orders: int, halves: int, component: str = "normal") -> FloatArray:
+def angle_basis(angle: npt.ArrayLike, orders: int, parities: int, component: str = "normal") -> FloatArray:
     """Return the value of every order at every angle, exact at multiples of 90 degrees.
 
     Parameters
@@ -26,20 +26,20 @@ def angle_basis(angle: npt.ArrayLike, orders: int, halves: int, component: str =
         Degrees from the source direction.
     orders : int
         M + 1, the number of orders from 0.
-    halves : int
+    parities : int
         1 (symmetric) or 2.
     component : str
         "normal": cos(m theta) and sin(m theta); "tangential": sin(m theta) and -cos(m theta).
 
     Returns
     -------
-    ndarray, shape (A, halves, M + 1)
+    ndarray, shape (A, parities, M + 1)
     """
     # Degrees are reduced before they become radians: m theta is exact there, and head and tail are exactly +-1.
     phase = np.mod(np.multiply.outer(np.asarray(angle, dtype=np.float64), np.arange(orders)), 360.0)
     cos, sin = scipy.special.cosdg(phase), scipy.special.sindg(phase)
     pair = (cos, sin) if component == "normal" else (sin, -cos)
-    return np.stack(pair[:halves], axis=1)
+    return np.stack(pair[:parities], axis=1)
 
 
 def at_angles(modal: FloatArray, basis: FloatArray) -> FloatArray:
@@ -47,8 +47,8 @@ def at_angles(modal: FloatArray, basis: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    modal : ndarray, shape (halves, M + 1, T)
-    basis : ndarray, shape (A, halves, M + 1)
+    modal : ndarray, shape (parities, M + 1, T)
+    basis : ndarray, shape (A, parities, M + 1)
         From :func:`angle_basis`, possibly times a factor for each order.
 
     Returns
@@ -64,7 +64,7 @@ def mean_square(modal: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    modal : ndarray, shape (halves, M + 1, T)
+    modal : ndarray, shape (parities, M + 1, T)
 
     Returns
     -------

@@ -28,7 +28,7 @@ STEADY = 0.01
 
 
 def section_translation(solution: ModalSolution, shell: int) -> FloatArray:
-    """Return (V_1 + W_1)/2 of both halves, dimensionless, shape (halves, T): minus the translation (X, Y) in units of a."""
+    """Return (V_1 + W_1)/2 of both halves, dimensionless, shape (parities, T): minus the translation (X, Y) in units of a."""
     total: FloatArray = solution.normal[shell, :, 1] + solution.tangential[shell, :, 1]
     return 0.5 * total
 
@@ -59,9 +59,9 @@ def still_grows(solution: ModalSolution, shell: int, window: slice) -> bool:
 
 def translation(solution: ModalSolution, shell: int) -> xr.DataArray:
     """Return the translation of the section of a shell, m, dims (time, direction): x towards the source direction, y a quarter turn on."""
-    halves = -solution.problem.scales.length * section_translation(solution, shell)
-    values = np.zeros((halves.shape[1], 2))
-    values[:, : len(halves)] = halves.T
+    parities = -solution.problem.scales.length * section_translation(solution, shell)
+    values = np.zeros((parities.shape[1], 2))
+    values[:, : len(parities)] = parities.T
     label = shell_name(shell, len(solution.problem.shells))
     return xr.DataArray(
         values,

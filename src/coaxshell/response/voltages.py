@@ -71,7 +71,7 @@ def time_derivative(values: FloatArray, step: float) -> FloatArray:
 
 
 def sensor_rate(solution: ModalSolution, shell: int) -> FloatArray:
-    """Return d/dt of the modal sensor voltage, V per transit, shape (halves, M + 1, T): by the engine's rates, else by differences."""
+    """Return d/dt of the modal sensor voltage, V per transit, shape (parities, M + 1, T): by the engine's rates, else by differences."""
     gain = voltage_gain(solution, shell)
     normal, tangential = getattr(solution, "normal_rate", None), getattr(solution, "tangential_rate", None)
     if normal is None or tangential is None:
@@ -86,7 +86,7 @@ def demanded_voltage(solution: ModalSolution, shell: int) -> FloatArray:
 
     Returns
     -------
-    ndarray, shape (halves, M + 1, T)
+    ndarray, shape (parities, M + 1, T)
 
     Raises
     ------
@@ -216,8 +216,8 @@ def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice,
 
 def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice) -> Peak:
     """Return the largest magnitude of a quantity, and beside it what the lower half of the orders gives."""
-    halves, all_of_them = solution.normal.shape[1:3]
+    parities, all_of_them = solution.normal.shape[1:3]
     few = lower_half(all_of_them)
-    largest = peak_anywhere(quantity, solution.time, window, len(circle_angles(all_of_them, halves)))
-    fewer = peak_anywhere(lambda block: quantity(block)[:, :few], solution.time, window, len(circle_angles(few, halves)))
+    largest = peak_anywhere(quantity, solution.time, window, len(circle_angles(all_of_them, parities)))
+    fewer = peak_anywhere(lambda block: quantity(block)[:, :few], solution.time, window, len(circle_angles(few, parities)))
     return replace(largest, lower_half=fewer.value)

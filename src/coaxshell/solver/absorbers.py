@@ -45,7 +45,7 @@ class AbsorberSet:
         For every absorber of the description, the one here that stands for it.
     every_angle : ndarray
         Degrees, of all absorbers of the description.
-    halves : int
+    parities : int
         1 if only the cosine half of the Fourier series is excited, else 2.
     """
 
@@ -58,7 +58,7 @@ class AbsorberSet:
     multiplicity: FloatArray
     member: npt.NDArray[np.int64]
     every_angle: FloatArray
-    halves: int
+    parities: int
 
     @property
     def count(self) -> int:
@@ -71,10 +71,10 @@ class AbsorberSet:
         return not np.any(self.cubic)
 
     def shapes(self, max_order: int) -> FloatArray:
-        """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (halves, N, M + 1)."""
+        """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (parities, N, M + 1)."""
         orders = all_orders(max_order)
-        rows = [projection(orders, float(angle), half)[:, 0] for half in range(self.halves) for angle in self.angle]
-        return np.array(rows).reshape(self.halves, self.count, orders.size)
+        rows = [projection(orders, float(angle), half)[:, 0] for half in range(self.parities) for angle in self.angle]
+        return np.array(rows).reshape(self.parities, self.count, orders.size)
 
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halves: int) -> AbsorberSet:
@@ -110,7 +110,7 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halve
         multiplicity=np.array(multiplicity),
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([a.angle for a in absorbers], dtype=np.float64),
-        halves=1 if symmetric else 2,
+        parities=1 if symmetric else 2,
     )
 
 
@@ -144,21 +144,21 @@ class InterfacePoints:
             np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.shells[i].radius) for i, points in self._groups
         ]
         self.count = self.shell.size
-        self.halves, self.modes = shapes.shape[0], max_order + 1
+        self.parities, self.modes = shapes.shape[0], max_order + 1
 
     def evaluate(self, modal: Array) -> Array:
-        """Return the value at every point of modal amplitudes (shells, halves, M + 1[, T]): shape (points[, T])."""
+        """Return the value at every point of modal amplitudes (shells, parities, M + 1[, T]): shape (points[, T])."""
         values = np.empty((self.count, *modal.shape[3:]), modal.dtype)
         for (i, points), shape in zip(self._groups, self._evaluate, strict=True):
-            values[points] = sum(shape[h] @ modal[i, h] for h in range(min(self.halves, modal.shape[1])))
+            values[points] = sum(shape[h] @ modal[i, h] for h in range(min(self.parities, modal.shape[1])))
         return values
 
     def project(self, forces: Array) -> Array:
-        """Return the modal pressures (shells, halves, M + 1[, T]) of line forces at the points (points[, T])."""
-        modal = np.zeros((len(self._groups), self.halves, self.modes, *forces.shape[1:]), forces.dtype)
+        """Return the modal pressures (shells, parities, M + 1[, T]) of line forces at the points (points[, T])."""
+        modal = np.zeros((len(self._groups), self.parities, self.modes, *forces.shape[1:]), forces.dtype)
         for (i, points), shape in zip(self._groups, self._project, strict=True):
             if points.size:
-                for h in range(self.halves):
+                for h in range(self.parities):
                     modal[i, h] = shape[h].T @ forces[points]
         return modal
 

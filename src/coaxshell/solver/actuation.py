@@ -18,12 +18,12 @@ def pressure_asked(
     Parameters
     ----------
     problem : Problem
-    normal, tangential, normal_rate, tangential_rate : ndarray, shape (shells, halves, M + 1, T)
+    normal, tangential, normal_rate, tangential_rate : ndarray, shape (shells, parities, M + 1, T)
         W, V, dW/dt and dV/dt.
 
     Returns
     -------
-    ndarray, shape (shells, halves, M + 1, T)
+    ndarray, shape (shells, parities, M + 1, T)
         Positive inward; 0 on shells without feedback.
     """
     pressure, orders = np.zeros_like(normal), all_orders(normal.shape[2] - 1)[:, None]
@@ -37,7 +37,7 @@ def pressure_asked(
 
 
 def pressure_given(solution: ModalSolution) -> FloatArray | None:
-    """Return the pressure that saturating actuators gave, shape (shells, halves, M + 1, T); None where the linear law held throughout."""
+    """Return the pressure that saturating actuators gave, shape (shells, parities, M + 1, T); None where the linear law held throughout."""
     lack, w_rate, v_rate = solution.control_correction, solution.normal_rate, solution.tangential_rate
     if lack is None or w_rate is None or v_rate is None or not lack.any():
         return None

@@ -27,7 +27,7 @@ class LinkConstants:
     ----------
     damping, stiffness : ndarray, shape (N,)
         c and k + kappa, alike on both sides.
-    lent : ndarray, shape (N,)
+    auxiliary_stiffness : ndarray, shape (N,)
         kappa: stiffness lent to massless absorbers that have nothing but cubic springs, without which b would not determine them.
     inertia, mobility : ndarray, shape (N,)
         2 m/dt, and its inverse, 0 for a massless one.
@@ -37,7 +37,7 @@ class LinkConstants:
 
     damping: FloatArray
     stiffness: FloatArray
-    lent: FloatArray
+    auxiliary_stiffness: FloatArray
     inertia: FloatArray
     mobility: FloatArray
     half_step: float
@@ -53,8 +53,15 @@ class LinkConstants:
         heavy = absorbers.mass > 0
         mobility = np.divide(0.5 * time_step, absorbers.mass, out=np.zeros(absorbers.count), where=heavy)
         bare = ~heavy & (absorbers.damping == 0) & (absorbers.linear == 0)
-        lent = np.where(bare, 2e-3 / (time_step * max(float(own.max(initial=0.0)), 1e-300)), 0.0)
-        return cls(absorbers.damping, absorbers.linear + lent, lent, 2.0 * absorbers.mass / time_step, mobility, 0.5 * time_step)
+        auxiliary_stiffness = np.where(bare, 2e-3 / (time_step * max(float(own.max(initial=0.0)), 1e-300)), 0.0)
+        return cls(
+            absorbers.damping,
+            absorbers.linear + auxiliary_stiffness,
+            auxiliary_stiffness,
+            2.0 * absorbers.mass / time_step,
+            mobility,
+            0.5 * time_step,
+        )
 
 
 @dataclass(frozen=True)
@@ -113,7 +120,7 @@ def block_response(links: LinkConstants, kernels: FloatArray, imposed: FloatArra
     return found
 
 
-def over_block(kernels: FloatArray) -> FloatArray:
+def block_toeplitz(kernels: FloatArray) -> FloatArray:
     """Return the matrix (lags * rows, lags * columns) that convolves a block with kernels (lags, rows, columns), step by step."""
     lags, rows, columns = kernels.shape
     matrix = np.zeros((lags, rows, lags, columns))

@@ -19,8 +19,8 @@ from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.electrodes import largest_demand
-from coaxshell.solver.linked import LinkedSpectra
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.linked import AbsorberSolution
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
@@ -80,7 +80,7 @@ def _finer(settings: Settings) -> str:
     return f"time_step = {settings.time_step / 2:g} or refinement = {2 * settings.refinement}"
 
 
-def absorbers(structure: PreparedStructure, links: AbsorberSet, linked: LinkedSpectra, refinement: int) -> list[str]:
+def absorbers(structure: StructureSpectra, links: AbsorberSet, linked: AbsorberSolution, refinement: int) -> list[str]:
     """Return the warning about absorbers that vibrate faster than the step, time_step/*refinement*, resolves.
 
     The fastest motions are those of a shell's own points (their mobility over one step is the kernel's weight at lag 0, about

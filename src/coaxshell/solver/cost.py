@@ -21,7 +21,7 @@ from coaxshell.solver.linear_ring import is_ring
 from coaxshell.solver.sampled_orders import crossing_order
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import MAX_MODES, Settings
-from coaxshell.solver.workshop import ROOM
+from coaxshell.solver.shared_parts import ROOM
 
 _COMPLEX, _REAL = 16.0, 8.0
 _BLOCK_PAIRS = 64 * 1024
@@ -48,7 +48,7 @@ class Size:
         Where absorbers touch shells, two each; mirror images are carried once where all is symmetric.
     nonlinear, ring : bool
         Whether absorbers have cubic springs, and whether linear ones are an even ring.
-    source_halves, halves : int
+    source_halves, parities : int
         Of the Fourier series that the sources excite, and the absorbers.
     orders, nodes, instants : int
         M + 1; of the Laplace contour; of the march, refinement included.
@@ -67,7 +67,7 @@ class Size:
     nonlinear: bool
     ring: bool
     source_halves: int
-    halves: int
+    parities: int
     orders: int
     nodes: int
     instants: int
@@ -113,7 +113,7 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         nonlinear=not links.is_linear,
         ring=links.count > 0 and is_ring(links),
         source_halves=source_halves,
-        halves=links.halves if links.count else source_halves,
+        parities=links.parities if links.count else source_halves,
         orders=orders,
         nodes=grid.samples // 2 + 1,
         instants=steps + 1,
@@ -217,12 +217,12 @@ def _spectral_bytes(size: Size) -> float:
     stages = [solved, tabulated, structure + _COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
     held = structure
     if size.linked:
-        forced = 2.0 * n * size.halves * plane
+        forced = 2.0 * n * size.parities * plane
         forces = _REAL * 6.0 * size.points * size.instants
         working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
-        stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.halves * plane]
+        stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.parities * plane]
         held += left + forces + forced
-    amplitudes = n * max(size.halves, size.source_halves)
+    amplitudes = n * max(size.parities, size.source_halves)
     rates = 2.0 * amplitudes * size.history if size.feedback else 0.0
     stages += [held + _sampled_bytes(size, size.sampled_top)]
     stages += [held + amplitudes * (2.0 * size.history + 2.5 * plane) + rates + (amplitudes * plane if size.feedback else 0.0)]
@@ -233,17 +233,17 @@ def _marched_bytes(size: Size) -> tuple[float, float]:
     """Return what the interface march works with, and what of it stays."""
     n, outputs = size.shells, size.shells + size.controlled
     pairs = outputs * n
-    unknowns = size.points + size.controlled * size.halves * size.orders
+    unknowns = size.points + size.controlled * size.parities * size.orders
     length = 1
     while 2 * length <= _LONGEST_BLOCK and 2 * length * unknowns <= _BLOCK_UNKNOWNS:
         length *= 2
     longest = length * 2 ** int(math.log2(max(1, size.instants // length)))
     kernels = pairs * size.history
     left = kernels + 2.0 * n * size.source_halves * size.history + 3.0 * pairs * _COMPLEX * size.orders * longest
-    state = (n + outputs + n) * size.halves * size.history + 2.0 * size.controlled * size.halves * size.history
+    state = (n + outputs + n) * size.parities * size.history + 2.0 * size.controlled * size.parities * size.history
     matrices = _REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))
-    circle = 128.0 * (size.halves * size.orders) ** 2 if size.controlled else 0.0
-    transforms = 1.5 * _COMPLEX * size.orders * longest * (pairs + n * size.halves)
+    circle = 128.0 * (size.parities * size.orders) ** 2 if size.controlled else 0.0
+    transforms = 1.5 * _COMPLEX * size.orders * longest * (pairs + n * size.parities)
     making = 4.5 * size.plane  # one pair of shells at a time
     return max(left + state + matrices + circle + transforms, kernels + making), left
 
@@ -261,10 +261,10 @@ def _exact_bytes(size: Size) -> tuple[float, float]:
 
 def _direct_bytes(size: Size) -> float:
     """Return what the direct engine works with: weights, accelerations and motion at all instants, and their transforms."""
-    n, halves = size.shells, max(size.halves, size.source_halves)
-    motion = (4.0 if size.feedback else 2.0) * n * halves * size.history
-    marching = (2.0 * n * n + n * halves + halves) * size.history + motion
-    estimating = motion + 2.5 * n * halves * size.plane + _sampled_bytes(size, size.sampled_top)
+    n, parities = size.shells, max(size.parities, size.source_halves)
+    motion = (4.0 if size.feedback else 2.0) * n * parities * size.history
+    marching = (2.0 * n * n + n * parities + parities) * size.history + motion
+    estimating = motion + 2.5 * n * parities * size.plane + _sampled_bytes(size, size.sampled_top)
     return max(marching, estimating)
 
 
@@ -276,21 +276,21 @@ def _shared_seconds(size: Size) -> float:
 
 def _spectral_seconds(size: Size) -> float:
     """Return the time of the spectral engine."""
-    pairs, halves = float(size.orders * size.nodes), max(size.halves, size.source_halves)
-    seconds = _shared_seconds(size) + 0.6e-6 * size.shells * pairs + 0.1e-6 * size.shells * halves * pairs
+    pairs, parities = float(size.orders * size.nodes), max(size.parities, size.source_halves)
+    seconds = _shared_seconds(size) + 0.6e-6 * size.shells * pairs + 0.1e-6 * size.shells * parities * pairs
     if not size.linked:
         return seconds
     seconds += 0.2e-6 * size.shells**2 * pairs
     if not size.marched:
-        per_node = 2e-6 * size.points if size.ring else 4e-10 * size.points**2 * size.orders * size.halves + 6e-10 * size.points**3
+        per_node = 2e-6 * size.points if size.ring else 4e-10 * size.points**2 * size.orders * size.parities + 6e-10 * size.points**3
         return seconds + size.nodes * per_node
     outputs = size.shells + size.controlled
-    sums = 2.5e-8 * outputs * size.shells * size.orders * size.halves * math.log2(size.instants + 2)
-    limits = 4.5e-8 * (size.controlled * size.halves * size.orders) ** 2
+    sums = 2.5e-8 * outputs * size.shells * size.orders * size.parities * math.log2(size.instants + 2)
+    limits = 4.5e-8 * (size.controlled * size.parities * size.orders) ** 2
     return seconds + size.instants * (1.2e-4 + sums + 1.5e-8 * size.points**2 + limits)
 
 
 def _direct_seconds(size: Size) -> float:
     """Return the time of the direct engine, which grows with the square of the number of steps."""
-    halves, pairs = max(size.halves, size.source_halves), size.shells**2
-    return _shared_seconds(size) + 0.6e-9 * float(size.instants) ** 2 * size.orders * pairs * halves + 4e-4 * size.instants
+    parities, pairs = max(size.parities, size.source_halves), size.shells**2
+    return _shared_seconds(size) + 0.6e-9 * float(size.instants) ** 2 * size.orders * pairs * parities + 4e-4 * size.instants

@@ -19,7 +19,7 @@ from coaxshell.acoustics.operators import RadialFunctions, annulus
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.ingredients import OWN, Radial
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.workshop import Workshop
+from coaxshell.solver.shared_parts import SharedParts
 
 
 @dataclass
@@ -86,7 +86,7 @@ def fluid_matrix(problem: Problem, radial: Radial) -> FluidMatrix:
             continue
         sides = [j for j in (i - 1, i) if 0 <= j < count]
         walls = [radial(fluid.slowness, problem.shells[j].radius) for j in sides]
-        density = [fluid.density * problem.ingredients.felt_motion(problem, i, j, radial) for j in sides]
+        density = [fluid.density * problem.ingredients.wall_motion_factor(problem, i, j, radial) for j in sides]
         if i == 0:
             matrix.diagonal[0] = matrix.diagonal[0] + density[0] * walls[0].disc
         elif i == count:
@@ -110,7 +110,7 @@ class ModalSystem:
         Ascending circumferential orders.
     like : ModalSystem, optional
         One of the same fluids, radii, nodes and orders, whose Bessel ratios are shared.
-    workshop : Workshop, optional
+    shared : SharedParts, optional
         Where the added mass of the fluids is found, or left for the next one.
 
     Attributes
@@ -122,9 +122,9 @@ class ModalSystem:
     """
 
     def __init__(
-        self, problem: Problem, s: ComplexArray, orders: FloatArray, like: ModalSystem | None = None, workshop: Workshop | None = None
+        self, problem: Problem, s: ComplexArray, orders: FloatArray, like: ModalSystem | None = None, shared: SharedParts | None = None
     ) -> None:
-        self.problem, self.s, self.orders, self._workshop = problem, s, orders, workshop
+        self.problem, self.s, self.orders, self._shared = problem, s, orders, shared
         self._radial: dict[tuple[float, float], RadialFunctions] = {} if like is None else like._radial
         self.surface = self.radial(1.0, 1.0)
         self.shells = [
@@ -147,10 +147,11 @@ class ModalSystem:
     def _fluids(self) -> FluidMatrix:
         """Return the added mass, shared where only fluids, radii, orders and nodes determine it."""
         problem = self.problem
-        if self._workshop is None or problem.ingredients != OWN:
+        if self._shared is None or problem.ingredients != OWN:
             return fluid_matrix(problem, self.radial)
         key = ("fluids", problem.fluids, tuple(shell.radius for shell in problem.shells), self.orders.tobytes(), self.s.tobytes())
-        return self._workshop.part(key, lambda: fluid_matrix(problem, self.radial))
+        fluids: FluidMatrix = self._shared.get_or_make(key, lambda: fluid_matrix(problem, self.radial))
+        return fluids
 
     def _assemble(self) -> None:
         """Add shells and fluids; a rigid shell keeps a row of its own, W = 0, and couples to none."""

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.circle import around, crest
+from coaxshell.acoustics.circle import around, peak_on_circle
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.acoustics.pulse_band import pulse_band
 from coaxshell.errors import InputError
@@ -98,7 +98,7 @@ def largest_demand(solution: ModalSolution, index: int, above: float) -> Largest
 
 def _largest(modal: FloatArray, above: float = -1.0) -> float:
     """Return the largest magnitude on the circle as the summary finds it; 0 if none comes near *above*."""
-    found = crest(modal, above=above)
+    found = peak_on_circle(modal, above=above)
     if found is None:
         return 0.0
     near = slice(max(0, found.instant - 1), found.instant + 2)

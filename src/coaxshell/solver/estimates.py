@@ -16,7 +16,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import SampledOrders
 from coaxshell.solver.solution import Estimates
 from coaxshell.solver.step_error import band_limit, march_error
@@ -26,7 +26,7 @@ STEP_FACTOR = 2.0
 
 
 def estimated_errors(
-    structure: PreparedStructure,
+    structure: StructureSpectra,
     above: SampledOrders,
     spectra: tuple[ComplexArray, ComplexArray],
     histories: tuple[FloatArray, FloatArray],
@@ -37,7 +37,7 @@ def estimated_errors(
 
     Parameters
     ----------
-    structure : PreparedStructure
+    structure : StructureSpectra
         Without feedback where saturating actuators acted as forces.
     above : SampledOrders
         Orders above M.

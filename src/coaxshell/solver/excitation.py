@@ -15,7 +15,7 @@ from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.workshop import Workshop
+from coaxshell.solver.shared_parts import SharedParts
 
 
 def incident_wave(problem: Problem, source: Source) -> IncidentWave:
@@ -43,21 +43,22 @@ class UnitLoad:
     wave : IncidentWave
     grid : LaplaceGrid
     orders : ndarray
-    workshop : Workshop, optional
+    shared : SharedParts, optional
         Where loads are found, or left for the next one.
     """
 
-    def __init__(self, wave: IncidentWave, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None) -> None:
-        self._wave, self._grid, self._orders, self._workshop = wave, grid, orders, workshop
+    def __init__(self, wave: IncidentWave, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None) -> None:
+        self._wave, self._grid, self._orders, self._shared = wave, grid, orders, shared
         self._lock = Lock()
         self._load: SurfaceLoad | None = None
 
     def __call__(self, surface: RadialFunctions, nodes: slice) -> ComplexArray:
         """Return L_m at a slice of the grid's nodes, shape (orders, nodes)."""
-        if self._workshop is None:
+        if self._shared is None:
             return self._made(surface, nodes)
         key = ("load", self._wave, self._grid, self._orders.tobytes(), (nodes.start, nodes.stop, nodes.step))
-        return self._workshop.part(key, lambda: self._made(surface, nodes))
+        load: ComplexArray = self._shared.get_or_make(key, lambda: self._made(surface, nodes))
+        return load
 
     def _made(self, surface: RadialFunctions, nodes: slice) -> ComplexArray:
         with self._lock:
@@ -73,11 +74,11 @@ class SurfaceLoads:
     Sources that share a geometry share its modal load.
     """
 
-    def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> None:
-        self.halves = 2 if needs_sine_half(problem.system.sources) else 1
+    def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> None:
+        self.parities = 2 if needs_sine_half(problem.system.sources) else 1
         self._problem, self._orders = problem, orders
         self._groups = [
-            (UnitLoad(wave, grid, orders, workshop), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
+            (UnitLoad(wave, grid, orders, shared), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
             for wave, sources in _geometries(problem).items()
         ]
 

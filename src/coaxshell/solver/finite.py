@@ -11,8 +11,8 @@ import numpy as np
 from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
 from coaxshell.numerics.finite import Array, first_bad
-from coaxshell.solver.linked import LinkedSpectra
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.linked import AbsorberSolution
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.solution import ModalSolution
 
 FINER = "use a smaller time_step or fewer modes"
@@ -74,7 +74,7 @@ def require_finite_solution(solution: ModalSolution, where: str = "response", re
             raise _told(Stage(where, name, values, axes, True, remedy), index, solution.time)
 
 
-def require_finite_stages(structure: PreparedStructure, linked: LinkedSpectra | None) -> None:
+def require_finite_stages(structure: StructureSpectra, linked: AbsorberSolution | None) -> None:
     """Refuse spectra of the spectral engine with NaN or infinity, naming the stage in which it began.
 
     What the earlier stages left is looked through only once their result has been found wanting.
@@ -92,7 +92,7 @@ def require_finite_stages(structure: PreparedStructure, linked: LinkedSpectra | 
             raise _told(stage, index, structure.grid.time if stage.in_time else structure.grid.nodes.imag)
 
 
-def _stages(structure: PreparedStructure, linked: LinkedSpectra | None) -> Iterator[Stage]:
+def _stages(structure: StructureSpectra, linked: AbsorberSolution | None) -> Iterator[Stage]:
     """Yield what the stages made, in their order."""
     pair, shells = ("answering shell", "loaded shell", "order"), ("shell", "half", "order")
     extreme = "look for a layer, fluid or gap of extreme size, density or stiffness"

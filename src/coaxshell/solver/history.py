@@ -76,23 +76,23 @@ class HistorySum:
     Parameters
     ----------
     table : KernelTable
-    halves : int
+    parities : int
         Independent copies (cosine and sine halves) that share the kernels.
     """
 
-    def __init__(self, table: KernelTable, halves: int) -> None:
+    def __init__(self, table: KernelTable, parities: int) -> None:
         outputs, inputs, modes = table.shape
         self._table = table
         self._step = 0
-        self.inputs = np.zeros((inputs, halves, modes, table.steps))
-        self._promised = np.zeros((outputs, halves, modes, table.steps))
+        self.inputs = np.zeros((inputs, parities, modes, table.steps))
+        self._forcing = np.zeros((outputs, parities, modes, table.steps))
 
-    def ahead(self, count: int) -> FloatArray:
-        """Return what the inputs so far, x_0 to x_{n-1}, give to the steps n to n + count - 1: (outputs, halves, M + 1, count).
+    def forcing(self, count: int) -> FloatArray:
+        """Return what the inputs so far, x_0 to x_{n-1}, give to the steps n to n + count - 1: (outputs, parities, M + 1, count).
 
         ``count`` is at most the length of the blocks pushed.
         """
-        return self._promised[..., self._step : self._step + count]
+        return self._forcing[..., self._step : self._step + count]
 
     def push(self, values: FloatArray) -> FloatArray:
         """Append the inputs of a block of steps and advance.
@@ -101,11 +101,11 @@ class HistorySum:
 
         Parameters
         ----------
-        values : ndarray, shape (inputs, halves, M + 1, count)
+        values : ndarray, shape (inputs, parities, M + 1, count)
 
         Returns
         -------
-        ndarray, shape (outputs, halves, M + 1, count)
+        ndarray, shape (outputs, parities, M + 1, count)
             What these inputs give to their own steps, k_0 included.
         """
         count = values.shape[-1]
@@ -114,22 +114,22 @@ class HistorySum:
         self._step += count
         if self._step < self._table.steps:
             blocks = self._step // count
-            self._promise(count * (blocks & -blocks))
+            self._add_forcing(count * (blocks & -blocks))
         return own
 
     def _by_matrix(self, values: FloatArray, offset: int) -> FloatArray:
-        inputs, halves, modes, length = values.shape
-        stacked = values.transpose(2, 0, 3, 1).reshape(modes, inputs * length, halves)
+        inputs, parities, modes, length = values.shape
+        stacked = values.transpose(2, 0, 3, 1).reshape(modes, inputs * length, parities)
         return np.asarray((self._table.matrix(length, offset) @ stacked).transpose(0, 3, 1, 2))
 
-    def _promise(self, length: int) -> None:
+    def _add_forcing(self, length: int) -> None:
         """Add the contribution of the last ``length`` steps to as many steps ahead."""
         start, stop = self._step - length, min(self._step + length, self._table.steps)
         recent = self.inputs[..., start : self._step]
         if length <= _BY_MATRIX:
-            ahead = self._by_matrix(recent, length)
+            forcing = self._by_matrix(recent, length)
         else:
             block = fft.rfft(recent, 2 * length, axis=-1, workers=WORKERS)
             total = np.einsum("ijmk,jhmk->ihmk", self._table.transform(length), block)
-            ahead = fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length:]
-        self._promised[..., self._step : stop] += ahead[..., : stop - self._step]
+            forcing = fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length:]
+        self._forcing[..., self._step : stop] += forcing[..., : stop - self._step]

@@ -26,7 +26,7 @@ Radial = Callable[[float, float], RadialFunctions]
 """From slowness and radius to the Bessel ratios there."""
 
 
-def felt_motion(problem: Problem, region: int, wall: int, radial: Radial) -> ComplexArray | float:
+def wall_motion_factor(problem: Problem, region: int, wall: int, radial: Radial) -> ComplexArray | float:
     """Return 1: a fluid moves with its wall (Eq. 9)."""
     return 1.0
 
@@ -41,7 +41,7 @@ def source_geometry(problem: Problem, source: Source) -> IncidentWave:
 
 
 def point_force_shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
-    """Return cos(m theta_n)/(beta pi) (sine half alike), for an absorber that stands for two twice as much: (halves, N, M + 1)."""
+    """Return cos(m theta_n)/(beta pi) (sine half alike), for an absorber that stands for two twice as much: (parities, N, M + 1)."""
     beta_pi = np.pi * np.where(all_orders(max_order) == 0, 2.0, 1.0)
     shares: FloatArray = absorbers.shapes(max_order) * absorbers.multiplicity[:, None] / beta_pi
     return shares
@@ -55,17 +55,17 @@ class Ingredients:
     ----------
     stiffness : callable
         From a section and the orders to the modal stiffness of the ring on (V, W).
-    felt_motion : callable
+    wall_motion_factor : callable
         From problem, number of the fluid, number of the shell beside it and Bessel ratios to the factor, a number or an array
         (M + 1, nodes), with which that fluid feels the acceleration of that shell.
     source_geometry : callable
         From problem and source to its incident wave.
     point_force_shares : callable
-        From absorbers and M to each order's share of a line force on a ring of radius 1, shape (halves, N, M + 1).
+        From absorbers and M to each order's share of a line force on a ring of radius 1, shape (parities, N, M + 1).
     """
 
     stiffness: Callable[[Section, FloatArray], RingStiffness] = ring_stiffness
-    felt_motion: Callable[[Problem, int, int, Radial], ComplexArray | float] = felt_motion
+    wall_motion_factor: Callable[[Problem, int, int, Radial], ComplexArray | float] = wall_motion_factor
     source_geometry: Callable[[Problem, Source], IncidentWave] = source_geometry
     point_force_shares: Callable[[AbsorberSet, int], FloatArray] = point_force_shares
 

@@ -15,29 +15,29 @@ class CubicSprings:
 
     Parameters
     ----------
-    cubic, lent : ndarray, shape (n,)
+    cubic, auxiliary_stiffness : ndarray, shape (n,)
         k_nl and kappa of every link.
     """
 
     tolerance = 1e-11
-    patience = 0.1
+    contraction_limit = 0.1
     most_iterations = 60
 
-    def __init__(self, cubic: FloatArray, lent: FloatArray) -> None:
-        self._cubic, self._lent = cubic, lent
-        self._offset = lent.copy()
+    def __init__(self, cubic: FloatArray, auxiliary_stiffness: FloatArray) -> None:
+        self._cubic, self._auxiliary_stiffness = cubic, auxiliary_stiffness
+        self._offset = auxiliary_stiffness.copy()
 
-    def excess(self, z: FloatArray) -> FloatArray:
+    def nonlinear_part(self, z: FloatArray) -> FloatArray:
         """Return n(D)."""
-        return np.asarray((self._cubic * z * z - self._lent) * z)
+        return np.asarray((self._cubic * z * z - self._auxiliary_stiffness) * z)
 
-    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
         """Keep T = 3 k_nl D^2, without the kappa that makes the tangent of a massless absorber singular at D = 0; return R T."""
         tangent = 3.0 * self._cubic * z * z
-        self._offset = tangent + self._lent
+        self._offset = tangent + self._auxiliary_stiffness
         return np.asarray(response * tangent)
 
-    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+    def tangent_remainder(self, z: FloatArray) -> FloatArray:
         """Return n(D) - T D."""
         beyond = self._cubic * z
         beyond *= z
@@ -62,26 +62,26 @@ class SpringsAndActuators:
     """
 
     tolerance = 1e-10
-    patience = 0.3
+    contraction_limit = 0.3
     """Renewal costs as much as many iterations here."""
     most_iterations = 12
 
     def __init__(self, springs: CubicSprings, links: int, voltages: LimitedVoltages) -> None:
         self._springs, self._links, self._voltages = springs, links, voltages
 
-    def excess(self, z: FloatArray) -> FloatArray:
+    def nonlinear_part(self, z: FloatArray) -> FloatArray:
         """Return both."""
-        return np.concatenate([self._springs.excess(z[: self._links]), self._voltages.excess(z[self._links :])])
+        return np.concatenate([self._springs.nonlinear_part(z[: self._links]), self._voltages.nonlinear_part(z[self._links :])])
 
-    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
         """Keep both tangents and return R T."""
         n = self._links
-        springs = self._springs.freeze(z[:n], response[:, :n])
-        return np.concatenate([springs, self._voltages.freeze(z[n:], response[:, n:])], axis=1)
+        springs = self._springs.linearise(z[:n], response[:, :n])
+        return np.concatenate([springs, self._voltages.linearise(z[n:], response[:, n:])], axis=1)
 
-    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+    def tangent_remainder(self, z: FloatArray) -> FloatArray:
         """Return both."""
-        return np.concatenate([self._springs.beyond_tangent(z[: self._links]), self._voltages.beyond_tangent(z[self._links :])])
+        return np.concatenate([self._springs.tangent_remainder(z[: self._links]), self._voltages.tangent_remainder(z[self._links :])])
 
     def relative(self, change: FloatArray, z: FloatArray) -> float:
         """Return the larger of the two relative changes."""

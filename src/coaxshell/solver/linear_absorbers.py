@@ -17,8 +17,8 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
-from coaxshell.solver.prepared import PreparedStructure
-from coaxshell.solver.spectral import over_blocks
+from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.spectral import map_node_blocks
 
 _BLOCK_BYTES = 32 * 1024 * 1024
 
@@ -41,7 +41,7 @@ def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, C
 
 
 def solve_linear(
-    structure: PreparedStructure, absorbers: AbsorberSet, points: InterfacePoints, progress: Progress | None = None
+    structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, progress: Progress | None = None
 ) -> LinearAbsorberSpectra:
     """Return the interface spectra of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.count
@@ -65,5 +65,5 @@ def solve_linear(
         force[count:, block] = -(other * inner + own * outer).T
         displacement[:, block] = (mass * (inner + outer)).T
 
-    over_blocks(blocks, work, progress, "linear absorbers")
+    map_node_blocks(blocks, work, progress, "linear absorbers")
     return LinearAbsorberSpectra(force, displacement, points.project(force))

@@ -15,7 +15,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.linear_absorbers import LinearAbsorberSpectra, admittance
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 
 _SAME_ANGLE = 1e-9
 
@@ -30,7 +30,7 @@ def is_ring(absorbers: AbsorberSet) -> bool:
     return bool(np.all(np.abs(gaps - 360.0 / angles.size) <= _SAME_ANGLE))
 
 
-def solve_ring(structure: PreparedStructure, absorbers: AbsorberSet) -> LinearAbsorberSpectra:
+def solve_ring(structure: StructureSpectra, absorbers: AbsorberSet) -> LinearAbsorberSpectra:
     """Return the interface spectra of a ring of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.every_angle.size
     inner = int(absorbers.inner_shell[0])
@@ -56,8 +56,8 @@ def solve_ring(structure: PreparedStructure, absorbers: AbsorberSet) -> LinearAb
         around = np.exp(2j * np.pi * orders[k] * ring_index / count)[:, None]
         force += around * pull[:, None, :]
         displacement += around * mass * (amplitude[0] + amplitude[1])
-    full = np.zeros((len(structure.problem.shells), absorbers.halves, structure.max_order + 1, nodes.size), np.complex128)
-    full[pair] = _halves(pressure, absorbers.halves)
+    full = np.zeros((len(structure.problem.shells), absorbers.parities, structure.max_order + 1, nodes.size), np.complex128)
+    full[pair] = _halves(pressure, absorbers.parities)
     return LinearAbsorberSpectra(force.reshape(2 * absorbers.count, -1), displacement, full)
 
 
@@ -70,10 +70,10 @@ def _two_by_two(receptance: ComplexArray, own: ComplexArray, other: ComplexArray
     return np.stack([(d * excited[0] - b * excited[1]) / determinant, (a * excited[1] - c * excited[0]) / determinant])
 
 
-def _signed(halves: ComplexArray) -> ComplexArray:
+def _signed(parities: ComplexArray) -> ComplexArray:
     """Return amplitudes of e^{i m theta}, m = -M..M, shape (shells, 2M + 1, nodes), from those of cos and sin."""
-    cosine = halves[:, 0]
-    sine = halves[:, 1] if halves.shape[1] == 2 else np.zeros_like(cosine)
+    cosine = parities[:, 0]
+    sine = parities[:, 1] if parities.shape[1] == 2 else np.zeros_like(cosine)
     positive, negative = 0.5 * (cosine - 1j * sine), 0.5 * (cosine + 1j * sine)
     return np.concatenate([negative[:, :0:-1], cosine[:, :1], positive[:, 1:]], axis=1)
 

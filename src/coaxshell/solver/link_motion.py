@@ -59,14 +59,14 @@ def marched_motion(absorbers: AbsorberSet, time_step: float, force: FloatArray, 
     if absorbers.damping.any():
         stretch = np.zeros(force.shape[:2])
         for n in range(1, len(rates)):
-            ahead = stretch + half * rates[n - 1]
-            rates[n] = _rate(force[..., n], ahead, (np.where(c > 0.0, c, 1.0), linear, cubic), half)
-            stretch = ahead + half * rates[n]
+            predicted = stretch + half * rates[n - 1]
+            rates[n] = _rate(force[..., n], predicted, (np.where(c > 0.0, c, 1.0), linear, cubic), half)
+            stretch = predicted + half * rates[n]
         rates *= c > 0.0
     return LinkMotion(force, displacement, velocity, np.moveaxis(rates, 0, -1))
 
 
-def _rate(force: FloatArray, ahead: FloatArray, law: tuple[FloatArray, FloatArray, FloatArray], half: float) -> FloatArray:
+def _rate(force: FloatArray, predicted: FloatArray, law: tuple[FloatArray, FloatArray, FloatArray], half: float) -> FloatArray:
     """Return r of f = c r + k_l D + k_nl D^3, D = ahead + r dt/2.
 
     The cubic in D is monotone, its root the hyperbolic one; r follows by the secant of the springs, which does not cancel.
@@ -74,9 +74,9 @@ def _rate(force: FloatArray, ahead: FloatArray, law: tuple[FloatArray, FloatArra
     damping, linear, cubic = law
     tangent = linear + damping / half
     bend = np.sqrt(3.0 * cubic / tangent)
-    target = (force + damping / half * ahead) / tangent
+    target = (force + damping / half * predicted) / tangent
     curved = 2.0 * np.sinh(np.arcsinh(1.5 * bend * target) / 3.0)
     stretch = np.divide(curved, bend, out=target.copy(), where=np.broadcast_to(bend > 0.0, target.shape))
-    secant = linear + cubic * (stretch**2 + stretch * ahead + ahead**2)
-    rate: FloatArray = (force - (linear + cubic * ahead**2) * ahead) / (damping + half * secant)
+    secant = linear + cubic * (stretch**2 + stretch * predicted + predicted**2)
+    rate: FloatArray = (force - (linear + cubic * predicted**2) * predicted) / (damping + half * secant)
     return rate

@@ -15,22 +15,22 @@ from coaxshell.solver.linear_absorbers import solve_linear
 from coaxshell.solver.linear_ring import is_ring, solve_ring
 from coaxshell.solver.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 
 
 @dataclass(frozen=True)
-class LinkedSpectra:
+class AbsorberSolution:
     """The answer with absorbers and saturation.
 
     Attributes
     ----------
-    normal, tangential : ndarray, shape (shells, halves, M + 1, nodes)
+    normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
         Transforms of W and V.
     force : ndarray, shape (N, 2, T)
         Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
     displacement : ndarray, shape (N, T)
         q of every absorber of the description.
-    actuation : ndarray, shape (shells, halves, M + 1, T), or None
+    actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
     iterations : int
         Of all steps, 0 if solved exactly.
@@ -48,13 +48,13 @@ class LinkedSpectra:
 
 
 def solve_linked(
-    structure: PreparedStructure,
+    structure: StructureSpectra,
     absorbers: AbsorberSet,
     progress: Progress | None = None,
     *,
     saturate: bool = False,
     exact: bool | None = None,
-) -> LinkedSpectra:
+) -> AbsorberSolution:
     """Return the response with absorbers, and with saturating actuators if asked for.
 
     ``exact`` None chooses: linear absorbers in the Laplace domain, anything nonlinear by the march. False marches linear ones
@@ -68,7 +68,7 @@ def solve_linked(
         return _marched(structure.open_loop, absorbers, result)
     if absorbers.count == 0:
         linear = structure.linear
-        return LinkedSpectra(linear.normal, linear.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0)
+        return AbsorberSolution(linear.normal, linear.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0)
     if absorbers.is_linear if exact is None else exact:
         if is_ring(absorbers) and structure.problem.ingredients.point_force_shares is point_force_shares:
             found = solve_ring(structure, absorbers)
@@ -76,15 +76,15 @@ def solve_linked(
             found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
         normal, tangential = structure.forced_spectra(found.modal_pressure)
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
-        return LinkedSpectra(normal, tangential, force, displacement, None, 0, (found.force, found.mass_displacement))
+        return AbsorberSolution(normal, tangential, force, displacement, None, 0, (found.force, found.mass_displacement))
     return _marched(structure, absorbers, march(structure, absorbers, progress=progress))
 
 
-def _marched(structure: PreparedStructure, absorbers: AbsorberSet, result: MarchResult) -> LinkedSpectra:
+def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult) -> AbsorberSolution:
     """Return the answer of a structure to the forces of a march."""
     normal, tangential = structure.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
     force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
-    return LinkedSpectra(normal, tangential, force, displacement, result.actuation, result.iterations)
+    return AbsorberSolution(normal, tangential, force, displacement, result.actuation, result.iterations)
 
 
 def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -93,7 +93,7 @@ def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArra
     return sides[absorbers.member], displacement[absorbers.member]
 
 
-def interface_of(structure: PreparedStructure, absorbers: AbsorberSet, linked: LinkedSpectra) -> Interface:
+def interface_of(structure: StructureSpectra, absorbers: AbsorberSet, linked: AbsorberSolution) -> Interface:
     """Return what absorbers and actuators did, for the error estimates."""
     first = _representatives(absorbers)
     force = linked.force[first].swapaxes(0, 1)
@@ -111,7 +111,7 @@ def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:
     return np.array([int(np.flatnonzero(absorbers.member == i)[0]) for i in range(absorbers.count)], dtype=np.int64)
 
 
-def modal_pressure_of(structure: PreparedStructure, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:
-    """Return the modal pressures (shells, halves, M + 1, T) of stored absorber forces (N, 2, T)."""
+def modal_pressure_of(structure: StructureSpectra, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:
+    """Return the modal pressures (shells, parities, M + 1, T) of stored absorber forces (N, 2, T)."""
     points = InterfacePoints(structure.problem, absorbers, structure.max_order)
     return points.project(force[_representatives(absorbers)].swapaxes(0, 1).reshape(2 * absorbers.count, -1))

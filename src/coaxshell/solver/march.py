@@ -25,11 +25,11 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
-from coaxshell.solver.block_response import LinkConstants, block_response, over_block
+from coaxshell.solver.block_response import LinkConstants, block_response, block_toeplitz
 from coaxshell.solver.history import HistorySum
 from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
 from coaxshell.solver.newton import ConvergenceError, ImplicitStep
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.relaxation import Relaxation
 from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
 
@@ -48,7 +48,7 @@ class MarchResult:
         Line forces at the interface points, positive inward.
     mass_displacement : ndarray, shape (N, T)
         q.
-    modal_pressure : ndarray, shape (shells, halves, M + 1, T)
+    modal_pressure : ndarray, shape (shells, parities, M + 1, T)
         Of links and saturating actuators together, on every shell.
     actuation : ndarray, same shape, or None
         Of the actuators' share in it, where they saturate.
@@ -66,12 +66,12 @@ class MarchResult:
     iterations: int
 
 
-def march(structure: PreparedStructure, absorbers: AbsorberSet, *, saturate: bool = False, progress: Progress | None = None) -> MarchResult:
+def march(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate: bool = False, progress: Progress | None = None) -> MarchResult:
     """March the interface over all times of the linear response.
 
     Parameters
     ----------
-    structure : PreparedStructure
+    structure : StructureSpectra
     absorbers : AbsorberSet
         May be empty.
     saturate : bool
@@ -89,17 +89,17 @@ def march(structure: PreparedStructure, absorbers: AbsorberSet, *, saturate: boo
 class _March:
     """State and constants of one march. Block arrays run over (step, row)."""
 
-    def __init__(self, structure: PreparedStructure, absorbers: AbsorberSet, saturate: bool) -> None:
+    def __init__(self, structure: StructureSpectra, absorbers: AbsorberSet, saturate: bool) -> None:
         self.structure = structure.open_loop if saturate else structure
-        self.count, self.halves = absorbers.count, absorbers.halves
+        self.count, self.parities = absorbers.count, absorbers.parities
         self.shells, self.controlled = len(structure.problem.shells), structure.controlled if saturate else []
         self.points = InterfacePoints(structure.problem, absorbers, structure.max_order)
         self.table = structure.kernels_with_voltage if saturate else structure.kernels
-        self.history = HistorySum(self.table, self.halves)
+        self.history = HistorySum(self.table, self.parities)
         self.modes = structure.max_order + 1
         self.limits = np.array([voltage_limit(structure.problem, i) for i in self.controlled])
         self.full_pressure = np.array([structure.problem.actuator_pressure(i) for i in self.controlled]) * self.limits
-        unknowns = 2 * self.count + len(self.controlled) * self.halves * self.modes
+        unknowns = 2 * self.count + len(self.controlled) * self.parities * self.modes
         self.length = _LONGEST_BLOCK
         while self.length > 1 and self.length * unknowns > _BLOCK_UNKNOWNS:
             self.length //= 2
@@ -112,17 +112,17 @@ class _March:
         of_forces = np.stack([self.points.immediate(kernels[..., lag]) for lag in range(kernels.shape[-1])])
         step = self.structure.grid.time_step
         self.links = LinkConstants.of(absorbers, np.diag(of_forces[0]), step)
-        actuation = self._actuation(np.eye(len(self.controlled) * self.halves * self.modes))
+        actuation = self._actuation(np.eye(len(self.controlled) * self.parities * self.modes))
         moved = np.stack([self.points.evaluate(_answer(kernels[..., lag], actuation)) for lag in range(kernels.shape[-1])])
         response = block_response(self.links, of_forces, moved)
         unknowns = np.concatenate([response.stretch, self._voltages(response.force, actuation)], axis=1)
-        self.rows = over_block(unknowns)
+        self.rows = block_toeplitz(unknowns)
         size = unknowns.shape[1]
         self.earlier = [self.rows[step * size : (step + 1) * size, : step * size] for step in range(unknowns.shape[0])]
-        self.reaction = over_block(response.force)
-        self.pull = over_block(response.mass_velocity)
-        springs = CubicSprings(np.tile(absorbers.cubic, 2), np.tile(self.links.lent, 2))
-        self.voltages = LimitedVoltages(len(self.controlled), self.halves, self.modes)
+        self.force_of_input = block_toeplitz(response.force)
+        self.mass_velocity_of_input = block_toeplitz(response.mass_velocity)
+        springs = CubicSprings(np.tile(absorbers.cubic, 2), np.tile(self.links.auxiliary_stiffness, 2))
+        self.voltages = LimitedVoltages(len(self.controlled), self.parities, self.modes)
         law = SpringsAndActuators(springs, 2 * self.count, self.voltages) if self.controlled else springs
         self.law, self.newton = law, ImplicitStep(unknowns[0], law)
         self.relaxation = Relaxation(self.rows, size, springs)
@@ -133,7 +133,7 @@ class _March:
     def _voltages(self, force: FloatArray, actuation: FloatArray) -> FloatArray:
         """Return the voltages asked for, in units of the limits, per unit input: shape (lags, amplitudes, inputs)."""
         lags, _, columns = force.shape
-        found = np.zeros((lags, len(self.controlled) * self.halves * self.modes, columns))
+        found = np.zeros((lags, len(self.controlled) * self.parities * self.modes, columns))
         if not self.controlled:
             return found
         pressures = [self.points.project(f) for f in force]
@@ -144,23 +144,23 @@ class _March:
         return found
 
     def _actuation(self, volts: FloatArray) -> FloatArray:
-        """Return modal pressures (shells, halves, M + 1, ...) of voltages given (amplitudes, ...) in units of their limits."""
-        pressure = np.zeros((self.shells, self.halves, self.modes, *volts.shape[1:]))
-        parts = volts.reshape(len(self.controlled), self.halves, self.modes, *volts.shape[1:])
+        """Return modal pressures (shells, parities, M + 1, ...) of voltages given (amplitudes, ...) in units of their limits."""
+        pressure = np.zeros((self.shells, self.parities, self.modes, *volts.shape[1:]))
+        parts = volts.reshape(len(self.controlled), self.parities, self.modes, *volts.shape[1:])
         for part, shell, scale in zip(parts, self.controlled, self.full_pressure, strict=True):
             pressure[shell] = scale * part
         return pressure
 
-    def _linear_motion(self, structure: PreparedStructure) -> None:
+    def _linear_motion(self, structure: StructureSpectra) -> None:
         """Sample the motion, and where actuators saturate the voltages asked for, that the forces are added to: shape (T, rows)."""
         self.linear_displacement = self._by_step(self.points.evaluate(self.structure.linear_displacement))
         self.linear_velocity = self._by_step(self.points.evaluate(self.structure.linear_velocity))
         steps = structure.grid.time.size
-        asked = np.zeros((len(self.controlled), self.halves, self.modes, steps))
+        demanded_voltage = np.zeros((len(self.controlled), self.parities, self.modes, steps))
         if self.controlled:
             volts = structure.voltage_without_actuators
-            asked[:, : volts.shape[1]] = volts / self.limits[:, None, None, None]
-        self.asked = np.ascontiguousarray(asked.reshape(-1, steps).T)
+            demanded_voltage[:, : volts.shape[1]] = volts / self.limits[:, None, None, None]
+        self.demanded_voltage = np.ascontiguousarray(demanded_voltage.reshape(-1, steps).T)
 
     def _by_step(self, histories: FloatArray) -> FloatArray:
         return np.ascontiguousarray(histories.T).reshape(histories.shape[-1], 2, self.count)
@@ -168,8 +168,8 @@ class _March:
     def run(self, progress: Progress | None) -> MarchResult:
         """Return the histories of all steps; the first instant is at rest."""
         steps, n = self.structure.grid.time.size, self.count
-        force, mass, volts = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, self.asked.shape[1]))
-        pressure = np.zeros((self.shells, self.halves, self.modes, steps))
+        force, mass, volts = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, self.demanded_voltage.shape[1]))
+        pressure = np.zeros((self.shells, self.parities, self.modes, steps))
         state = BlockState(*np.zeros((3, 2, n)), *np.zeros((2, n)))
         for start in range(1, steps, self.length):
             block = slice(start, min(start + self.length, steps))
@@ -195,43 +195,43 @@ class _March:
         """
         n, half, count = self.count, self.links.half_step, block.stop - block.start
         integral = self.integral[:count, :count]
-        promised = self.history.ahead(count)
-        excited = self.points.evaluate(promised[: self.shells]).T
+        history_forcing = self.history.forcing(count)
+        excited = self.points.evaluate(history_forcing[: self.shells]).T
         free_w = integral @ excited
         excited, free_w = excited.reshape(count, 2, n), free_w.reshape(count, 2, n) + (state.displacement + half * state.velocity)
         free_u = state.mass_velocity - self.links.mobility * state.force.sum(axis=0)
         free_q = state.mass_displacement + half * state.mass_velocity + integral.sum(axis=1)[:, None] * free_u
         free_stretch = free_q[:, None] - self.linear_displacement[block] - free_w
         drive = self.links.damping * (free_u - self.linear_velocity[block] - excited) + self.links.stiffness * free_stretch
-        added = self._march(block, promised, free_stretch.reshape(count, -1), drive.reshape(count, -1))
+        added = self._march(block, history_forcing, free_stretch.reshape(count, -1), drive.reshape(count, -1))
         added[:, : 2 * n] += drive.reshape(count, -1)
         flat = added.ravel()
-        force = (self.reaction[: 2 * n * count, : flat.size] @ flat).reshape(count, 2, n)
-        u = (self.pull[: n * count, : flat.size] @ flat).reshape(count, n)
+        force = (self.force_of_input[: 2 * n * count, : flat.size] @ flat).reshape(count, 2, n)
+        u = (self.mass_velocity_of_input[: n * count, : flat.size] @ flat).reshape(count, n)
         mass = free_q + integral @ u
         return BlockState(force[-1], free_w[-1], excited[-1], mass[-1], free_u + u[-1]), force, mass, added[:, 2 * n :]
 
-    def _march(self, block: slice, promised: FloatArray, free_stretch: FloatArray, drive: FloatArray) -> FloatArray:
+    def _march(self, block: slice, history_forcing: FloatArray, free_stretch: FloatArray, drive: FloatArray) -> FloatArray:
         """Return n(z) at the steps of a block, shape (steps, unknowns)."""
         count, n = block.stop - block.start, self.count
-        asked = self.asked[block]
+        demanded_voltage = self.demanded_voltage[block]
         if self.controlled:
-            volts = promised[self.shells :] / self.limits[:, None, None, None]
-            asked = asked + volts.reshape(-1, count).T
-        added = np.zeros((count, self.asked.shape[1] + 2 * n))
+            volts = history_forcing[self.shells :] / self.limits[:, None, None, None]
+            demanded_voltage = demanded_voltage + volts.reshape(-1, count).T
+        added = np.zeros((count, self.demanded_voltage.shape[1] + 2 * n))
         added[:, : 2 * n] = drive
-        known = np.concatenate([free_stretch, asked], axis=1)
+        known = np.concatenate([free_stretch, demanded_voltage], axis=1)
         size = known.size
         known += (self.rows[:size, :size] @ added.ravel()).reshape(known.shape)
-        done = self._together(known, added)
+        done = self._relax_steps(known, added)
         flat = added.ravel()
         for step in range(done, count):
             earlier = self.earlier[step]
             z = self._solve(known[step] + earlier @ flat[: earlier.shape[1]] if step else known[step])
-            added[step] = self.law.excess(z)
+            added[step] = self.law.nonlinear_part(z)
         return added
 
-    def _together(self, known: FloatArray, added: FloatArray) -> int:
+    def _relax_steps(self, known: FloatArray, added: FloatArray) -> int:
         """Fill in n(z) of the first steps, several at once; return how many: once it does not pay, no more of this march."""
         flat, size, done = added.ravel(), known.shape[1], 0
         while self.relaxing and done < len(known):
@@ -239,7 +239,7 @@ class _March:
             part, before = slice(done * size, end * size), slice(0, done * size)
             found = self.relaxation.solve(known[done:end] + (self.rows[part, before] @ flat[before]).reshape(-1, size))
             if found is None:
-                self.newton.go_on_from(self.relaxation.last)
+                self.newton.seed(self.relaxation.last)
                 self.relaxing = False
             else:
                 added[done:end], done = found, end
@@ -249,7 +249,7 @@ class _March:
         try:
             return self.newton.solve(known)
         except ConvergenceError:
-            if self.links.lent.any():  # no step helps: the tangent is singular wherever both springs pass through rest
+            if self.links.auxiliary_stiffness.any():  # no step helps: the tangent is singular wherever both springs pass through rest
                 remedy = "give them a linear stiffness, however small, such as 1 kN/m^2, or a mass"
                 loose = "without mass, cubic springs alone leave them loose at rest, and their forces did not converge"
                 raise InputError("absorbers", loose, remedy) from None
@@ -276,5 +276,5 @@ class BlockState:
 
 
 def _answer(kernels: FloatArray, pressure: FloatArray) -> FloatArray:
-    """Return what modal pressures (shells, halves, M + 1, ...) cause through one weight per mode, (outputs, shells, M + 1)."""
+    """Return what modal pressures (shells, parities, M + 1, ...) cause through one weight per mode, (outputs, shells, M + 1)."""
     return np.asarray(np.einsum("ijm,jhm...->ihm...", kernels, pressure))

@@ -19,20 +19,20 @@ from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
-from coaxshell.solver.workshop import Workshop
+from coaxshell.solver.shared_parts import SharedParts
 
 _FEWEST = 8
 _GROWTH = 1.25
 _LINEARISATIONS = 4
 
 
-def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, workshop: Workshop | None = None) -> tuple[int, float]:
+def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, shared: SharedParts | None = None) -> tuple[int, float]:
     """Return the smallest order M whose estimated stress error is within the tolerance on every shell, and that estimate.
 
     If even 2000 orders are not enough, 2000 and what remains.
     """
     orders = np.unique(np.concatenate([np.arange(0, 33), np.geomspace(36, 2 * MAX_MODES, 48).round()]))
-    sampled = SampledOrders.of(problem, grid, orders, workshop)
+    sampled = SampledOrders.of(problem, grid, orders, shared)
     system = problem.system
     links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
     squares = sampled.excited
@@ -103,11 +103,11 @@ def _changed(
     return float(np.sqrt(np.divide(part, total, out=np.zeros_like(part), where=total > 1e-290)).max())
 
 
-def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings, workshop: Workshop | None = None) -> tuple[int, list[str]]:
+def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings, shared: SharedParts | None = None) -> tuple[int, list[str]]:
     """Return the number of modes asked for, chosen by the tolerance if "auto", and a warning if 2000 are not enough."""
     if settings.modes != "auto":
         return settings.modes, []
-    order, remaining = choose_modes(problem, grid, settings.tolerance, workshop)
+    order, remaining = choose_modes(problem, grid, settings.tolerance, shared)
     if remaining <= settings.tolerance:
         return order, []
     return order, [

@@ -30,20 +30,20 @@ class InterfaceLaw(Protocol):
 
     tolerance: float
     """Error of z, relative."""
-    patience: float
+    contraction_limit: float
     """The tangent is renewed when an iteration gains less than this factor."""
     most_iterations: int
     """Before the residual is watched."""
 
-    def excess(self, z: FloatArray) -> FloatArray:
+    def nonlinear_part(self, z: FloatArray) -> FloatArray:
         """Return n(z)."""
         ...
 
-    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
         """Keep the tangent T at z and return R T."""
         ...
 
-    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+    def tangent_remainder(self, z: FloatArray) -> FloatArray:
         """Return n(z) - T z with the tangent last kept."""
         ...
 
@@ -75,7 +75,7 @@ class ImplicitStep:
         self.iterations = 0
 
     def _renew(self, z: FloatArray) -> None:
-        tangent = self._law.freeze(z, self._response)
+        tangent = self._law.linearise(z, self._response)
         self._inverse, self._gain = None, self._response
         if tangent.any():
             inverse = np.asarray(np.linalg.inv(self._identity - tangent), dtype=np.float64)
@@ -85,7 +85,7 @@ class ImplicitStep:
     def _target(self, known: FloatArray) -> FloatArray:
         return known if self._inverse is None else self._inverse @ known
 
-    def go_on_from(self, last: FloatArray) -> None:
+    def seed(self, last: FloatArray) -> None:
         """Begin as if the last steps had been solved here; ``last`` is their z, shape (steps, n)."""
         for z in last:
             self._oldest, self._before, self._last = self._before, self._last, z
@@ -102,7 +102,7 @@ class ImplicitStep:
         target = self._target(known)
         last = 0.0  # 0: not measured with the present tangent
         for iteration in range(1, law.most_iterations + 1):
-            new = self._gain @ law.beyond_tangent(z)
+            new = self._gain @ law.tangent_remainder(z)
             new += target
             change = new - z
             z = new
@@ -115,7 +115,7 @@ class ImplicitStep:
                     break
                 if iteration > _FEW_ITERATIONS and float(np.abs(change).max()) <= _ROUNDING * float(np.abs(target).max()):
                     break  # terms far larger than their sum
-                if self._rate > law.patience:
+                if self._rate > law.contraction_limit:
                     self._renew(z)
                     target = self._target(known)
                     size = 0.0
@@ -132,7 +132,7 @@ class ImplicitStep:
         missing, size = self._residual(z, known)
         for _ in range(_MAX_DESCENTS):
             try:
-                towards = np.asarray(np.linalg.solve(self._identity - law.freeze(z, self._response), missing), dtype=np.float64)
+                towards = np.asarray(np.linalg.solve(self._identity - law.linearise(z, self._response), missing), dtype=np.float64)
             except np.linalg.LinAlgError:
                 raise ConvergenceError from None
             self.iterations += 1
@@ -153,5 +153,5 @@ class ImplicitStep:
 
     def _residual(self, z: FloatArray, known: FloatArray) -> tuple[FloatArray, float]:
         """Return z_known + R n(z) - z and its size relative to z_known."""
-        missing = known + self._response @ self._law.excess(z) - z
+        missing = known + self._response @ self._law.nonlinear_part(z) - z
         return missing, self._law.relative(missing, known)

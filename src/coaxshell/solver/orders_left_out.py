@@ -22,7 +22,7 @@ from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.linear_absorbers import admittance
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
 
 REST = 1e-7
@@ -43,11 +43,11 @@ class Interface:
         Line forces at every instant of the grid.
     stretch : ndarray, shape (2, N, T)
         D.
-    actuation : ndarray, shape (shells, halves, M + 1, T), or None
+    actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressures that saturating actuators gave.
     marched : bool
         Whether steps were taken, or the interface solved exactly.
-    saturating : PreparedStructure or None
+    saturating : StructureSpectra or None
         With its feedback, where actuators acted as forces on the structure without.
     """
 
@@ -56,13 +56,13 @@ class Interface:
     stretch: FloatArray
     actuation: FloatArray | None
     marched: bool
-    saturating: PreparedStructure | None = None
+    saturating: StructureSpectra | None = None
 
 
 def surface_norms(normal: npt.NDArray[np.number], tangential: npt.NDArray[np.number]) -> FloatArray:
     """Return the mean squares over the surface of displacement W and strain m V - W, summed over the last axis: (shells, 2, M + 1).
 
-    The arguments have the shape (shells, halves, M + 1, instants or nodes).
+    The arguments have the shape (shells, parities, M + 1, instants or nodes).
     """
     m = np.arange(normal.shape[2])
     strain = m[:, None] * tangential
@@ -104,7 +104,7 @@ def mean_tangent(links: AbsorberSet, stretch: FloatArray) -> AbsorberSet:
     return replace(links, linear=links.linear + 3.0 * links.cubic * spread, cubic=np.zeros_like(links.cubic))
 
 
-def forces_changed(structure: PreparedStructure, links: AbsorberSet, above: SampledOrders, force: ComplexArray) -> ComplexArray:
+def forces_changed(structure: StructureSpectra, links: AbsorberSet, above: SampledOrders, force: ComplexArray) -> ComplexArray:
     """Return df, shape (2, N, nodes), at the sampled nodes; ``force`` are the run's own, ``links`` linear.
 
     The phases of dw, known by their mean squares alone, are drawn at random, the same in every run.
@@ -132,14 +132,14 @@ def forces_changed(structure: PreparedStructure, links: AbsorberSet, above: Samp
     return np.asarray(-(law @ wall)[:, :, 0].T.reshape(2, count, -1))
 
 
-def _mean_mobility(structure: PreparedStructure) -> ComplexArray:
+def _mean_mobility(structure: StructureSpectra) -> ComplexArray:
     """Return the mobility of a point by the orders kept, shape (shells, shells, nodes)."""
     problem, share = structure.problem, np.where(np.arange(structure.max_order + 1) == 0, 0.5, 1.0)
     radius = np.pi * np.array([shell.radius for shell in problem.shells])
     return np.asarray(np.einsum("ijmk,m->ijk", structure.compliance[..., NODES], share) / radius[:, None])
 
 
-def moved_by(structure: PreparedStructure, links: AbsorberSet, force: ComplexArray) -> FloatArray:
+def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArray) -> FloatArray:
     """Return the norms (shells, 2, M + 1) of what line forces (2, N, nodes) at the sampled nodes move in the orders kept."""
     pressure = InterfacePoints(structure.problem, links, structure.max_order).project(force.reshape(2 * links.count, -1))
     compliance, ratio = structure.compliance[..., NODES], structure.tangential_ratio[..., NODES]
@@ -148,7 +148,7 @@ def moved_by(structure: PreparedStructure, links: AbsorberSet, force: ComplexArr
 
 
 def left_out(
-    structure: PreparedStructure,
+    structure: StructureSpectra,
     above: SampledOrders,
     spectra: tuple[ComplexArray, ComplexArray],
     whole: FloatArray,
@@ -158,7 +158,7 @@ def left_out(
 
     Parameters
     ----------
-    structure : PreparedStructure
+    structure : StructureSpectra
     above : SampledOrders
         Of orders above M.
     spectra : pair of ndarray

@@ -15,12 +15,12 @@ from coaxshell.solver.history import KernelTable
 from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.spectral import LinearSpectra, linear_spectra
-from coaxshell.solver.workshop import Workshop
 
 
 @dataclass
-class ForcedParts:
+class UnitResponse:
     """What structures that differ only in their sources, absorbers and field limits have in common; made when first needed.
 
     Attributes
@@ -30,7 +30,7 @@ class ForcedParts:
     kernels, kernels_with_voltage : KernelTable or None
     sensor_rates : ndarray or None
         Step weights of the rates of the controlled shells' sensors.
-    open_loop : ForcedParts or None
+    open_loop : UnitResponse or None
         Those of the structure without feedback.
     """
 
@@ -39,10 +39,10 @@ class ForcedParts:
     kernels: KernelTable | None = None
     kernels_with_voltage: KernelTable | None = None
     sensor_rates: FloatArray | None = None
-    open_loop: ForcedParts | None = None
+    open_loop: UnitResponse | None = None
 
 
-class PreparedStructure:
+class StructureSpectra:
     """Linear response and compliance of one structure under its sources, computed when first needed and kept.
 
     Parameters
@@ -52,9 +52,9 @@ class PreparedStructure:
     grid : LaplaceGrid
     max_order : int
     progress : callable, optional
-    workshop : Workshop, optional
+    shared : SharedParts, optional
         Where parts of other structures are found.
-    forced : ForcedParts, optional
+    forced : UnitResponse, optional
         Those of a structure that differs at most in its sources.
     """
 
@@ -65,23 +65,23 @@ class PreparedStructure:
         max_order: int,
         progress: Progress | None = None,
         *,
-        workshop: Workshop | None = None,
-        forced: ForcedParts | None = None,
+        shared: SharedParts | None = None,
+        forced: UnitResponse | None = None,
     ) -> None:
         self.problem, self.grid, self.max_order = problem, grid, max_order
-        self.forced = forced or ForcedParts()
-        self._progress, self._workshop = progress, workshop
+        self.forced = forced or UnitResponse()
+        self._progress, self._shared = progress, shared
 
     @cached_property
     def linear(self) -> LinearSpectra:
         """Transforms of the response without absorbers."""
-        return linear_spectra(self.problem, self.grid, self.max_order, self._progress, workshop=self._workshop)
+        return linear_spectra(self.problem, self.grid, self.max_order, self._progress, shared=self._shared)
 
     def _responses(self) -> tuple[ComplexArray, ComplexArray]:
         """Return compliance and V/W, made in one pass with the linear response if neither is known."""
         forced = self.forced
         if forced.compliance is None or forced.ratio is None:
-            made = linear_spectra(self.problem, self.grid, self.max_order, self._progress, compliance=True, workshop=self._workshop)
+            made = linear_spectra(self.problem, self.grid, self.max_order, self._progress, compliance=True, shared=self._shared)
             self.__dict__.setdefault("linear", made)
             forced.compliance, forced.ratio = made.compliance, made.ratio
         assert forced.compliance is not None
@@ -100,12 +100,12 @@ class PreparedStructure:
 
     @cached_property
     def linear_displacement(self) -> FloatArray:
-        """W without absorbers, shape (shells, halves, M + 1, T)."""
+        """W without absorbers, shape (shells, parities, M + 1, T)."""
         return self.grid.invert(self.linear.normal)
 
     @cached_property
     def linear_velocity(self) -> FloatArray:
-        """dW/dt without absorbers, shape (shells, halves, M + 1, T)."""
+        """dW/dt without absorbers, shape (shells, parities, M + 1, T)."""
         return self.grid.invert(self.linear.normal * self.grid.nodes)
 
     @property
@@ -134,12 +134,12 @@ class PreparedStructure:
         return [i for i, shell in enumerate(self.problem.shells) if shell.gains is not None]
 
     @cached_property
-    def open_loop(self) -> PreparedStructure:
+    def open_loop(self) -> StructureSpectra:
         """The structure without feedback, on which actuators act as forces like any other."""
         if self.forced.open_loop is None:
-            self.forced.open_loop = ForcedParts()
+            self.forced.open_loop = UnitResponse()
         problem, shared = self.problem.open_loop, self.forced.open_loop
-        return PreparedStructure(problem, self.grid, self.max_order, self._progress, workshop=self._workshop, forced=shared)
+        return StructureSpectra(problem, self.grid, self.max_order, self._progress, shared=self._shared, forced=shared)
 
     @property
     def kernels_with_voltage(self) -> KernelTable:
@@ -162,7 +162,7 @@ class PreparedStructure:
 
     @cached_property
     def voltage_without_actuators(self) -> FloatArray:
-        """Voltages asked for while neither absorbers nor actuators act, shape (controlled, halves, M + 1, T)."""
+        """Voltages asked for while neither absorbers nor actuators act, shape (controlled, parities, M + 1, T)."""
         bare = self.open_loop
         laws = [voltage_law(self.problem, i, self.grid.nodes, bare.tangential_ratio[i]) for i in self.controlled]
         return np.stack([self.grid.invert(law * bare.linear.normal[i]) for law, i in zip(laws, self.controlled, strict=True)])
@@ -172,11 +172,11 @@ class PreparedStructure:
 
         Parameters
         ----------
-        pressure : ndarray, shape (shells, halves, M + 1, nodes)
+        pressure : ndarray, shape (shells, parities, M + 1, nodes)
             Transforms of modal pressures, positive inward.
         """
-        halves = max(pressure.shape[1], self.linear.normal.shape[1])
-        shape = (*pressure.shape[:1], halves, *pressure.shape[2:])
+        parities = max(pressure.shape[1], self.linear.normal.shape[1])
+        shape = (*pressure.shape[:1], parities, *pressure.shape[2:])
         normal, tangential = np.zeros(shape, np.complex128), np.zeros(shape, np.complex128)
         sources, forced = slice(0, self.linear.normal.shape[1]), slice(0, pressure.shape[1])
         normal[:, sources], tangential[:, sources] = self.linear.normal, self.linear.tangential

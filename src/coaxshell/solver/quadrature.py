@@ -22,7 +22,7 @@ from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.spectral import node_blocks, over_blocks
+from coaxshell.solver.spectral import map_node_blocks, node_blocks
 
 RESOLVED = 0.6
 """Fraction of the highest frequency up to which a membrane's is left to product integration; the roll-off begins at 0.8."""
@@ -70,6 +70,6 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
                 operator = modal.shells[i]
                 rate[row, j, :, block] = 0.0 if operator is None else s * (on_v * operator.tangential + on_w) * normal[i]
 
-    over_blocks(node_blocks(grid, orders.size), work, None, "kernels")
+    map_node_blocks(node_blocks(grid, orders.size), work, None, "kernels")
     whole = np.ones(nodes.size)
     return grid.invert(velocity, whole) * grid.time_step, grid.invert(rate, whole) * grid.time_step

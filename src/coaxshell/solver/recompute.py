@@ -17,8 +17,8 @@ from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.actuation import pressure_given
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.link_motion import LinkMotion, exact_motion, marched_motion
-from coaxshell.solver.linked import LinkedSpectra, modal_pressure_of, solve_linked
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.linked import AbsorberSolution, modal_pressure_of, solve_linked
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 
@@ -33,11 +33,11 @@ class SolvedSpectra:
     grid : LaplaceGrid
         That on which the run was solved: its ``time`` has ``refinement`` steps to one of the run's; ``invert`` gives histories on it.
     max_order : int
-    normal, tangential : ndarray, shape (shells, halves, M + 1, nodes)
+    normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
         W and V.
     links : LinkMotion or None
         Histories of the absorbers, if there are any.
-    actuation : ndarray, shape (shells, halves, M + 1, T), or None
+    actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
     refinement : int
         Steps of the grid to one that the run kept.
@@ -60,7 +60,7 @@ def spectra_of(solution: ModalSolution) -> SolvedSpectra:
     assert isinstance(modes, int)
     problem = solution.problem
     grid = LaplaceGrid(solution.settings.time_step / refinement, (solution.time.size - 1) * refinement)
-    structure = PreparedStructure(problem, grid, modes)
+    structure = StructureSpectra(problem, grid, modes)
     links = absorber_set(problem, problem.system.absorber_list, 2 if needs_sine_half(problem.system.sources) else 1)
     linked = _linked(structure, links, solution)
     if linked is None:
@@ -73,7 +73,7 @@ def spectra_of(solution: ModalSolution) -> SolvedSpectra:
     return SolvedSpectra(problem, grid, modes, linked.normal, linked.tangential, motion, linked.actuation, refinement)
 
 
-def _linked(structure: PreparedStructure, links: AbsorberSet, solution: ModalSolution) -> LinkedSpectra | None:
+def _linked(structure: StructureSpectra, links: AbsorberSet, solution: ModalSolution) -> AbsorberSolution | None:
     """Return the answer with absorbers and saturation, as it was solved or from the forces kept; None if there are neither."""
     force, displacement, actuation = solution.absorber_force, solution.absorber_displacement, pressure_given(solution)
     if actuation is None and not links.count:
@@ -88,4 +88,4 @@ def _linked(structure: PreparedStructure, links: AbsorberSet, solution: ModalSol
     if links.count:
         pressure = pressure + modal_pressure_of(structure, links, force)
     normal, tangential = structure.forced_spectra(structure.grid.transform_linear(np.asarray(pressure)))
-    return LinkedSpectra(normal, tangential, force, displacement, actuation, 0)
+    return AbsorberSolution(normal, tangential, force, displacement, actuation, 0)

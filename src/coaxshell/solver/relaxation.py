@@ -53,7 +53,7 @@ class Relaxation:
         springs, rows = self._springs, self._rows[len(known)]
         z, last = known, 0.0
         for iteration in range(1, _MOST_ITERATIONS + 1):
-            new = known + (rows @ springs.excess(z).ravel()).reshape(known.shape)
+            new = known + (rows @ springs.nonlinear_part(z).ravel()).reshape(known.shape)
             size = springs.relative((new - z).ravel(), new.ravel())
             z = new
             if size > springs.tolerance and last > 0.0:
@@ -64,6 +64,6 @@ class Relaxation:
             if size <= springs.tolerance:
                 self.last = z
                 self.iterations += iteration * len(z)
-                return springs.excess(z)
+                return springs.nonlinear_part(z)
             last = size
         return None

@@ -20,7 +20,7 @@ from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.linear_absorbers import admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
-from coaxshell.solver.workshop import Workshop
+from coaxshell.solver.shared_parts import SharedParts
 
 NODES = slice(0, None, 16)
 """Every sixteenth node: poles are at least sigma from the contour; sums over nodes 4 sigma apart err by half for one such pole, by less
@@ -73,12 +73,12 @@ class SampledOrders:
     modal: ModalSystem
 
     @classmethod
-    def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, workshop: Workshop | None = None) -> SampledOrders:
+    def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> SampledOrders:
         """Solve a problem at some ascending orders."""
         count, nodes = len(problem.shells), grid.nodes[NODES]
-        modal = ModalSystem(problem, nodes, orders, workshop=workshop)
+        modal = ModalSystem(problem, nodes, orders, shared=shared)
         excited = np.zeros((count, orders.size, nodes.size))
-        for load in SurfaceLoads(problem, grid, orders, workshop)(modal.surface, NODES):
+        for load in SurfaceLoads(problem, grid, orders, shared)(modal.surface, NODES):
             excited += np.abs(np.stack(modal.solve(count - 1, load))) ** 2
         strain = [
             np.zeros((orders.size, nodes.size)) if wall is None else np.abs(orders[:, None] * wall.tangential - 1.0) ** 2

@@ -26,18 +26,18 @@ _OVERSAMPLING = 4
 _FEWEST_POINTS = 180
 
 
-def circle(modes: int, halves: int) -> tuple[FloatArray, FloatArray]:
+def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
     """Return the matrices from modal amplitudes (halves * modes) to the points of a circle, and back.
 
     One half has its points on the half circle: it is even.
     """
     orders = all_orders(modes - 1)
-    points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * halves
-    span = np.pi if halves == 1 else 2.0 * np.pi
+    points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * parities
+    span = np.pi if parities == 1 else 2.0 * np.pi
     theta = span * (np.arange(points) + 0.5) / points
     angles = theta[:, None] * orders
-    evaluate = np.concatenate([np.cos(angles), np.sin(angles)][:halves], axis=1)
-    beta = np.tile(np.where(orders == 0, 2.0, 1.0), halves)
+    evaluate = np.concatenate([np.cos(angles), np.sin(angles)][:parities], axis=1)
+    beta = np.tile(np.where(orders == 0, 2.0, 1.0), parities)
     return evaluate, np.ascontiguousarray(evaluate.T * (2.0 / (beta * points))[:, None])
 
 
@@ -48,7 +48,7 @@ class LimitedVoltages:
     ----------
     shells : int
         Controlled shells.
-    halves, modes : int
+    parities, modes : int
 
     Attributes
     ----------
@@ -56,10 +56,10 @@ class LimitedVoltages:
         Whether any voltage given was cut.
     """
 
-    def __init__(self, shells: int, halves: int, modes: int) -> None:
+    def __init__(self, shells: int, parities: int, modes: int) -> None:
         self.saturated = False
-        self._shape = (shells, halves * modes)
-        self._evaluate, self._project = circle(modes, halves)
+        self._shape = (shells, parities * modes)
+        self._evaluate, self._project = circle(modes, parities)
         self._around, self._back = np.ascontiguousarray(self._evaluate.T), np.ascontiguousarray(self._project.T)
         self._held = np.zeros((shells, self._evaluate.shape[0]))
 
@@ -67,7 +67,7 @@ class LimitedVoltages:
         """Return whether no sum of these amplitudes can reach a limit."""
         return bool(np.abs(amplitudes).sum(axis=1).max() <= 1.0)
 
-    def excess(self, z: FloatArray) -> FloatArray:
+    def nonlinear_part(self, z: FloatArray) -> FloatArray:
         """Return n(u) by modes."""
         amplitudes = z.reshape(self._shape)
         if self._within(amplitudes):
@@ -77,7 +77,7 @@ class LimitedVoltages:
         self.saturated = self.saturated or not np.array_equal(given, volts)
         return np.asarray((given @ self._back).ravel())
 
-    def freeze(self, z: FloatArray, response: FloatArray) -> FloatArray:
+    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
         """Keep the tangent, 0 on the saturated points and 1 elsewhere, and return R T."""
         self._held = (np.abs(z.reshape(self._shape) @ self._around) > 1.0).astype(np.float64)
         answer = response.copy()
@@ -90,7 +90,7 @@ class LimitedVoltages:
                 answer[:, part] -= response[:, part] @ tangent
         return answer
 
-    def beyond_tangent(self, z: FloatArray) -> FloatArray:
+    def tangent_remainder(self, z: FloatArray) -> FloatArray:
         """Return n(u) - T u with the tangent last kept."""
         amplitudes = z.reshape(self._shape)
         if not self._held.any() and self._within(amplitudes):
@@ -110,22 +110,22 @@ class SaturatedShell:
         The shell.
     present : ndarray, shape (M + 1,)
         Modal voltage asked for per modal pressure within the same step.
-    halves : int
+    parities : int
     """
 
-    def __init__(self, problem: Problem, index: int, present: FloatArray, halves: int) -> None:
+    def __init__(self, problem: Problem, index: int, present: FloatArray, parities: int) -> None:
         self.index = index
         self.limit = voltage_limit(problem, index)
         self.pressure_per_volt = problem.actuator_pressure(index)
-        self.evaluate, self.project = circle(present.size, halves)
-        self._shape = (halves, present.size)
-        self._feedthrough = np.tile(present, halves) * self.pressure_per_volt
+        self.evaluate, self.project = circle(present.size, parities)
+        self._shape = (parities, present.size)
+        self._feedthrough = np.tile(present, parities) * self.pressure_per_volt
         self._response = (self.evaluate * self._feedthrough) @ self.project
         self._saturated = np.zeros(self.evaluate.shape[0], dtype=bool)
 
-    def correction(self, asked: FloatArray) -> FloatArray:
-        """Return the modal pressure (halves, M + 1) of the correction to modal voltages asked for without it."""
-        known = self.evaluate @ asked.ravel()
+    def correction(self, demanded_voltage: FloatArray) -> FloatArray:
+        """Return the modal pressure (parities, M + 1) of the correction to modal voltages asked for without it."""
+        known = self.evaluate @ demanded_voltage.ravel()
         if not self._saturated.any() and np.abs(known).max() <= self.limit:
             return np.zeros(self._shape)
         delta = np.zeros_like(known)

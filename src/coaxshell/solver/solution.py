@@ -73,8 +73,8 @@ class ModalSolution:
         Resolution, with ``modes`` resolved to a number.
     time : ndarray, shape (T,)
         Times from 0 in steps of the time step.
-    normal : ndarray, shape (shells, halves, M + 1, T)
-        W: w = sum_m W[.,0,m] cos(m theta) + W[.,1,m] sin(m theta), positive inward. ``halves`` is 1 when the sine half vanishes.
+    normal : ndarray, shape (shells, parities, M + 1, T)
+        W: w = sum_m W[.,0,m] cos(m theta) + W[.,1,m] sin(m theta), positive inward. ``parities`` is 1 when the sine half vanishes.
     tangential : ndarray, same shape
         V: v = sum_m V[.,0,m] sin(m theta) - V[.,1,m] cos(m theta), so that dv/dtheta = sum m (V0 cos + V1 sin).
     estimates : Estimates
@@ -88,7 +88,7 @@ class ModalSolution:
         q_n.
     absorber_force : ndarray, shape (absorbers, 2, T)
         Line force f_n^(i)/(rho_e c_e^2 a) on the inner [0] and outer [1] of the shells it links, positive inward on the shell.
-    control_correction : ndarray, shape (shells, halves, M + 1, T), or None
+    control_correction : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure of the saturated minus that of the linear control law, where saturation is on.
     """
 

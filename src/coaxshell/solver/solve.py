@@ -20,17 +20,17 @@ from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
-from coaxshell.solver.linked import LinkedSpectra, interface_of, solve_linked
+from coaxshell.solver.linked import AbsorberSolution, interface_of, solve_linked
 from coaxshell.solver.mode_choice import resolve_modes
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.shared_parts import SharedParts, shared_parts
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.tension import tensions
-from coaxshell.solver.workshop import Workshop
 
 
 def solve(system: System, *, settings: Settings | None = None, progress: Progress | None = None) -> ModalSolution:
@@ -66,7 +66,7 @@ class Prepared:
         Its own absorbers are only the default of ``solve``. A dimensionless problem may carry other ingredients than a system's own.
     settings : Settings
     progress : callable, optional
-    workshop : Workshop, optional
+    shared : SharedParts, optional
         Where parts that other systems share are found and left.
     like : Prepared, optional
         Another one at the same settings, whose parts are shared if they are the same.
@@ -83,29 +83,29 @@ class Prepared:
         settings: Settings,
         progress: Progress | None = None,
         *,
-        workshop: Workshop | None = None,
+        shared: SharedParts | None = None,
         like: Prepared | None = None,
     ) -> None:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
         self._stopwatch = Stopwatch()
-        self._progress, self._workshop, self._asked = progress, workshop, settings
+        self._progress, self._shared, self._asked = progress, shared, settings
         self.problem = system if isinstance(system, Problem) else dimensionless(system)
         grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
         self._notes: list[str] = []
-        require_room(self.problem, settings, retunable=workshop is not None)
+        require_room(self.problem, settings, retunable=shared is not None)
         order = self._order(grid, settings)
         self.settings = replace(settings, modes=order)
         if settings.modes == "auto":
-            require_room(self.problem, self.settings, retunable=workshop is not None)
-        forced = like.structure.forced if like is not None and like.answers_like(self.problem, order) else None
+            require_room(self.problem, self.settings, retunable=shared is not None)
+        forced = like.structure.forced if like is not None and like.same_structure(self.problem, order) else None
         if forced is None:
-            require_stable(self.problem, order, settings.duration, workshop)
+            require_stable(self.problem, order, settings.duration, shared)
             self._stopwatch.lap("stability of the feedback")
-        self.structure: PreparedStructure = PreparedStructure(self.problem, grid, order, progress, workshop=workshop, forced=forced)
+        self.structure: StructureSpectra = StructureSpectra(self.problem, grid, order, progress, shared=shared, forced=forced)
         self._orders_above: SampledOrders | None = None
 
-    def answers_like(self, problem: Problem, max_order: int) -> bool:
+    def same_structure(self, problem: Problem, max_order: int) -> bool:
         """Return whether a problem differs at most in its sources, absorbers and field limits."""
         own = self.problem
         same = all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "ingredients"))
@@ -119,18 +119,18 @@ class Prepared:
         InputError
             If the feedback is unstable.
         """
-        if self._workshop is None:
-            self._workshop = Workshop()
+        if self._shared is None:
+            self._shared = shared_parts()
         problem = system if isinstance(system, Problem) else dimensionless(system)
         same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
-        if same and self.answers_like(problem, self.structure.max_order):
-            shared = copy(self)
-            shared.problem, shared._stopwatch = problem, Stopwatch()
-            return shared
-        return Prepared(problem, self._asked, self._progress, workshop=self._workshop, like=self)
+        if same and self.same_structure(problem, self.structure.max_order):
+            twin = copy(self)
+            twin.problem, twin._stopwatch = problem, Stopwatch()
+            return twin
+        return Prepared(problem, self._asked, self._progress, shared=self._shared, like=self)
 
     def _order(self, grid: LaplaceGrid, settings: Settings) -> int:
-        order, notes = resolve_modes(self.problem, grid, settings, self._workshop)
+        order, notes = resolve_modes(self.problem, grid, settings, self._shared)
         self._notes += notes
         self._stopwatch.lap("choosing the number of modes")
         return order
@@ -140,7 +140,7 @@ class Prepared:
         """The orders above M, whatever the absorbers."""
         if self._orders_above is None:
             self._orders_above = SampledOrders.of(
-                self.problem, self.structure.grid, orders_above(self.problem, self.structure.max_order + 1), self._workshop
+                self.problem, self.structure.grid, orders_above(self.problem, self.structure.max_order + 1), self._shared
             )
         return self._orders_above
 
@@ -163,7 +163,7 @@ class Prepared:
         """Return the modal histories of a problem that differs at most in its absorbers."""
         system, structure, stopwatch = problem.system, self.structure, self._stopwatch
         grid = structure.grid
-        linked: LinkedSpectra | None = None
+        linked: AbsorberSolution | None = None
         warnings = list(self._notes)
         saturate = system.control is not None and system.control.saturation
         if system.absorber_list or saturate:
@@ -188,13 +188,13 @@ class Prepared:
         stopwatch.lap("inverse transform")
         interface = None if linked is None else interface_of(structure, links, linked)
         moved = structure.open_loop if linked is not None and linked.actuation is not None else structure
-        trust = estimates.estimated_errors(moved, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
+        error_estimates = estimates.estimated_errors(moved, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
         stopwatch.lap("error estimates")
-        warnings += checks.before(problem, grid, order) + checks.after(problem, trust, self.settings)
+        warnings += checks.before(problem, grid, order) + checks.after(problem, error_estimates, self.settings)
         warnings += checks.tension(problem, tensions(problem, grid, normal))
         stopwatch.lap("pressure on the walls")
         timings, self._stopwatch = stopwatch.seconds, Stopwatch()
-        solution = ModalSolution(problem, self.settings, grid.time[keep], w, v, trust, (), timings, rates[0], rates[1])
+        solution = ModalSolution(problem, self.settings, grid.time[keep], w, v, error_estimates, (), timings, rates[0], rates[1])
         if linked is not None and system.absorber_list:
             solution = replace(solution, absorber_displacement=linked.displacement[:, keep], absorber_force=linked.force[..., keep])
         if saturate:
@@ -202,7 +202,7 @@ class Prepared:
         return replace(solution, warnings=tuple(warnings + checks.actuators(solution)))
 
 
-def _lack(solution: ModalSolution, linked: LinkedSpectra | None, keep: slice) -> FloatArray:
+def _lack(solution: ModalSolution, linked: AbsorberSolution | None, keep: slice) -> FloatArray:
     """Return the modal pressure that saturating actuators gave, less what the linear law asks for at the motion found."""
     if linked is None or linked.actuation is None:
         return np.zeros_like(solution.normal)

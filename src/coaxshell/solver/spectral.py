@@ -21,7 +21,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.workshop import Workshop
+from coaxshell.solver.shared_parts import SharedParts
 
 # A block of complex numbers of this many order-node pairs is 1 MB, small enough that a dozen of them share a cache.
 _BLOCK_ELEMENTS = 64 * 1024
@@ -36,7 +36,7 @@ def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:
     return [slice(int(a), int(b)) for a, b in pairwise(edges)]
 
 
-def over_blocks(blocks: list[slice], work: Callable[[slice], None], progress: Progress | None, stage: str) -> None:
+def map_node_blocks(blocks: list[slice], work: Callable[[slice], None], progress: Progress | None, stage: str) -> None:
     """Run ``work`` on every block on all threads, telling the progress after each."""
     with ThreadPoolExecutor(WORKERS) as pool:
         for done, _ in enumerate(pool.map(work, blocks), start=1):
@@ -50,7 +50,7 @@ class LinearSpectra:
 
     Attributes
     ----------
-    normal, tangential : ndarray, shape (shells, halves, M + 1, nodes)
+    normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
         W and V of every shell under the sources alone.
     compliance : ndarray, shape (shells, shells, M + 1, nodes), or None
         C_ij: W of shell i per modal pressure on shell j.
@@ -71,21 +71,21 @@ def linear_spectra(
     progress: Progress | None = None,
     *,
     compliance: bool = False,
-    workshop: Workshop | None = None,
+    shared: SharedParts | None = None,
 ) -> LinearSpectra:
     """Return the transforms of W and V of every shell under the sources, and the modal compliance if asked for."""
     orders = all_orders(max_order)
-    loads = SurfaceLoads(problem, grid, orders, workshop)
+    loads = SurfaceLoads(problem, grid, orders, shared)
     count, modes, nodes = len(problem.shells), max_order + 1, grid.nodes.size
     spectra = LinearSpectra(
-        np.empty((count, loads.halves, modes, nodes), np.complex128),
-        np.empty((count, loads.halves, modes, nodes), np.complex128),
+        np.empty((count, loads.parities, modes, nodes), np.complex128),
+        np.empty((count, loads.parities, modes, nodes), np.complex128),
         np.empty((count, count, modes, nodes), np.complex128) if compliance else None,
         np.empty((count, modes, nodes), np.complex128) if compliance else None,
     )
 
     def work(block: slice) -> None:
-        modal = ModalSystem(problem, grid.nodes[block], orders, workshop=workshop)
+        modal = ModalSystem(problem, grid.nodes[block], orders, shared=shared)
         for half, load in enumerate(loads(modal.surface, block)):
             normal = modal.solve(count - 1, load)
             for shell, (w, v) in enumerate(zip(normal, modal.tangential(normal), strict=True)):
@@ -97,7 +97,7 @@ def linear_spectra(
             for i, operator in enumerate(modal.shells):
                 spectra.ratio[i, :, block] = operator.tangential if operator is not None else 0.0
 
-    over_blocks(node_blocks(grid, max_order), work, progress, "frequencies")
+    map_node_blocks(node_blocks(grid, max_order), work, progress, "frequencies")
     return spectra
 
 

@@ -20,8 +20,8 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.coupling import ModalSystem, determinant, pressure_fed_back
 from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import ControlGains, Problem
+from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.winding import turning
-from coaxshell.solver.workshop import Workshop
 
 _MAX_NODES = 8192
 _SPACING = 0.8
@@ -61,9 +61,9 @@ class OpenLoop:
         return sum(x.nbytes for x in arrays if isinstance(x, np.ndarray))
 
     @classmethod
-    def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, workshop: Workshop | None) -> OpenLoop:
+    def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, shared: SharedParts | None) -> OpenLoop:
         """Return it for a problem, whose gains only tell which shells are controlled."""
-        system = ModalSystem(problem.open_loop, nodes, orders, workshop=workshop)
+        system = ModalSystem(problem.open_loop, nodes, orders, shared=shared)
         fed_back = {
             i: pressure_fed_back(problem, i, operator.tangential, orders[:, None])
             for i, operator in enumerate(system.shells)
@@ -115,7 +115,7 @@ def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, 
     return shift, np.concatenate([even, beyond[1:]])
 
 
-def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: Workshop | None = None) -> UnstablePoles:
+def unstable_poles(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None) -> UnstablePoles:
     """Return the orders whose response would grow by more than a factor e within the duration."""
     shift, frequencies = _contour(problem, max_order, duration)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
@@ -124,9 +124,9 @@ def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: 
     turned = np.zeros(orders.size)
     for start in range(0, frequencies.size, _BLOCK):
         block = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
-        make = partial(OpenLoop.of, problem, block, orders, workshop)
-        if workshop is not None and problem.ingredients == OWN:
-            open_loop = workshop.part(("open loop", *known, block.tobytes()), make)
+        make = partial(OpenLoop.of, problem, block, orders, shared)
+        if shared is not None and problem.ingredients == OWN:
+            open_loop = shared.get_or_make(("open loop", *known, block.tobytes()), make)
         else:
             open_loop = make()
         ratio = open_loop.closed(problem, block)
@@ -137,11 +137,11 @@ def unstable_poles(problem: Problem, max_order: int, duration: float, workshop: 
     return UnstablePoles(orders[found], counts[found])
 
 
-def require_stable(problem: Problem, max_order: int, duration: float, workshop: Workshop | None = None) -> None:
+def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None) -> None:
     """Raise InputError, naming gain and order, if the closed loop is unstable."""
     if all(shell.gains is None for shell in problem.shells):
         return
-    unstable = unstable_poles(problem, max_order, duration, workshop)
+    unstable = unstable_poles(problem, max_order, duration, shared)
     if unstable.orders.size == 0:
         return
     control = problem.system.control

@@ -27,7 +27,7 @@ from coaxshell.solver.history import KernelTable
 from coaxshell.solver.kernels import voltage_weights
 from coaxshell.solver.march import march
 from coaxshell.solver.orders_left_out import Interface, relative
-from coaxshell.solver.prepared import ForcedParts, PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra, UnitResponse
 from coaxshell.solver.sampled_orders import standing_for
 
 Array = npt.NDArray[Any]
@@ -51,7 +51,7 @@ def _some_orders(max_order: int) -> npt.NDArray[np.int64]:
 
 
 def _of_orders(normal: Array, tangential: Array, orders: npt.NDArray[np.int64], history: Callable[[Array], FloatArray]) -> FloatArray:
-    """Return the norms (shells, 2) of all orders of a motion, from transforms (shells, halves, orders, nodes) of some."""
+    """Return the norms (shells, 2) of all orders of a motion, from transforms (shells, parities, orders, nodes) of some."""
     share = np.where(orders == 0, 1.0, 0.5) * standing_for(orders.astype(np.float64))
     squares = [np.sum(history(x) ** 2, axis=(1, 3)) for x in (normal, orders[:, None] * tangential - normal)]
     return np.stack(squares, axis=1) @ share
@@ -78,31 +78,31 @@ def rounding(grid: LaplaceGrid, whole: FloatArray) -> FloatArray:
     return amplified
 
 
-class CoarserStructure(PreparedStructure):
+class CoarserStructure(StructureSpectra):
     """A structure seen at every few steps of another: kernels for forces that are linear over the longer steps.
 
     Parameters
     ----------
-    fine : PreparedStructure
+    fine : StructureSpectra
     every : int
         Steps of the fine one in one of this.
     saturate : bool
         Whether voltages are needed.
     """
 
-    def __init__(self, fine: PreparedStructure, every: int, saturate: bool) -> None:
+    def __init__(self, fine: StructureSpectra, every: int, saturate: bool) -> None:
         grid = LaplaceGrid(fine.grid.time_step * every, fine.grid.steps // every)
         self._fine, self._every, self._kept = fine, every, slice(0, grid.time.size * every, every)
         velocity = _summed((fine.open_loop if saturate else fine).kernels.kernels, every, grid.time.size)
-        forced = ForcedParts(kernels=KernelTable(velocity))
+        forced = UnitResponse(kernels=KernelTable(velocity))
         if saturate:
             rates = _summed(fine.sensor_rates, every, grid.time.size)
             voltage = voltage_weights(fine.problem, rates, fine.controlled, grid.time_step)
-            forced = ForcedParts(kernels_with_voltage=KernelTable(np.concatenate([velocity, voltage])))
+            forced = UnitResponse(kernels_with_voltage=KernelTable(np.concatenate([velocity, voltage])))
         super().__init__(fine.problem, grid, fine.max_order, forced=forced)
 
     @cached_property
-    def open_loop(self) -> PreparedStructure:
+    def open_loop(self) -> StructureSpectra:
         """The same without feedback."""
         return CoarserStructure(self._fine.open_loop, self._every, False)
 
@@ -134,14 +134,14 @@ def _summed(weights: FloatArray, every: int, steps: int) -> FloatArray:
     return total
 
 
-def march_error(structure: PreparedStructure, interface: Interface, whole: FloatArray) -> FloatArray:
+def march_error(structure: StructureSpectra, interface: Interface, whole: FloatArray) -> FloatArray:
     """Return the printed error of displacement and stress by the march's steps, shape (shells, 2), relative.
 
     A share of what changes when the interface is marched at four times the step, or at twice the step where that fails; 1 if both do.
 
     Parameters
     ----------
-    structure : PreparedStructure
+    structure : StructureSpectra
         Which the forces moved.
     interface : Interface
         What it did in the run.
@@ -156,7 +156,7 @@ def march_error(structure: PreparedStructure, interface: Interface, whole: Float
     return least
 
 
-def _difference(structure: PreparedStructure, interface: Interface, whole: FloatArray, every: int) -> FloatArray:
+def _difference(structure: StructureSpectra, interface: Interface, whole: FloatArray, every: int) -> FloatArray:
     """Return what changes when the interface is marched at steps *every* times longer, infinity if that fails."""
     grid, links, saturating = structure.grid, interface.links, interface.saturating
     coarser = CoarserStructure(saturating or structure, every, saturating is not None)
@@ -179,7 +179,7 @@ def _difference(structure: PreparedStructure, interface: Interface, whole: Float
     return relative(_of_orders(normal, tangential, orders, grid.invert), whole)
 
 
-def _between(coarser: PreparedStructure, grid: LaplaceGrid, histories: FloatArray) -> FloatArray:
+def _between(coarser: StructureSpectra, grid: LaplaceGrid, histories: FloatArray) -> FloatArray:
     """Return histories of the coarser grid at the instants of the fine one, by straight lines; the last value goes on."""
     position = np.minimum(grid.time / coarser.grid.time_step, coarser.grid.steps)
     left = np.minimum(position.astype(int), coarser.grid.steps - 1)

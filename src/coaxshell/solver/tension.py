@@ -61,7 +61,7 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[
     ----------
     problem : Problem
     grid : LaplaceGrid
-    normal : ndarray, shape (shells, halves, M + 1, nodes)
+    normal : ndarray, shape (shells, parities, M + 1, nodes)
         Transforms of W.
     """
     if sum(abs(source.pulse.peak) for source in problem.system.sources) <= HARMLESS * AMBIENT:
@@ -80,7 +80,7 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[
 
 
 def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> Iterator[tuple[int, int, ComplexArray]]:
-    """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (halves, M + 1, nodes)."""
+    """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (parities, M + 1, nodes)."""
     orders, s = all_orders(normal.shape[2] - 1), grid.nodes
     acceleration = s**2 * normal
     count = len(problem.shells)

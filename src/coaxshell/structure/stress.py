@@ -28,7 +28,7 @@ class StressGain(NamedTuple):
     w: FloatArray
 
 
-class Place(NamedTuple):
+class WallPoint(NamedTuple):
     """A point of the wall: its z (m, outward), the plane-strain modulus there (Pa), and the piezoelectric layer it lies in, if any."""
 
     z: float
@@ -62,7 +62,7 @@ def strain_gain(m: npt.ArrayLike, radius: float, z: float) -> tuple[FloatArray, 
     return m / radius + z * m / radius**2, -1.0 / radius - z * m**2 / radius**2
 
 
-def place(section: Section, z: float) -> Place:
+def place(section: Section, z: float) -> WallPoint:
     """Return what the wall is made of at z (m, positive outward); on the boundary of two layers the outer one is meant.
 
     Raises
@@ -80,10 +80,10 @@ def place(section: Section, z: float) -> Place:
     bottom, top, modulus = next((layer for layer in section.layers if z < layer[1] - slack), section.layers[-1])
     middle = (bottom + top) / 2.0
     piezoelectric = next((layer for layer in section.piezoelectric if abs(layer.centre - middle) <= slack), None)
-    return Place(z, modulus, piezoelectric)
+    return WallPoint(z, modulus, piezoelectric)
 
 
-def stress_gain(section: Section, m: npt.ArrayLike, where: Place) -> StressGain:
+def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> StressGain:
     """Return the hoop stress at a point of the wall per unit (V, W), bending and open-circuit potential included (Eqs. A.4, A.5).
 
     sigma = Q strain(z) - e32~ E_z, E_z = -dPhi/dz with Phi = -cos(pi (z - z_c)/t) phi_j (Eq. A.7) and phi_j of Eq. 20. The voltage
@@ -95,7 +95,7 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: Place) -> StressGain:
         Section integrals, SI.
     m : array_like
         Circumferential orders.
-    where : Place
+    where : WallPoint
         From :func:`place`.
 
     Returns
@@ -113,7 +113,7 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: Place) -> StressGain:
     return StressGain(gain_v, gain_w)
 
 
-def control_stress(where: Place) -> float:
+def control_stress(where: WallPoint) -> float:
     """Return the hoop stress per volt of control at a point of the wall, Pa/V: -e32/t in the actuator (Eqs. 4, A.10), 0 elsewhere."""
     layer = where.piezoelectric
     if layer is None or layer.role != "actuator":

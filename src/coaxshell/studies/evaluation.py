@@ -13,7 +13,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.response import Response
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.reading import Reading
+from coaxshell.studies.reading import MetricSource
 from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.structures import Structures, structure_of
 from coaxshell.studies.threads import one_blas_thread
@@ -108,7 +108,7 @@ def evaluated(system: System, metrics: tuple[Metric, ...], solved: Callable[[Sys
     start = time.perf_counter()
     try:
         response = solved(system)
-        reading = Reading(response)
+        reading = MetricSource(response)
         values = tuple(metric(reading) for metric in metrics)
     except InputError as error:
         return failure(metrics, str(error), seconds=time.perf_counter() - start)

@@ -20,7 +20,7 @@ from coaxshell.model.layers import Shell
 from coaxshell.model.naming import shell_phrase, shell_places, suggestion
 from coaxshell.model.system import System
 from coaxshell.response import Response
-from coaxshell.studies.reading import DesignReading, Reading
+from coaxshell.studies.reading import DesignReading, MetricSource
 from coaxshell.studies.user_functions import UserCode, UserFunction, from_callable, from_text
 
 MetricLike = str | Callable[[Response], float]
@@ -99,7 +99,7 @@ class Metric:
     place : str, int
         What it is read from: the number of a shell, a fluid, "absorbers", "system"; "" for a function of the user's.
     quantity : str
-        Name of the method or property of :class:`Reading`.
+        Name of the method or property of :class:`MetricSource`.
     function : UserFunction, optional
     """
 
@@ -118,7 +118,7 @@ class Metric:
     def __call__(self, reading: DesignReading) -> float:
         """Return its value; InputError if a function of the user's fails or gives no finite number."""
         if self.function is not None:
-            assert isinstance(reading, Reading)
+            assert isinstance(reading, MetricSource)
             return self.function(reading.response, self.name)
         found = getattr(reading, self.quantity)
         value = float(found(self.place) if callable(found) else found)

@@ -63,7 +63,7 @@ class DesignReading:
         return shells + self.absorber_mass
 
 
-class Reading(DesignReading):
+class MetricSource(DesignReading):
     """What metrics take from one response; SI throughout, absorbers and shells per metre of length.
 
     Parameters

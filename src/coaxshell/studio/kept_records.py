@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from coaxshell.errors import InputError
-from coaxshell.numerics.cache import Cache
+from coaxshell.numerics.cache import ByteBoundedCache
 from coaxshell.studio import limits
 
 COLUMNS = ("time", "pressure")
@@ -18,7 +18,9 @@ class KeptRecords:
     """Records of sampled pulses by their checksum; the ones not used for longest are forgotten."""
 
     def __init__(self) -> None:
-        self._kept: Cache[dict[str, Any]] = Cache(limits.RECORD_BYTES, lambda record: 32 * sum(len(record[name]) for name in COLUMNS))
+        self._kept: ByteBoundedCache[dict[str, Any]] = ByteBoundedCache(
+            limits.RECORD_BYTES, lambda record: 32 * sum(len(record[name]) for name in COLUMNS)
+        )
 
     def shortened(self, content: dict[str, Any]) -> tuple[dict[str, Any], int]:
         """Return what a link holds with checksums in the place of long records, which are kept, and how many samples those have."""

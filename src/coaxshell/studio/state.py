@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from coaxshell.model import System
-from coaxshell.numerics.cache import Cache
+from coaxshell.numerics.cache import ByteBoundedCache
 from coaxshell.numerics.scratch import scratch
 from coaxshell.solver.settings import Settings
 from coaxshell.studio import limits, memory, worker
@@ -69,9 +69,9 @@ class Studio:
         self.workers = Workers()
         self.jobs = Jobs(self.workers)
         self.records = KeptRecords()
-        self.curves: Cache[Packed] = Cache(limits.CURVE_BYTES, lambda content: len(content.data) + 4_000)
+        self.curves: ByteBoundedCache[Packed] = ByteBoundedCache(limits.CURVE_BYTES, lambda content: len(content.data) + 4_000)
         self.closing = False
-        self._runs: Cache[Run] = Cache(limits.RUN_BYTES, lambda run: run.bytes)
+        self._runs: ByteBoundedCache[Run] = ByteBoundedCache(limits.RUN_BYTES, lambda run: run.bytes)
         self._slots: OrderedDict[tuple[str, str], Slot] = OrderedDict()
         self._secret = secrets.token_bytes(32)
 

@@ -17,7 +17,7 @@ from threadpoolctl import ThreadpoolController
 
 from coaxshell.errors import InputError
 from coaxshell.model import System
-from coaxshell.numerics.cache import Cache, held_bytes
+from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
 from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.resolution import Resolution
@@ -46,8 +46,8 @@ class _Here:
     part: tuple[float, float, str] | None = None
     board: Any = None
     stage: Any = None
-    structures: Cache[PreparedSystem] = Cache(STRUCTURE_BYTES, held_bytes)
-    answers: Cache[Response] = Cache(ANSWER_BYTES, held_bytes)
+    structures: ByteBoundedCache[PreparedSystem] = ByteBoundedCache(STRUCTURE_BYTES, held_bytes)
+    answers: ByteBoundedCache[Response] = ByteBoundedCache(ANSWER_BYTES, held_bytes)
 
 
 def begin(board: Any, stage: Any, niceness: int) -> None:

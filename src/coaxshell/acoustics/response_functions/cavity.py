@@ -24,7 +24,7 @@ import numpy.typing as npt
 from scipy.special import jv, yv
 
 from coaxshell.acoustics.laplace_grid import WORKERS
-from coaxshell.acoustics.response_functions.echoes import Response
+from coaxshell.acoustics.response_functions.echoes import CavityResponse
 from coaxshell.acoustics.response_functions.hankel import Phase, derivative_phase, expand, reach, rough_phase
 from coaxshell.acoustics.response_functions.sums import cheap_together, is_uniform, legs, levels, sines, snapped
 from coaxshell.numerics.arrays import FloatArray
@@ -115,7 +115,7 @@ def _phase(order: FloatArray, x: FloatArray, radius: float) -> Phase:
     return Phase(np.full_like(x, 0.5 * np.pi), np.zeros_like(x), np.full_like(x, np.inf))
 
 
-def expansion(modes: Resonances, response: Response) -> FloatArray:
+def expansion(modes: Resonances, response: CavityResponse) -> FloatArray:
     """Return the weight of sin(x_k t) for every resonance."""
     x, square = modes.wavenumbers, (modes.order / modes.wavenumbers) ** 2
     at_outer = np.ones_like(x)
@@ -135,7 +135,7 @@ def expansion(modes: Resonances, response: Response) -> FloatArray:
     return np.asarray(drive * here / (norm * x), dtype=np.float64)
 
 
-def _within(modes: Resonances, response: Response) -> FloatArray:
+def _within(modes: Resonances, response: CavityResponse) -> FloatArray:
     """Return u(r)/u(rb) between the walls.
 
     With the outer wall's phase u(r) = (J(xr) sin(phi_b) - Y(xr) cos(phi_b)) / (2/(pi x rb |H'(x rb)|)).
@@ -159,7 +159,7 @@ def _within(modes: Resonances, response: Response) -> FloatArray:
 _BLOCK = 24
 
 
-def cavity(orders: npt.NDArray[np.int64], times: FloatArray, responses: Sequence[Response]) -> FloatArray:
+def cavity(orders: npt.NDArray[np.int64], times: FloatArray, responses: Sequence[CavityResponse]) -> FloatArray:
     """Return the responses of one cavity at times >= 0 in units of the fluid's own sound speed, shape (responses, orders, times).
 
     Accurate to about 1e-11 of the largest value. Right-hand limits at jumps; large where a front has passed the centre an
@@ -181,7 +181,7 @@ def cavity(orders: npt.NDArray[np.int64], times: FloatArray, responses: Sequence
     return result
 
 
-def _block(orders: npt.NDArray[np.int64], times: FloatArray, responses: Sequence[Response]) -> FloatArray:
+def _block(orders: npt.NDArray[np.int64], times: FloatArray, responses: Sequence[CavityResponse]) -> FloatArray:
     result = np.empty((len(responses), orders.size, times.size))
     ladder = list(levels(int(orders[-1]), times, responses))
     found = resonances(orders, responses[0].inner, responses[0].outer, ladder[-1][0])

@@ -21,7 +21,7 @@ from coaxshell.acoustics.response_functions.hankel import Expansion, expand
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 
-class Response(NamedTuple):
+class CavityResponse(NamedTuple):
     """Which response: pressure at radius ``at`` per acceleration of the inner (ra) or the outer (rb) wall; ra = 0 is a disc.
 
     At the centre of a disc, r = 0, the direct and the returned wave are one; only m = 0 reaches it.
@@ -76,12 +76,12 @@ def waves(orders: npt.NDArray[np.int64], x: ComplexArray, radii: set[float]) -> 
     return Waves(x, right, {radius: _mirrored(pair) for radius, pair in right.items()})
 
 
-def echoes(at: Waves, response: Response) -> tuple[Echoes, Echoes]:
+def echoes(at: Waves, response: CavityResponse) -> tuple[Echoes, Echoes]:
     """Return the echoes to the right and to the left."""
     return _echoes(at.x, at.right, response), _echoes(np.conj(at.x), at.left, response)
 
 
-def _echoes(x: ComplexArray, at: dict[float, _Pair], response: Response) -> Echoes:
+def _echoes(x: ComplexArray, at: dict[float, _Pair], response: CavityResponse) -> Echoes:
     outer = at[response.outer]
     if response.at == 0.0:
         return Echoes(2.0 / (x * outer.inward.slope), np.zeros_like(x), -outer.outward.slope / outer.inward.slope)
@@ -107,11 +107,11 @@ def _mirrored(pair: _Pair) -> _Pair:
 
 def arrivals(inner: float, outer: float, radius: float, driven: str, slowness: float, duration: float) -> list[tuple[float, bool]]:
     """Return (time, whether a logarithm) of all fronts at a radius of an annulus, or of a disc (inner = 0), up to *duration*."""
-    response = Response(inner, outer, radius, driven == "inner")
+    response = CavityResponse(inner, outer, radius, driven == "inner")
     return [(time * slowness, inner == 0.0 and passages % 2 == 1) for time, passages in front_times(response, duration / slowness)]
 
 
-def front_times(response: Response, duration: float) -> list[tuple[float, int]]:
+def front_times(response: CavityResponse, duration: float) -> list[tuple[float, int]]:
     """Return (time, passages through the centre, or reflections) of all fronts up to *duration*, in the fluid's own time."""
     found: dict[float, int] = {}
     trips = int(duration / response.period) + 1
@@ -123,7 +123,7 @@ def front_times(response: Response, duration: float) -> list[tuple[float, int]]:
     return sorted(found.items())
 
 
-def logarithms(values: FloatArray, orders: npt.NDArray[np.int64], times: FloatArray, response: Response) -> FloatArray:
+def logarithms(values: FloatArray, orders: npt.NDArray[np.int64], times: FloatArray, response: CavityResponse) -> FloatArray:
     """Return the response of a disc with inf or -inf where a front comes after an odd number k of passages.
 
     After k passages the front is proportional to i^k (-1)^{mk}/s; the imaginary part is a logarithm, -Im(...) ln|t - t_k|/pi. At the

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.response_functions.cavity import cavity
-from coaxshell.acoustics.response_functions.echoes import Response, logarithms
+from coaxshell.acoustics.response_functions.echoes import CavityResponse, logarithms
 from coaxshell.acoustics.response_functions.exterior_response import exterior_at_wall, exterior_field
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
@@ -139,7 +139,7 @@ def interior(
     at = r1 if radius is None or radius == r1 else radius
     if at != 0.0:
         checked_radius(at, 0.01 * r1, r1)
-    response = Response(0.0, r1, at, False)
+    response = CavityResponse(0.0, r1, at, False)
     result = _inside(m, t / alpha, response) / alpha
     return logarithms(result, m, t / alpha, response)
 
@@ -186,10 +186,10 @@ def gap(
     alpha, ra = checked_positive("slowness", slowness), checked_positive("inner", inner)
     rb = checked_radius(outer, ra, np.inf, "outer", open_below=True)
     at = (ra if driven == "inner" else rb) if radius is None else checked_radius(radius, ra, rb)
-    return _inside(m, t / alpha, Response(ra, rb, at, driven == "inner")) / alpha
+    return _inside(m, t / alpha, CavityResponse(ra, rb, at, driven == "inner")) / alpha
 
 
-def _inside(orders: npt.NDArray[np.int64], times: FloatArray, response: Response) -> FloatArray:
+def _inside(orders: npt.NDArray[np.int64], times: FloatArray, response: CavityResponse) -> FloatArray:
     result = np.zeros((orders.size, times.size))
     on = np.flatnonzero(times >= response.offsets[0] - 1e-12 * response.period)
     if on.size:
@@ -217,7 +217,7 @@ def disc_wall(max_order: int, times: FloatArray, radius: float, slowness: float)
     At t = 2 r1 slowness (2 n + 1) it is logarithmically infinite. There, on equally spaced times dt apart, this is the value that
     makes the trapezoidal rule of second order: c ln|t - t_0| is sampled as c ln(dt/2 pi).
     """
-    response = Response(0.0, radius, radius, False)
+    response = CavityResponse(0.0, radius, radius, False)
     orders = np.arange(max_order + 1)
     scaled = np.asarray(times, dtype=np.float64) / slowness
     values: FloatArray = cavity(orders, scaled, [response])[0]
@@ -235,7 +235,7 @@ def disc_wall(max_order: int, times: FloatArray, radius: float, slowness: float)
 def annulus_wall(max_order: int, times: FloatArray, inner: float, outer: float, slowness: float) -> AnnulusWalls:
     """Return the four wall functions of an annulus in time, right-hand limits at their jumps, for m = 0..max_order."""
     orders, scaled = np.arange(max_order + 1), np.asarray(times, dtype=np.float64) / slowness
-    walls = [Response(inner, outer, at, inside) for at, inside in ((inner, True), (inner, False), (outer, False))]
+    walls = [CavityResponse(inner, outer, at, inside) for at, inside in ((inner, True), (inner, False), (outer, False))]
     aa, ab, bb = cavity(orders, scaled, walls) / slowness
     return AnnulusWalls(aa, ab, -ab * (inner / outer), bb)
 

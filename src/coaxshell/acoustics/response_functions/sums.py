@@ -32,7 +32,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.response_functions.echoes import Echoes, Response, Waves, echoes, waves
+from coaxshell.acoustics.response_functions.echoes import CavityResponse, Echoes, Waves, echoes, waves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 _ONE_THREAD = 250_000  # OpenBLAS goes to several threads above 2^18 multiplications
@@ -105,7 +105,7 @@ _OVERFLOW = 500.0  # e^{a/2 kappa} itself has to stay a number even where the de
 _LADDER = 2.0
 
 
-def levels(order: int, times: FloatArray, responses: Sequence[Response]) -> Iterator[tuple[float, npt.NDArray[np.intp]]]:
+def levels(order: int, times: FloatArray, responses: Sequence[CavityResponse]) -> Iterator[tuple[float, npt.NDArray[np.intp]]]:
     """Yield (kappa, indices of the times that it serves), from low to high kappa, for orders up to *order*."""
     least = lowest(order) / min(radius for each in responses for radius in each[:3] if radius > 0.0)
     spreads = [_spread(order, times, response) for response in responses]
@@ -131,7 +131,7 @@ def ladder(least: float, needs: Sequence[FloatArray]) -> Iterator[tuple[float, n
         yield min(least * _LADDER ** int(step), float(highest.max())), np.flatnonzero(steps == step)
 
 
-def _spread(order: int, times: FloatArray, response: Response) -> FloatArray:
+def _spread(order: int, times: FloatArray, response: CavityResponse) -> FloatArray:
     square = order**2 + 1.0
     narrow = 1.0 / response.inner if response.inner > 0.0 else 2.0 / response.outer
     trip = square * (narrow - 1.0 / response.outer)
@@ -160,7 +160,7 @@ def leg_nodes() -> tuple[FloatArray, FloatArray]:
     return u, _STEP * u * (1.0 + np.exp(-v))
 
 
-def snapped(times: FloatArray, response: Response) -> FloatArray:
+def snapped(times: FloatArray, response: CavityResponse) -> FloatArray:
     """Return the times with those that are at a front but for rounding put exactly there."""
     result = times.copy()
     for offset in response.offsets:
@@ -171,17 +171,17 @@ def snapped(times: FloatArray, response: Response) -> FloatArray:
     return result
 
 
-def fronts_passed(times: FloatArray, response: Response) -> npt.NDArray[np.int64]:
+def fronts_passed(times: FloatArray, response: CavityResponse) -> npt.NDArray[np.int64]:
     """Return how many direct and returned fronts have passed at each time, shape (2, times)."""
     early = _tolerance(times, response)
     return np.array([np.floor((times - offset + early) / response.period) + 1 for offset in response.offsets], dtype=np.int64)
 
 
-def _tolerance(times: FloatArray, response: Response) -> FloatArray:
+def _tolerance(times: FloatArray, response: CavityResponse) -> FloatArray:
     return np.asarray(SNAP * np.maximum(response.period, times), dtype=np.float64)
 
 
-def legs(orders: npt.NDArray[np.int64], kappas: FloatArray, times: FloatArray, responses: Sequence[Response]) -> FloatArray:
+def legs(orders: npt.NDArray[np.int64], kappas: FloatArray, times: FloatArray, responses: Sequence[CavityResponse]) -> FloatArray:
     """Return the integrals, shape (responses, orders, times).
 
     Parameters
@@ -201,7 +201,7 @@ def legs(orders: npt.NDArray[np.int64], kappas: FloatArray, times: FloatArray, r
     return np.array([_response(kappas, u, weights, at, times, response) for response in responses])
 
 
-def _response(kappas: FloatArray, u: FloatArray, weights: FloatArray, at: Waves, times: FloatArray, response: Response) -> FloatArray:
+def _response(kappas: FloatArray, u: FloatArray, weights: FloatArray, at: Waves, times: FloatArray, response: CavityResponse) -> FloatArray:
     terms = _Terms(kappas, u, weights, at, response)
     integral = np.empty((kappas.size, times.size))
     for chosen, counts in _groups(times, response):
@@ -216,7 +216,7 @@ def _response(kappas: FloatArray, u: FloatArray, weights: FloatArray, at: Waves,
     return integral
 
 
-def _groups(times: FloatArray, response: Response) -> Iterator[tuple[npt.NDArray[np.intp], npt.NDArray[np.int64]]]:
+def _groups(times: FloatArray, response: CavityResponse) -> Iterator[tuple[npt.NDArray[np.intp], npt.NDArray[np.int64]]]:
     """Yield the times between the same fronts, those close to one of them apart."""
     fronts = fronts_passed(times, response)
     phases = [(times - offset) / response.period for offset in response.offsets]
@@ -240,7 +240,7 @@ def _decaying(delays: FloatArray, u: FloatArray, rows: ComplexArray, kappas: Flo
 class _Terms:
     """The integrands of all orders without their dependence on time: side 0 is the leg to the right, 1 the one to the left."""
 
-    def __init__(self, kappas: FloatArray, u: FloatArray, weights: FloatArray, at: Waves, response: Response) -> None:
+    def __init__(self, kappas: FloatArray, u: FloatArray, weights: FloatArray, at: Waves, response: CavityResponse) -> None:
         self._sides: tuple[Echoes, Echoes] = echoes(at, response)
         right, left = self._sides
         turn, shrink = np.exp(1j * kappas[:, None] * response.period), np.exp(-u * response.period)

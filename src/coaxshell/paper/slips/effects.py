@@ -154,7 +154,7 @@ def _effects(
 
 
 def _measured(response: Response) -> tuple[Stresses, FloatArray]:
-    """Return the peaks of a run and the modal stress of its inner shell, (halves, M + 1, T)."""
+    """Return the peaks of a run and the modal stress of its inner shell, (parities, M + 1, T)."""
     inner, *_, outer = response.summary().shells
     values = [peak.value for shell in (inner, outer) for peak in (shell.stress_head, shell.stress_tail, shell.stress)]
     return Stresses(*values), np.asarray(response.modal("inner", "stress"))

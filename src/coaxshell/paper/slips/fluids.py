@@ -24,9 +24,9 @@ def radius_factor(ingredients: Ingredients) -> Ingredients:
 
     def felt(problem: Problem, region: int, wall: int, radial: Radial) -> Factor:
         factor = problem.shells[0].radius ** 2 if wall == 0 else 1.0
-        return factor * ingredients.felt_motion(problem, region, wall, radial)
+        return factor * ingredients.wall_motion_factor(problem, region, wall, radial)
 
-    return replace(ingredients, felt_motion=felt)
+    return replace(ingredients, wall_motion_factor=felt)
 
 
 def interior_derivative(ingredients: Ingredients) -> Ingredients:
@@ -38,9 +38,9 @@ def interior_derivative(ingredients: Ingredients) -> Ingredients:
             fluid = problem.fluids[0]
             assert fluid is not None
             factor = annulus_amplitudes(radial(fluid.slowness, problem.shells[0].radius), radial(fluid.slowness, 1.0)).epsilon_i
-        return factor * ingredients.felt_motion(problem, region, wall, radial)
+        return factor * ingredients.wall_motion_factor(problem, region, wall, radial)
 
-    return replace(ingredients, felt_motion=felt)
+    return replace(ingredients, wall_motion_factor=felt)
 
 
 def interior_function(ingredients: Ingredients) -> Ingredients:
@@ -57,15 +57,15 @@ def interior_function(ingredients: Ingredients) -> Ingredients:
             assert fluid is not None
             inner = radial(fluid.slowness, problem.shells[0].radius)
             factor = -annulus(inner, radial(fluid.slowness, 1.0)).aa / inner.disc
-        return factor * ingredients.felt_motion(problem, region, wall, radial)
+        return factor * ingredients.wall_motion_factor(problem, region, wall, radial)
 
-    return replace(ingredients, felt_motion=felt)
+    return replace(ingredients, wall_motion_factor=felt)
 
 
 def radiation_sign(ingredients: Ingredients) -> Ingredients:
     """Return the ingredients with the printed signs of P^(r,e) (B.13) and Xi_e (B.7) together: the radiated pressure changes its own."""
 
     def felt(problem: Problem, region: int, wall: int, radial: Radial) -> Factor:
-        return (-1.0 if region == 2 else 1.0) * ingredients.felt_motion(problem, region, wall, radial)
+        return (-1.0 if region == 2 else 1.0) * ingredients.wall_motion_factor(problem, region, wall, radial)
 
-    return replace(ingredients, felt_motion=felt)
+    return replace(ingredients, wall_motion_factor=felt)

@@ -176,8 +176,8 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     points, weights = np.polynomial.legendre.leggauss(radii or radii_needed(band, fluid.slowness * (outer - inner), motion.orders.size))
     places = 0.5 * (inner + outer) + 0.5 * (outer - inner) * points
     total = np.zeros((2, motion.grid.time[motion.kept].size))
-    halves = motion.spectra.normal.shape[1]
-    memory = 5 * 16 * halves * motion.orders.size * sampler.length
+    parities = motion.spectra.normal.shape[1]
+    memory = 5 * 16 * parities * motion.orders.size * sampler.length
     work = partial(_ring_energy, motion, fluid, blocks, sampler)
     with ThreadPoolExecutor(max(1, min(WORKERS, _WORK_BYTES // memory))) as pool:
         for done, (ring, r, weight) in enumerate(zip(pool.map(work, places), places, weights, strict=True), start=1):
@@ -198,9 +198,9 @@ def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: F
 
     def field(here: RadialFunctions) -> tuple[list[ComplexArray], list[ComplexArray]]:
         per_wall = (disc_field(here, outer),) if amplitudes is None else annulus_field(here, inner, outer, amplitudes)
-        halves = range(slopes[0].shape[0])
+        parities = range(slopes[0].shape[0])
         return tuple(  # type: ignore[return-value]
-            [sum(getattr(one, part) * slope[half] for one, slope in zip(per_wall, slopes, strict=True)) for half in halves]
+            [sum(getattr(one, part) * slope[half] for one, slope in zip(per_wall, slopes, strict=True)) for half in parities]
             for part in ("pressure", "slope")
         )
 
@@ -209,12 +209,12 @@ def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: F
 
 def _ring_energy(motion: Motion, fluid: FluidRegion, blocks: list[_Block], sampler: Sampler, r: float) -> FloatArray:
     """Return kinetic and compression energy per unit of r dr at a radius, shape (2, kept instants)."""
-    halves, orders = motion.spectra.normal.shape[1], motion.orders
-    sums = np.zeros((3, halves, orders.size, sampler.length), np.complex128)
+    parities, orders = motion.spectra.normal.shape[1], motion.orders
+    sums = np.zeros((3, parities, orders.size, sampler.length), np.complex128)
     for block in blocks:
         here = RadialFunctions(block.s, r, orders)
         impulse, slope = block.field(here)
-        for half in range(halves):
+        for half in range(parities):
             sampler.add(sums[0, half], slope[half], block.nodes)
             sampler.add(sums[1, half], impulse[half], block.nodes)
             impulse[half] *= block.s / fluid.slowness

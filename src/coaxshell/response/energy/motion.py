@@ -61,11 +61,11 @@ class Motion:
 
     @cached_property
     def normal_velocity(self) -> ComplexArray:
-        """Transform of dW/dt, shape (shells, halves, M + 1, nodes)."""
+        """Transform of dW/dt, shape (shells, parities, M + 1, nodes)."""
         return self.spectra.normal * self.grid.nodes
 
     def histories(self, shell: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return W, V, dW/dt and dV/dt of one shell, each of shape (halves, M + 1, T)."""
+        """Return W, V, dW/dt and dV/dt of one shell, each of shape (parities, M + 1, T)."""
         w, v, s = self.spectra.normal[shell], self.spectra.tangential[shell], self.grid.nodes
         w, v, dw, dv = (self.grid.invert(x) for x in (w, v, w * s, v * s))
         return w, v, dw, dv

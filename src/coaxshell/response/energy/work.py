@@ -34,7 +34,7 @@ class SurfacePressures(NamedTuple):
     ----------
     incident, scattered : ndarray, shape (1 or 2, M + 1, nodes)
         Of the undisturbed wave, and of the wave that a rigid cylinder would add.
-    radiated : ndarray, shape (halves, M + 1, nodes)
+    radiated : ndarray, shape (parities, M + 1, nodes)
         Of the surface's own motion.
     """
 
@@ -63,7 +63,7 @@ class SurfaceWork:
     grid : LaplaceGrid
     weight : ndarray, shape (M + 1,)
         Integral over the surface of cos^2(m theta): beta pi R.
-    velocity : ndarray, shape (halves, M + 1, nodes)
+    velocity : ndarray, shape (parities, M + 1, nodes)
         Transforms of the velocity, in the direction in which the pressures push.
     """
 
@@ -79,7 +79,7 @@ class SurfaceWork:
         return np.asarray(histories, dtype=np.float64)
 
     def __call__(self, pressure: ComplexArray) -> FloatArray:
-        """Return the work done since before the shock at the grid's times, shape (T,), of pressures (halves, M + 1, nodes)."""
+        """Return the work done since before the shock at the grid's times, shape (T,), of pressures (parities, M + 1, nodes)."""
         power = np.zeros(2 * self._grid.samples)
         for half, velocity in zip(pressure, self._velocity, strict=False):  # a missing half is zero
             power += np.einsum("m,mt,mt->t", self._weight, self._damped(half), velocity)

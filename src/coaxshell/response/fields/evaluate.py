@@ -23,12 +23,12 @@ from coaxshell.response.fields.grids import Grid, grid_of, labelled
 from coaxshell.response.fields.incident import Incident
 from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.modal_field import Quantity
-from coaxshell.response.fields.request import Request, request, require_room, when_of
+from coaxshell.response.fields.request import FieldRequest, request, require_room, when_of
 from coaxshell.response.fields.scattered import Points, add_exact, add_gridded, grouped, raster_radii
 from coaxshell.solver.recompute import SolvedSpectra
 
 
-def settled(spectra: SolvedSpectra, asked: Request, grid: Grid) -> Request:
+def settled(spectra: SolvedSpectra, asked: FieldRequest, grid: Grid) -> FieldRequest:
     """Return the request with its time resolution decided: unless given, the run's step where that costs no more than a raster."""
     if asked.resolution_given:
         return asked
@@ -45,12 +45,14 @@ def points_of(grid: Grid) -> Points:
     return Points(grid.radii, grid.angle, grid.members) if grid.polar else grouped(grid.radius, grid.angle)
 
 
-def _exact(spectra: SolvedSpectra, asked: Request, grid: Grid, points: Points) -> bool:
+def _exact(spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, points: Points) -> bool:
     """Return whether to evaluate radius by radius: always in polar coordinates, otherwise if there are fewer radii than on a raster."""
     return grid.polar or points.radius.size <= raster_radii(spectra, asked, points.radius)
 
 
-def evaluate(spectra: SolvedSpectra, asked: Request, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]) -> list[FloatArray]:
+def evaluate(
+    spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
+) -> list[FloatArray]:
     """Return dimensionless quantities at all points and times, each of shape (times, points)."""
     points = points_of(grid)
     exact = _exact(spectra, asked, grid, points)
@@ -76,7 +78,7 @@ def evaluate(spectra: SolvedSpectra, asked: Request, grid: Grid, times: FloatArr
 
 
 def add_incident(
-    results: list[FloatArray], spectra: SolvedSpectra, asked: Request, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
+    results: list[FloatArray], spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
 ) -> None:
     """Add the incident waves, exact in space, and in time too unless fronts are to match the scattered part's, outside the shells."""
     outside = np.flatnonzero(grid.radius >= 1.0)

@@ -10,7 +10,7 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.response.fields.request import Request, axis
+from coaxshell.response.fields.request import FieldRequest, axis
 from coaxshell.response.labels import TRANSIT
 from coaxshell.solver.recompute import SolvedSpectra
 
@@ -71,7 +71,7 @@ def labelled(
     grid: Grid,
     when: FloatArray,
     values: FloatArray,
-    asked: Request,
+    asked: FieldRequest,
     *,
     name: str,
     long_name: str,

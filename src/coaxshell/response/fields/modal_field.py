@@ -43,7 +43,7 @@ SCATTERED["total"] = SCATTERED["scattered"]
 
 @dataclass(frozen=True)
 class WallSlopes:
-    """Modal slopes at the inner and the outer wall of a region, each (halves, M + 1, nodes) or None where nothing drives it."""
+    """Modal slopes at the inner and the outer wall of a region, each (parities, M + 1, nodes) or None where nothing drives it."""
 
     inner: ComplexArray | None
     outer: ComplexArray | None
@@ -63,7 +63,7 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
 
     def radiated(shell: int) -> ComplexArray:
         motion = spectra.normal[shell, ..., : nodes.size] * acceleration
-        return np.asarray(motion * problem.ingredients.felt_motion(problem, region.index, shell, radial))
+        return np.asarray(motion * problem.ingredients.wall_motion_factor(problem, region.index, shell, radial))
 
     inner: ComplexArray | None = None
     outer: ComplexArray | None = None
@@ -115,10 +115,10 @@ class Transfer:
         self.standing, self.outgoing = self._amplitudes(slopes)
         driven = self.standing if self.standing is not None else self.outgoing
         assert driven is not None
-        self.halves = driven.shape[0]
+        self.parities = driven.shape[0]
 
     def _amplitudes(self, slopes: WallSlopes) -> tuple[ComplexArray | None, ComplexArray | None]:
-        """Return A and B, each (halves, M + 1, nodes) or None."""
+        """Return A and B, each (parities, M + 1, nodes) or None."""
         inner, outer, keep = self._inner, self._outer, slice(0, self.max_order + 1)
         if inner is None or outer is None:
             standing = None if outer is None or slopes.outer is None else slopes.outer * outer.disc[keep]
@@ -133,7 +133,7 @@ class Transfer:
         )
 
     def pressure(self, radii: FloatArray, weight: Weight) -> Iterator[tuple[int, ComplexArray]]:
-        """Yield (m, weighted transforms of the pressure at all radii, shape (halves, radii, nodes)) for m = 0..M."""
+        """Yield (m, weighted transforms of the pressure at all radii, shape (parities, radii, nodes)) for m = 0..M."""
         for m, parts in self._shapes(radii):
             yield m, _total([here * (amplitude[:, None, m] * weight) for amplitude, here, _ in parts])
 
@@ -210,10 +210,10 @@ class ModalField:
         assert region.fluid is not None
         self.region, self.grid, self._transfer = region, grid, transfer
         self._density = region.fluid.density
-        self.halves = transfer.halves
+        self.parities = transfer.parities
 
     def spectra(self, radii: FloatArray, quantity: Quantity, weight: FloatArray) -> Iterator[tuple[int, ComplexArray]]:
-        """Yield (m, weighted transforms of a quantity at radii, (halves, radii, nodes)) for m = 0..M."""
+        """Yield (m, weighted transforms of a quantity at radii, (parities, radii, nodes)) for m = 0..M."""
         momentum = self._density * self.grid.nodes
         match quantity:
             case "pressure":
@@ -226,16 +226,16 @@ class ModalField:
                 turning = 1.0 / np.maximum(radii, CENTRE)[:, None]
                 for m, pressure in self._transfer.pressure(radii, weight / momentum):
                     pressure *= m * turning
-                    sine = -pressure[1] if self.halves == 2 else np.zeros_like(pressure[0])
+                    sine = -pressure[1] if self.parities == 2 else np.zeros_like(pressure[0])
                     yield m, np.stack([sine, pressure[0]])  # coefficients of cos(m theta) and sin(m theta)
 
     def histories(
         self, radii: FloatArray, times: FloatArray, quantity: Quantity = "pressure", dtype: npt.DTypeLike = np.float64
     ) -> npt.NDArray[np.floating]:
-        """Return a quantity at radii and times, shape (radii, halves, M + 1, times)."""
+        """Return a quantity at radii and times, shape (radii, parities, M + 1, times)."""
         inversion = Inversion(self.grid, times)
-        halves = 2 if quantity == "angular" else self.halves
-        result = np.empty((radii.size, halves, self._transfer.max_order + 1, times.size), dtype)
+        parities = 2 if quantity == "angular" else self.parities
+        result = np.empty((radii.size, parities, self._transfer.max_order + 1, times.size), dtype)
         width = max(1, min(-(-radii.size // WORKERS), _BLOCK // self.grid.nodes.size))
 
         def work(start: int) -> None:

@@ -134,7 +134,7 @@ class RmsOptions(TypedDict, total=False):
 
 
 @dataclass(frozen=True)
-class Request:
+class FieldRequest:
     """Options common to all fields; ``resolution_given`` tells whether the time resolution is the user's or only a proposal."""
 
     part: str
@@ -155,7 +155,7 @@ def request(
     progress: Progress | None,
     step: float,
     front: str = "sharp",
-) -> Request:
+) -> FieldRequest:
     """Return the options, checked; InputError naming the one that is wrong."""
     arguments.one_of("part", part, PARTS)
     arguments.one_of("front", front, FRONTS)
@@ -165,7 +165,7 @@ def request(
     memory = positive("memory", memory, "bytes")
     if memory < LEAST_MEMORY:
         raise InputError("memory", f"{memory:g} bytes are too few", f"give at least {LEAST_MEMORY:g}")
-    return Request(part, filter, max(resolution, step), time_resolution is not None, memory, progress, front)
+    return FieldRequest(part, filter, max(resolution, step), time_resolution is not None, memory, progress, front)
 
 
 def positive(name: str, value: object, unit: str) -> float:

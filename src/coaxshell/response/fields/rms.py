@@ -13,7 +13,7 @@ from coaxshell.response.fields.grids import instants_of
 from coaxshell.response.fields.incident import Incident
 from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.modal_field import modal_field
-from coaxshell.response.fields.request import Domain, Request, default_instants, domain_of, mode_filter, request, when_of
+from coaxshell.response.fields.request import Domain, FieldRequest, default_instants, domain_of, mode_filter, request, when_of
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.scaling import Problem
@@ -71,7 +71,7 @@ def pressure_rms(
     return xr.DataArray(values.reshape(when.shape), dims=dims, coords=instants_of(spectra, when), name="pressure_rms", attrs=attributes)
 
 
-def _mean_square(spectra: SolvedSpectra, asked: Request, domain: Domain, times: FloatArray) -> FloatArray:
+def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, times: FloatArray) -> FloatArray:
     """Return the mean square of the dimensionless pressure over a domain, shape (times,)."""
     radii, weights = domain.rule(asked.resolution)
     field = modal_field(spectra, band(spectra.grid, asked.resolution), domain.region, asked.part)

@@ -27,7 +27,7 @@ from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.fields.inversion import band, few_offsets
 from coaxshell.response.fields.modal_field import Quantity, modal_field
-from coaxshell.response.fields.request import Region, Request, Tell, mode_filter, reach, split
+from coaxshell.response.fields.request import FieldRequest, Region, Tell, mode_filter, reach, split
 from coaxshell.response.synthesis import angle_basis
 from coaxshell.solver.recompute import SolvedSpectra
 
@@ -50,7 +50,7 @@ def grouped(radius: FloatArray, angle: FloatArray) -> Points:
 
 
 def add_exact(
-    out: FloatArray, spectra: SolvedSpectra, request: Request, points: Points, times: FloatArray, quantity: Quantity, tell: Tell
+    out: FloatArray, spectra: SolvedSpectra, request: FieldRequest, points: Points, times: FloatArray, quantity: Quantity, tell: Tell
 ) -> None:
     """Add the scattered field of a part at points to ``out``, shape (times, points)."""
     weight = mode_filter(request.filter, spectra.max_order)
@@ -61,7 +61,7 @@ def add_exact(
         if region.exterior:
             at = at[points.radius[at] <= reach(spectra.problem, times, request.resolution)]
         if field is not None:
-            for block, span in _blocks(at, times, field.halves * weight.size, grid, request.memory):
+            for block, span in _blocks(at, times, field.parities * weight.size, grid, request.memory):
                 values = field.histories(points.radius[block], times[span], quantity)
                 for i, modal in zip(block, values, strict=True):
                     here = points.members[i]
@@ -128,11 +128,11 @@ def compensation(max_order: int, angles: int) -> FloatArray:
 
 
 def around(modal: Single, angles: int) -> Single:
-    """Return the sum of all orders at equally spaced angles, (radii, angles, times), from compensated (radii, halves, M + 1, times)."""
-    radii, halves, orders, times = modal.shape
+    """Return the sum of all orders at equally spaced angles, (radii, angles, times), from compensated (radii, parities, M + 1, times)."""
+    radii, parities, orders, times = modal.shape
     spectrum = np.zeros((radii, angles // 2 + 1, times), np.complex64)
     spectrum.real[:, :orders] = modal[:, 0]
-    if halves == 2:
+    if parities == 2:
         spectrum.imag[:, 1:orders] = -modal[:, 1, 1:]
     spectrum[:, 1:] *= 0.5
     return np.asarray(fft.irfft(spectrum, angles, axis=1, norm="forward", overwrite_x=True), dtype=np.float32)
@@ -195,7 +195,7 @@ _BYTES_PER_POINT = 8 * TAPS_RADIUS * TAPS_THETA
 def add_gridded(
     out: FloatArray,
     spectra: SolvedSpectra,
-    asked: Request,
+    asked: FieldRequest,
     place: tuple[FloatArray, FloatArray],
     times: FloatArray,
     quantity: Quantity,
@@ -214,7 +214,7 @@ def add_gridded(
             raster = raster_of(region, radius[at], spacing, spectra.max_order)
             weight = mode_filter(asked.filter, spectra.max_order) * compensation(spectra.max_order, raster.angles)
             # Stores of modal histories, then of the field around the raster, each within a quarter of the memory.
-            per_instant = 4 * raster.count * (2 * field.halves * weight.size)
+            per_instant = 4 * raster.count * (2 * field.parities * weight.size)
             width = max(1, min(times.size, int(asked.memory / 4 / per_instant)))
             for start in range(0, times.size, width):
                 span = slice(start, min(start + width, times.size))
@@ -228,7 +228,7 @@ def add_gridded(
 def _to_points(
     out: FloatArray, modal: Single, raster: Raster, place: tuple[FloatArray, FloatArray], at: np.ndarray, memory: float, *, odd: bool
 ) -> None:
-    """Add modal histories (radii, halves, M + 1, times), summed around the raster and interpolated, to ``out[:, at]``."""
+    """Add modal histories (radii, parities, M + 1, times), summed around the raster and interpolated, to ``out[:, at]``."""
     radius, angle = place
     times = modal.shape[-1]
     blocks = [slice(i, min(i + _POINTS, at.size)) for i in range(0, at.size, _POINTS)]
@@ -249,7 +249,7 @@ def _to_points(
             list(pool.map(work, range(len(blocks))))
 
 
-def raster_radii(spectra: SolvedSpectra, asked: Request, radius: FloatArray) -> int:
+def raster_radii(spectra: SolvedSpectra, asked: FieldRequest, radius: FloatArray) -> int:
     """Return about how many radii the rasters of all regions have for points at these radii."""
     total = 0
     for region, at in split(spectra.problem, radius):

@@ -38,9 +38,9 @@ def march_directly(
     InputError
         If the step is unstable for the shells' stiffness or for the absorbers'.
     """
-    halves = absorbers.halves
-    modal = ModalStep(problem, grid, max_order, halves)
-    load = np.zeros((halves, max_order + 1, grid.time.size))
+    parities = absorbers.parities
+    modal = ModalStep(problem, grid, max_order, parities)
+    load = np.zeros((parities, max_order + 1, grid.time.size))
     sources = surface_loads(problem, grid, max_order)
     load[: sources.shape[0]] = sources
     weights = fluid_weights(problem, grid, modal.orders)
@@ -48,7 +48,7 @@ def march_directly(
     interface = ExplicitInterface(problem, absorbers, modal, saturate)
     interface.require_stable(grid.time_step)
     result = DirectResult.empty(problem, grid, max_order, absorbers, saturate)
-    history = _Accelerations(weights, halves)
+    history = _Accelerations(weights, parities)
     limit = _GROWTH * max(float(np.abs(load).max()), 1e-300)
     for n in range(grid.time.size):
         demand = modal.demand(load[..., n]) - history.earlier()
@@ -67,15 +67,15 @@ def march_directly(
 class _Accelerations:
     """All earlier normal accelerations and their history sums."""
 
-    def __init__(self, weights: FloatArray, halves: int) -> None:
+    def __init__(self, weights: FloatArray, parities: int) -> None:
         shells, _, modes, steps = weights.shape
         self._backward = np.ascontiguousarray(weights[..., ::-1])
         self._pairs = [(i, j) for i in range(shells) for j in range(shells) if np.any(weights[i, j])]
-        self._all = np.zeros((shells, halves, modes, steps))
+        self._all = np.zeros((shells, parities, modes, steps))
         self._step = 0
 
     def earlier(self) -> FloatArray:
-        """Return sum_{j<n} w_{n-j} W''_j, shape (shells, halves, M + 1)."""
+        """Return sum_{j<n} w_{n-j} W''_j, shape (shells, parities, M + 1)."""
         total = np.zeros(self._all.shape[:-1])
         n, steps = self._step, self._all.shape[-1]
         if n:

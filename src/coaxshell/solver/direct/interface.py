@@ -30,10 +30,10 @@ class ExplicitInterface:
         self._solve = np.linalg.inv(np.eye(2 * self.count) + 0.5 * modal.step * np.tile(absorbers.damping, 2)[:, None] * self._relative())
         self.actuators: list[SaturatedShell] = []
         if saturate:
-            halves = modal.w.shape[1]
+            parities = modal.w.shape[1]
             for i in problem.system.controlled_shells:
                 present = 0.5 * modal.step * (modal.derivative[i] * modal.sensor_w[i] * modal.mobility[:, i, i])[0]
-                self.actuators.append(SaturatedShell(problem, i, present, halves))
+                self.actuators.append(SaturatedShell(problem, i, present, parities))
 
     def _point_mobility(self) -> FloatArray:
         """Accelerations at the points per force there."""
@@ -65,7 +65,7 @@ class ExplicitInterface:
             )
 
     def step(self, demand: FloatArray) -> FloatArray:
-        """Return the normal accelerations of all shells (shells, halves, M + 1); moves the masses to the next step."""
+        """Return the normal accelerations of all shells (shells, parities, M + 1); moves the masses to the next step."""
         if self.count:
             self._hold_forces(demand)
         for _ in range(_MAX_COUPLING if self.actuators else 0):
@@ -85,10 +85,10 @@ class ExplicitInterface:
     def _corrections(self, acceleration: FloatArray) -> FloatArray:
         """Return the modal pressures that saturated actuators lack, given the accelerations without them."""
         modal = self.modal
-        asked = modal.asked_known + modal.derivative * modal.sensor_w * 0.5 * modal.step * acceleration
+        demanded_voltage = modal.demanded_voltage_known + modal.derivative * modal.sensor_w * 0.5 * modal.step * acceleration
         lacking = np.zeros_like(acceleration)
         for actuator in self.actuators:
-            lacking[actuator.index] = actuator.correction(asked[actuator.index])
+            lacking[actuator.index] = actuator.correction(demanded_voltage[actuator.index])
         return lacking
 
     def _hold_forces(self, demand: FloatArray) -> None:

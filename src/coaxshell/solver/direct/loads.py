@@ -21,10 +21,10 @@ _TIMES = 128
 
 
 def surface_loads(problem: Problem, grid: LaplaceGrid, max_order: int) -> FloatArray:
-    """Return the modal loads on the outermost shell, incident plus rigidly scattered, shape (halves, M + 1, T)."""
+    """Return the modal loads on the outermost shell, incident plus rigidly scattered, shape (parities, M + 1, T)."""
     orders = all_orders(max_order)
-    halves = 2 if needs_sine_half(problem.system.sources) else 1
-    loads = np.zeros((halves, orders.size, grid.time.size))
+    parities = 2 if needs_sine_half(problem.system.sources) else 1
+    loads = np.zeros((parities, orders.size, grid.time.size))
     scattering = scattering_weights(grid, orders)
     for source in problem.system.sources:
         if source.geometry == "line":
@@ -33,7 +33,7 @@ def surface_loads(problem: Problem, grid: LaplaceGrid, max_order: int) -> FloatA
             pressure, velocity = arc_integrals(problem, source, grid.time, orders)
             scattered = signal.fftconvolve(velocity, scattering, axes=1)[:, : grid.time.size]
             load = pressure + scattered
-        for half in range(halves):
+        for half in range(parities):
             loads[half] += projection(orders, source.angle, half) * load
     return loads
 

@@ -14,10 +14,10 @@ from coaxshell.solver.scaling import Problem
 class ModalStep:
     """W and V of all shells at the present and the last step, and what their stiffness and feedback demand.
 
-    Arrays of amplitudes have the shape (shells, halves, M + 1); matrices over modes (shells, M + 1).
+    Arrays of amplitudes have the shape (shells, parities, M + 1); matrices over modes (shells, M + 1).
     """
 
-    def __init__(self, problem: Problem, grid: LaplaceGrid, max_order: int, halves: int) -> None:
+    def __init__(self, problem: Problem, grid: LaplaceGrid, max_order: int, parities: int) -> None:
         self.problem, self.step = problem, grid.time_step
         self.orders = all_orders(max_order)
         count = len(problem.shells)
@@ -34,7 +34,7 @@ class ModalStep:
         self.proportional = np.array([0.0 if g is None else g.proportional for g in gains])[:, None, None]
         self.derivative = np.array([0.0 if g is None else g.derivative for g in gains])[:, None, None]
         self.actuator = np.array([problem.actuator_pressure(i) if g is not None else 0.0 for i, g in enumerate(gains)])[:, None, None]
-        shape = (count, halves, max_order + 1)
+        shape = (count, parities, max_order + 1)
         self.w, self.w_before, self.v, self.v_before = (np.zeros(shape) for _ in range(4))
         self._require_stable()
 
@@ -52,7 +52,7 @@ class ModalStep:
         self.mobility = np.linalg.inv(matrix)
 
     def accelerate(self, demand: FloatArray) -> FloatArray:
-        """Return the normal accelerations under a demand, shape (shells, halves, M + 1)."""
+        """Return the normal accelerations under a demand, shape (shells, parities, M + 1)."""
         return np.asarray(np.einsum("mij,jhm->ihm", self.mobility, demand * self.free[:, None, None]), dtype=np.float64)
 
     def demand(self, load: FloatArray) -> FloatArray:
@@ -67,8 +67,8 @@ class ModalStep:
         self.w_rate_known = (self.w - self.w_before) / self.step
         volts = self.sensor_v * self.v + self.sensor_w * self.w
         rate = self.sensor_v * self.v_rate + self.sensor_w * self.w_rate_known
-        self.asked_known = self.proportional * volts + self.derivative * rate
-        demand = self.actuator * self.asked_known - self.vw * self.v - self.ww * self.w
+        self.demanded_voltage_known = self.proportional * volts + self.derivative * rate
+        demand = self.actuator * self.demanded_voltage_known - self.vw * self.v - self.ww * self.w
         demand[-1] += load
         return np.asarray(demand, dtype=np.float64)
 

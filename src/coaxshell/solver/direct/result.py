@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class DirectResult:
-    """Modal histories (shells, halves, M + 1, T), absorbers' (N, ...) and the corrections of saturated actuators."""
+    """Modal histories (shells, parities, M + 1, T), absorbers' (N, ...) and the corrections of saturated actuators."""
 
     normal: FloatArray
     tangential: FloatArray
@@ -30,7 +30,7 @@ class DirectResult:
     @classmethod
     def empty(cls, problem: Problem, grid: LaplaceGrid, max_order: int, absorbers: AbsorberSet, saturate: bool) -> DirectResult:
         """Return a record to be filled."""
-        shape = (len(problem.shells), absorbers.halves, max_order + 1, grid.time.size)
+        shape = (len(problem.shells), absorbers.parities, max_order + 1, grid.time.size)
         count, steps = absorbers.count, grid.time.size
         correction = np.zeros(shape) if saturate else None
         return cls(np.zeros(shape), np.zeros(shape), np.zeros((count, steps)), np.zeros((count, 2, steps)), correction)

@@ -20,7 +20,7 @@ from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
-from coaxshell.solver.prepared import PreparedStructure
+from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
@@ -56,11 +56,11 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     stopwatch.lap("time steps")
     w, v = result.normal, result.tangential
     left_out = _left_out(problem, grid, order, links, result)
-    trust = Estimates(left_out, np.full_like(left_out, np.nan), np.full_like(left_out, np.nan))
+    error_estimates = Estimates(left_out, np.full_like(left_out, np.nan), np.full_like(left_out, np.nan))
     stopwatch.lap("error estimates")
     keep = slice(None, None, settings.refinement)
     solution = ModalSolution(
-        problem, replace(settings, modes=order), grid.time[keep], w[..., keep], v[..., keep], trust, (), stopwatch.seconds
+        problem, replace(settings, modes=order), grid.time[keep], w[..., keep], v[..., keep], error_estimates, (), stopwatch.seconds
     )
     if any(shell.gains is not None for shell in problem.shells):
         rates = [np.gradient(x, grid.time_step, axis=-1, edge_order=2)[..., keep] for x in (w, v)]
@@ -70,7 +70,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         solution = replace(solution, absorber_displacement=displacement[:, keep], absorber_force=force[..., keep])
     if result.correction is not None:
         solution = replace(solution, control_correction=result.correction[..., keep])
-    warnings += checks.before(problem, grid, order) + checks.after(problem, trust, solution.settings) + checks.actuators(solution)
+    warnings += checks.before(problem, grid, order) + checks.after(problem, error_estimates, solution.settings) + checks.actuators(solution)
     return replace(solution, warnings=tuple(warnings))
 
 
@@ -86,4 +86,4 @@ def _left_out(problem: Problem, grid: LaplaceGrid, order: int, links: AbsorberSe
     histories = result.normal, result.tangential
     spectra = grid.transform(result.normal), grid.transform(result.tangential)
     whole = surface_norms(*histories) * grid.time_step
-    return ORDERS_FACTOR * left_out(PreparedStructure(problem, grid, order), above, spectra, whole, interface)
+    return ORDERS_FACTOR * left_out(StructureSpectra(problem, grid, order), above, spectra, whole, interface)

@@ -14,7 +14,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.coupling import fluid_matrix
 from coaxshell.solver.kernels import exponential_weights
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.spectral import node_blocks, over_blocks
+from coaxshell.solver.spectral import map_node_blocks, node_blocks
 
 _DECAY = 1.0
 """Rate of the exponential that carries a response function's front at t = 0 while the rest is inverted by FFT."""
@@ -43,7 +43,7 @@ def fluid_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> Fl
             if i + 1 < count:
                 spectrum[i, i + 1, :, block], spectrum[i + 1, i, :, block] = fluids.upper[i], fluids.lower[i + 1]
 
-    over_blocks(node_blocks(grid, orders.size - 1), work, None, "response functions")
+    map_node_blocks(node_blocks(grid, orders.size - 1), work, None, "response functions")
     weights = np.empty((count, count, orders.size, grid.time.size))
     for i in range(count):
         impedance = sum(fluid.density / fluid.slowness for fluid in problem.fluids[i : i + 2] if fluid is not None)
