@@ -11,7 +11,7 @@ from hypothesis import settings
 from scipy.special import gamma
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import LinearSpectra, linear_spectra
 from coaxshell.verification import bench

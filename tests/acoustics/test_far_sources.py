@@ -7,13 +7,13 @@ import pytest
 from scipy import special
 
 import coaxshell as cx
-from coaxshell.acoustics.bessel_ratios import kve
 from coaxshell.acoustics.free_field import NEAREST, LineField, PlaneField, SphericalField, TimeFunction
 from coaxshell.acoustics.incident import LineGeometry, PlaneGeometry, SphericalGeometry
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.pulse_histories import pulse_history
 from coaxshell.acoustics.rays import front_angle, path_to, surface_rays
+from coaxshell.numerics.bessel_ratios import kve
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.direct.loads import arc_integrals
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings

@@ -9,8 +9,8 @@ import pytest
 from scipy.special import ivp, kv, kve, kvp
 
 from coaxshell.acoustics.incident import LineGeometry, PlaneGeometry, SphericalGeometry
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 GRID = LaplaceGrid(0.02, 200)
 ORDERS = all_orders(30)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.acoustics.sampled_transforms import _by_moments, _by_sum, piecewise_linear
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 GRID = LaplaceGrid(1e-2, 500)
 S = GRID.nodes

@@ -10,7 +10,7 @@ import pytest
 from scipy.special import ive, kve
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 
 GRID = LaplaceGrid(0.02, 250)

@@ -5,8 +5,8 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.acoustics import response_functions as rf
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.direct.weights import fluid_weights
 from coaxshell.solver.scaling import dimensionless
 

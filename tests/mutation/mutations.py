@@ -82,7 +82,7 @@ MUTATIONS = (
     # acoustics
     Mutation(
         "bessel-i-recurrence",
-        "acoustics/bessel_ratios.py",
+        "numerics/bessel_ratios.py",
         "np.add(work, ratios[m], out=work)",
         "np.subtract(work, ratios[m], out=work)",
         "downward recurrence of I_{m+1}/I_m",
@@ -90,7 +90,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bessel-k-index",
-        "acoustics/bessel_ratios.py",
+        "numerics/bessel_ratios.py",
         "np.multiply(two_over_z, m, out=work)\n        np.add(ratios[m], work, out=ratios[m])",
         "np.multiply(two_over_z, m - 1, out=work)\n        np.add(ratios[m], work, out=ratios[m])",
         "upward recurrence of K_{m+1}/K_m: its order",
@@ -146,7 +146,7 @@ MUTATIONS = (
     ),
     Mutation(
         "laplace-window",
-        "acoustics/laplace_grid.py",
+        "numerics/laplace_grid.py",
         "np.exp(self.shift * self.time) / self.time_step",
         "np.exp(0.999 * self.shift * self.time) / self.time_step",
         "exponential window of the inverse transform",
@@ -154,7 +154,7 @@ MUTATIONS = (
     ),
     Mutation(
         "hat-power",
-        "acoustics/laplace_grid.py",
+        "numerics/laplace_grid.py",
         "(np.sinh(half) / half) ** 2, dtype",
         "(np.sinh(half) / half), dtype",
         "forces linear between steps",
@@ -201,7 +201,7 @@ MUTATIONS = (
     ),
     Mutation(
         "stability-whole-turns",
-        "solver/winding.py",
+        "numerics/winding.py",
         "2 * np.pi * np.bincount",
         "np.pi * np.bincount",
         "turns of the determinant around zero: a whole turn a crossing",
@@ -305,9 +305,9 @@ MUTATIONS = (
     ),
     Mutation(
         "history-blocks",
-        "solver/history.py",
-        "self._promise(count * (blocks & -blocks))",
-        "self._promise(count)",
+        "numerics/convolution.py",
+        "self._add_forcing(count * (blocks & -blocks))",
+        "self._add_forcing(count)",
         "history sum: dyadic blocks of the past",
         "solver/test_history.py",
     ),

@@ -10,8 +10,8 @@ from scipy.special import ive
 
 import coaxshell as cx
 from coaxshell.acoustics.incident import SphericalGeometry
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.paper import Resolution
 from coaxshell.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
 from coaxshell.paper.slips.switches import slipped

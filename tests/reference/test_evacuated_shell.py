@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 
 STEP = 1e5

@@ -11,8 +11,8 @@ import pytest
 from scipy.special import gammainc, iv
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.energy.fluids import Sampler, fluid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field, exterior_field
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response import Response
 from coaxshell.response.fields.modal_field import modal_field
 from coaxshell.response.fields.request import regions

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response import Response
 from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.link_motion import marched_motion

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.linear_absorbers import admittance, solve_linear
 from coaxshell.solver.linear_ring import is_ring, solve_ring

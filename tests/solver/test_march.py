@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.linked import AbsorberSolution, solve_linked
 from coaxshell.solver.march import MarchResult, march

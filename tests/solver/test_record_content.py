@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import coaxshell.model as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model import presets
 from coaxshell.model.records.measures import energy_above
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import checks
 from coaxshell.solver.scaling import dimensionless
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.kernels import trapezoidal_sums
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless

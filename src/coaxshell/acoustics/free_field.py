@@ -19,10 +19,10 @@ from typing import Protocol
 
 import numpy as np
 
-from coaxshell.acoustics.bessel_ratios import kve
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.rays import path_to
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.bessel_ratios import kve
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 NEAREST = 1e-3
 """Least distance from a source at which it is evaluated; nearer points get the value there: fields stay finite."""

@@ -13,12 +13,12 @@ from typing import Protocol
 
 import numpy as np
 
-from coaxshell.acoustics import bessel_ratios as br
-from coaxshell.acoustics.fourier_sums import exponential_sums
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.rays import surface_rays
+from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.fourier_sums import exponential_sums
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 SurfaceLoad = Callable[[RadialFunctions, slice], ComplexArray]
 """From the exterior fluid's radial functions at r = 1 and the slice of grid nodes they stand for to L_m(s), (orders, nodes)."""

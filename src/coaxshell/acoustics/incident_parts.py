@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from coaxshell.acoustics.incident import IncidentWave, SphericalGeometry
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 
 def incident_parts(

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics import bessel_ratios as br
+from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from coaxshell.acoustics import bessel_ratios as br
 from coaxshell.acoustics.operators import AnnulusAmplitudes, RadialFunctions, annulus_amplitudes
+from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray
 
 

@@ -17,8 +17,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.laplace_grid import WORKERS
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS
 
 _MOMENTS = 14
 _FEW = 4_000_000

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.errors import InputError
 from coaxshell.model import VACUUM, RigidShell, Shell, System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.paper.histories import named_warnings
 from coaxshell.paper.known_runs import Runs

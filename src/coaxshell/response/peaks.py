@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.circle import around, peak_on_circle
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.circle import around, peak_on_circle
 from coaxshell.response.synthesis import angle_basis, at_angles, mean_square, time_blocks
 
 Amplitudes = Callable[[slice], FloatArray]

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from coaxshell.acoustics.circle import circle_angles
 from coaxshell.model.naming import shell_name
+from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.errors import error_table
 from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of

@@ -9,7 +9,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.naming import shell_phrase
 from coaxshell.model.plausibility import remarks
@@ -17,6 +16,7 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
+from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.linked import AbsorberSolution

@@ -11,10 +11,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.linear_ring import is_ring

@@ -21,12 +21,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.circle import around, peak_on_circle
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.acoustics.pulse_band import pulse_band
 from coaxshell.errors import InputError
 from coaxshell.model.units import to_si
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.circle import around, peak_on_circle
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 

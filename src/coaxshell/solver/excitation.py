@@ -9,11 +9,11 @@ import numpy as np
 
 from coaxshell.acoustics.incident import IncidentWave, SurfaceLoad
 from coaxshell.acoustics.incident_parts import incident_parts
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
 from coaxshell.numerics.finite import Array, first_bad
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.linked import AbsorberSolution
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.solution import ModalSolution

@@ -23,10 +23,10 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.convolution import HistorySum
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.block_response import LinkConstants, block_response, block_toeplitz
-from coaxshell.solver.history import HistorySum
 from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
 from coaxshell.solver.newton import ConvergenceError, ImplicitStep
 from coaxshell.solver.prepared import StructureSpectra

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.estimates import ORDERS_FACTOR
 from coaxshell.solver.excitation import needs_sine_half

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.actuation import pressure_given
 from coaxshell.solver.excitation import needs_sine_half

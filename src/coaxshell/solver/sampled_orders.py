@@ -12,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads

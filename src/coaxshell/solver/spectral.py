@@ -14,9 +14,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads

@@ -17,11 +17,11 @@ import numpy as np
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.winding import turning
 from coaxshell.solver.coupling import ModalSystem, determinant, pressure_fed_back
 from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import ControlGains, Problem
 from coaxshell.solver.shared_parts import SharedParts
-from coaxshell.solver.winding import turning
 
 _MAX_NODES = 8192
 _SPACING = 0.8

@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.convolution import KernelTable
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.absorbers import InterfacePoints
-from coaxshell.solver.history import KernelTable
 from coaxshell.solver.kernels import voltage_weights
 from coaxshell.solver.march import march
 from coaxshell.solver.orders_left_out import Interface, relative

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.circle import circle_angles, on_circle
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.circle import circle_angles, on_circle
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.scaling import Problem
 

@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from coaxshell.acoustics.circle import circle_angles
 from coaxshell.model.layers import Shell
 from coaxshell.model.system import System
+from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import Response
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.motion import Motion

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import gamma
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 
 def sharp_inverse(grid: LaplaceGrid, spectrum: ComplexArray, lead: float, terms: int = 4) -> FloatArray:

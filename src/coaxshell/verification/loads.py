@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.model.fluids import VACUUM
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.verification.systems import WATER

@@ -23,11 +23,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import jv, yv
 
-from coaxshell.acoustics.laplace_grid import WORKERS
 from coaxshell.acoustics.response_functions.echoes import CavityResponse
 from coaxshell.acoustics.response_functions.hankel import Phase, derivative_phase, expand, reach, rough_phase
 from coaxshell.acoustics.response_functions.sums import cheap_together, is_uniform, legs, levels, sines, snapped
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,11 +15,11 @@ import numpy as np
 
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.winding import turning
 from coaxshell.paper.slips.switches import slipped
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.stability import highest_frequency
-from coaxshell.solver.winding import turning
 
 if TYPE_CHECKING:
     from coaxshell.model import System

@@ -33,10 +33,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import ShareDone
 from coaxshell.response.energy.motion import Motion
 from coaxshell.solver.scaling import FluidRegion

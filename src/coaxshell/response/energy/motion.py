@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.recompute import SolvedSpectra, spectra_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution

@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.laplace_grid import WORKERS
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.fields.grids import Grid, grid_of, labelled

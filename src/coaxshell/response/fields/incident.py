@@ -14,11 +14,11 @@ import numpy as np
 
 from coaxshell.acoustics.free_field import FreeField, LineField, PlaneField, SphericalField, TimeFunction
 from coaxshell.acoustics.incident import LineGeometry, SphericalGeometry
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.fields.inversion import window
 from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.scaling import Problem

@@ -28,10 +28,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ive, kve
 
-from coaxshell.acoustics.bessel_ratios import i_ratios
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus_amplitudes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.bessel_ratios import i_ratios
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.response.fields.inversion import Inversion
 from coaxshell.response.fields.request import Region
 from coaxshell.solver.excitation import incident_on_surface

@@ -23,8 +23,8 @@ import numpy.typing as npt
 from scipy import fft, sparse
 from scipy.special import i0
 
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.response.fields.inversion import band, few_offsets
 from coaxshell.response.fields.modal_field import Quantity, modal_field
 from coaxshell.response.fields.request import FieldRequest, Region, Tell, mode_filter, reach, split

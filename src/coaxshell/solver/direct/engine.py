@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.direct.interface import ExplicitInterface

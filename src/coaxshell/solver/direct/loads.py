@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.acoustics.incident import neumann
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.pulse_histories import pulse_corners, pulse_history, pulse_impulse
 from coaxshell.acoustics.rays import front_angle, surface_rays
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import signal
 from coaxshell.solver.direct.weights import scattering_weights
 from coaxshell.solver.excitation import incident_wave, needs_sine_half, projection, source_spectrum

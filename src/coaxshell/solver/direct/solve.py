@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
 from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set

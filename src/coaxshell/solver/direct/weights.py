@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import fluid_matrix
 from coaxshell.solver.kernels import exponential_weights
 from coaxshell.solver.scaling import Problem

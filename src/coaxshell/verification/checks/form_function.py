@@ -8,10 +8,10 @@ import numpy as np
 from scipy.special import h1vp, hankel1, jv, jvp
 
 from coaxshell.acoustics.incident import PlaneGeometry
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.radial_fields import outgoing
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.verification.bench import Bench

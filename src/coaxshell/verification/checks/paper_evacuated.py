@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model import presets
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.sources import PlaneShock
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.verification.bench import Bench, tables
 from coaxshell.verification.loads import surface_pressure
 from coaxshell.verification.paper_histories import both_sides, extremum, history, least_stress

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model.pulses import Step
 from coaxshell.model.sources import LineWave, PlaneWave, Source, SphericalWave
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.loads import surface_pressure
 from coaxshell.verification.registry import check

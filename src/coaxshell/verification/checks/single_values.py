@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra
 from coaxshell.verification.bench import Bench, tables

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model import presets
 from coaxshell.model.fluids import VACUUM
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.response import Response
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import ive, kve
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
 from coaxshell.model.sources import LineShock, PlaneShock, Source, SphericalShock
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import linear_spectra
 from coaxshell.verification.bench import Bench

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coaxshell.acoustics.fourier_sums import exponential_sums
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.fourier_sums import exponential_sums
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 GRID = LaplaceGrid(0.01, 300)
 

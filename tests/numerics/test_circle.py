@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coaxshell.acoustics import circle
-from coaxshell.acoustics.circle import CirclePeak, circle_angles, on_circle, peak_on_circle, reachable
+from coaxshell.numerics import circle
+from coaxshell.numerics.circle import CirclePeak, circle_angles, on_circle, peak_on_circle, reachable
 
 SEVERAL = 400
 """Instants, many times as many as are summed before the others are judged."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.laplace_grid import WORKERS
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS
 
 _BY_MATRIX = 16
 """Steps up to which a product with the Toeplitz matrix is faster than FFTs."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 DECAY = 3.0
 

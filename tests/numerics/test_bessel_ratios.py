@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import iv, kv, kve
 
-from coaxshell.acoustics import bessel_ratios as br
+from coaxshell.numerics import bessel_ratios as br
 
 TABLE = Path(__file__).parents[1] / "reference" / "data" / "bessel_ratios.npz"
 Z = np.array([0.3 + 0.1j, 2.0 - 5.0j, 40.0 + 0.0j, 1.0 + 90.0j])

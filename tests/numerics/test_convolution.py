@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 import coaxshell as cx
-from coaxshell.acoustics.laplace_grid import LaplaceGrid
-from coaxshell.solver.history import HistorySum, KernelTable
+from coaxshell.numerics.convolution import HistorySum, KernelTable
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.kernels import exponential_weights, velocity_weights
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coaxshell.solver.winding import turning
+from coaxshell.numerics.winding import turning
 
 
 def summed(values: np.ndarray) -> np.ndarray:

@@ -12,8 +12,8 @@ import numpy as np
 from scipy import fft, sparse
 from scipy.special import i0
 
-from coaxshell.acoustics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 
 _OVERSAMPLING = 1.5
 _WIDTH = 14  # grid cells under the kernel; with the shape below the error is about 1e-11 of the largest sum
