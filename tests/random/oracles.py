@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,10 @@ from random_systems import Case
 import coaxshell as cx
 
 Oracle = Callable[[Case, cx.Response], float | None]
-ROTATION, SCALE, SHIFT, LOUDER = 77.0, 3.0, 7, 2.0
+ROTATION, SCALE, SHIFT, LOUDER = 77.0, 3.0, 24, 2.0
 ANGLES = 720
+SPREAD = 4
+"""Steps before an arrival by which the band limit spreads what moves afterwards."""
 
 LIMITS = {
     "finite": 0.0,
@@ -28,6 +31,7 @@ LIMITS = {
     "amplitude": 1e-9,
     "superposition": 1e-9,
     "delay": 1e-4,
+    "causality": 1e-5,
     "split layers": 1e-9,
     "ghost shell": 1e-6,
     "prepared": 1e-9,
@@ -158,14 +162,36 @@ def superposition(case: Case, response: cx.Response) -> float | None:
     return mismatch(sum(np.pad(x, [(0, 0), (0, parities - x.shape[1]), (0, 0), (0, 0)]) for x in parts), response.solution.normal)
 
 
-def delay(case: Case, response: cx.Response) -> float:
-    """A delay of all sources by some steps shifts the answer; before it nothing moves."""
+@lru_cache(maxsize=1)
+def delayed(case: Case) -> np.ndarray:
+    """Return the motion with all sources SHIFT steps later."""
     system = case.system
-    later = SHIFT * case.settings["time_step"] * system.reference_radius / system.exterior.sound_speed
-    late = run(case, system.replace(source=[one.replace(delay=one.delay + later) for one in system.sources]))
+    later = SHIFT * case.settings["time_step"] * system.transit_time
+    return run(case, system.replace(source=[one.replace(delay=one.delay + later) for one in system.sources]))
+
+
+def delay(case: Case, response: cx.Response) -> float:
+    """A delay of all sources by some steps shifts the answer."""
     expected = np.zeros_like(response.solution.normal)
     expected[..., SHIFT:] = response.solution.normal[..., :-SHIFT]
-    return mismatch(late, expected)
+    return mismatch(delayed(case), expected)
+
+
+def causality(case: Case, response: cx.Response) -> float:
+    """Nothing moves before the first front: at the outermost shell with the source, at the next one a gap's transit later or, through an
+    absorber's springs, at once; behind a vacuum never. Relative to the largest motion of all."""
+    system, motion = case.system, delayed(case)
+    step, transit = case.settings["time_step"], system.transit_time
+    linked = {absorber.inner_shell for absorber in system.absorber_list}
+    arrival = min(one.delay for one in system.sources) + SHIFT * step * transit
+    largest, early = float(np.abs(motion).max()), 0.0
+    for i in reversed(range(len(system.shells))):
+        if i < len(system.shells) - 1 and i not in linked:
+            gap, fluid = system.shells[i + 1].radius - system.shells[i].radius, system.fluids[i + 1]
+            arrival += gap / fluid.sound_speed if isinstance(fluid, cx.Fluid) else np.inf
+        before = response.time < arrival / transit - SPREAD * step
+        early = max(early, float(np.abs(motion[i][..., before]).max(initial=0.0)))
+    return early / largest if largest else early
 
 
 def split_layers(case: Case, response: cx.Response) -> float:
@@ -255,6 +281,7 @@ ORACLES: dict[str, Oracle] = {
     "amplitude": amplitude,
     "superposition": superposition,
     "delay": delay,
+    "causality": causality,
     "split layers": split_layers,
     "ghost shell": ghost_shell,
     "prepared": prepared,

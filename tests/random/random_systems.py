@@ -19,7 +19,7 @@ METALS = ("aluminium", "structural-steel", "titanium-ti6al4v", "brass")
 ATTEMPTS = 40
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Case:
     """A system with a resolution at which it is cheap."""
 
