@@ -143,7 +143,7 @@ class InterfacePoints:
         self._project = [
             np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.shells[i].radius) for i, points in self._groups
         ]
-        self.count = self.shell.size
+        self.count, self.shells = self.shell.size, len(problem.shells)
         self.parities, self.modes = shapes.shape[0], max_order + 1
 
     def evaluate(self, modal: Array) -> Array:
@@ -153,14 +153,30 @@ class InterfacePoints:
             values[points] = sum(shape[h] @ modal[i, h] for h in range(min(self.parities, modal.shape[1])))
         return values
 
-    def project(self, forces: Array) -> Array:
-        """Return the modal pressures (shells, parities, M + 1[, T]) of line forces at the points (points[, T])."""
-        modal = np.zeros((len(self._groups), self.parities, self.modes, *forces.shape[1:]), forces.dtype)
+    def project(self, forces: Array, orders: npt.NDArray[np.int64] | None = None) -> Array:
+        """Return the modal pressures (shells, parities, M + 1[, T]) of line forces at the points (points[, T]); of some orders if given."""
+        modes = self.modes if orders is None else orders.size
+        modal = np.zeros((len(self._groups), self.parities, modes, *forces.shape[1:]), forces.dtype)
         for (i, points), shape in zip(self._groups, self._project, strict=True):
             if points.size:
                 for h in range(self.parities):
-                    modal[i, h] = shape[h].T @ forces[points]
+                    chosen = shape[h] if orders is None else shape[h][:, orders]
+                    modal[i, h] = chosen.T @ forces[points]
         return modal
+
+    def between(self, kernels: Array) -> Array:
+        """Return the kernels from forces at the points to motion at the points, shape (points, points, T).
+
+        ``kernels`` are those of the modes, shape (shells, shells, M + 1, T), real or complex.
+        """
+        found = np.zeros((self.count, self.count, kernels.shape[-1]), kernels.dtype)
+        for i, rows in self._groups:
+            for j, columns in self._groups:
+                if rows.size and columns.size:
+                    shares = sum(e[:, None] * p for e, p in zip(self._evaluate[i], self._project[j], strict=True))
+                    parts = np.ascontiguousarray(kernels[i, j]).view(np.float64)  # a real product for complex ones too
+                    found[np.ix_(rows, columns)] = (shares @ parts).view(kernels.dtype)
+        return found
 
     def immediate(self, present: FloatArray) -> FloatArray:
         """Return the velocities at the points per force there within the same step, shape (points, points).
@@ -188,3 +204,26 @@ class InterfacePoints:
                     shapes = zip(self._evaluate[i], self._project[j], strict=True)
                     matrix[:, rows[:, None], columns] = sum((e * spectra[:, None, :]) @ p.T for e, p in shapes)
         return matrix
+
+
+class PointsAlone:
+    """The same points where kernels and motion are those of the points themselves: each a shell of its own that has one mode.
+
+    What needs the motion of the points alone is marched so, with :meth:`InterfacePoints.between` as kernels.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.count = self.shells = count
+        self.parities = self.modes = 1
+
+    def evaluate(self, modal: Array) -> Array:
+        """Return motion (points, 1, 1[, T]) as (points[, T])."""
+        return modal[:, 0, 0]
+
+    def project(self, forces: Array) -> Array:
+        """Return forces (points[, T]) as (points, 1, 1[, T])."""
+        return forces[:, None, None]
+
+    def immediate(self, present: FloatArray) -> FloatArray:
+        """Return the kernels' weights (points, points, 1) as (points, points)."""
+        return present[..., 0]

@@ -93,14 +93,16 @@ def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArra
     return sides[absorbers.member], displacement[absorbers.member]
 
 
-def interface_of(structure: StructureSpectra, absorbers: AbsorberSet, linked: AbsorberSolution) -> Interface:
-    """Return what absorbers and actuators did, for the error estimates."""
+def interface_of(
+    structure: StructureSpectra, absorbers: AbsorberSet, linked: AbsorberSolution, normal: FloatArray, kept: slice
+) -> Interface:
+    """Return what absorbers and actuators did, for the error estimates; ``normal`` is W at the instants kept of the grid."""
     first = _representatives(absorbers)
     force = linked.force[first].swapaxes(0, 1)
-    stretch = np.zeros_like(force)
+    stretch = np.zeros((2, 0, 0))
     if absorbers.count and not absorbers.is_linear:
-        points = InterfacePoints(structure.problem, absorbers, structure.max_order)
-        stretch = linked.displacement[first] - structure.grid.invert(points.evaluate(linked.normal)).reshape(force.shape)
+        walls = InterfacePoints(structure.problem, absorbers, structure.max_order).evaluate(normal)
+        stretch = linked.displacement[first][:, kept] - walls.reshape(2, absorbers.count, -1)
     force = force.reshape(2 * absorbers.count, structure.grid.time.size)
     saturating = None if linked.actuation is None else structure
     return Interface(absorbers, force, stretch, linked.actuation, linked.iterations > 0, saturating)

@@ -25,7 +25,7 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import HistorySum
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.block_response import LinkConstants, block_response, block_toeplitz
 from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
 from coaxshell.solver.newton import ConvergenceError, ImplicitStep
@@ -49,7 +49,7 @@ class MarchResult:
     mass_displacement : ndarray, shape (N, T)
         q.
     modal_pressure : ndarray, shape (shells, parities, M + 1, T)
-        Of links and saturating actuators together, on every shell.
+        Of links and saturating actuators together, on every shell; the forces themselves where points march alone.
     actuation : ndarray, same shape, or None
         Of the actuators' share in it, where they saturate.
     saturated : bool
@@ -91,12 +91,11 @@ class _March:
 
     def __init__(self, structure: StructureSpectra, absorbers: AbsorberSet, saturate: bool) -> None:
         self.structure = structure.open_loop if saturate else structure
-        self.count, self.parities = absorbers.count, absorbers.parities
-        self.shells, self.controlled = len(structure.problem.shells), structure.controlled if saturate else []
-        self.points = InterfacePoints(structure.problem, absorbers, structure.max_order)
+        self.count, self.controlled = absorbers.count, structure.controlled if saturate else []
+        self.points = structure.points(absorbers)
+        self.shells, self.parities, self.modes = self.points.shells, self.points.parities, self.points.modes
         self.table = structure.kernels_with_voltage if saturate else structure.kernels
         self.history = HistorySum(self.table, self.parities)
-        self.modes = structure.max_order + 1
         self.limits = np.array([voltage_limit(structure.problem, i) for i in self.controlled])
         self.full_pressure = np.array([structure.problem.actuator_pressure(i) for i in self.controlled]) * self.limits
         unknowns = 2 * self.count + len(self.controlled) * self.parities * self.modes

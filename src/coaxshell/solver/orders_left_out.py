@@ -41,8 +41,8 @@ class Interface:
     links : AbsorberSet
     force : ndarray, shape (2N, T)
         Line forces at every instant of the grid.
-    stretch : ndarray, shape (2, N, T)
-        D.
+    stretch : ndarray, shape (2, N, instants)
+        D at the instants of the run; where absorbers are linear it is not needed, and may be empty.
     actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressures that saturating actuators gave.
     marched : bool
@@ -98,8 +98,8 @@ def mean_tangent(links: AbsorberSet, stretch: FloatArray) -> AbsorberSet:
     """Return the absorbers with their mean tangent stiffness k_l + 3 k_nl <D^4>/<D^2> for linear springs; D of shape (2, N, T)."""
     if links.is_linear:
         return links
-    squares = (stretch**2).sum(axis=(0, 2))
-    fourth = (stretch**4).sum(axis=(0, 2))
+    square = stretch * stretch
+    squares, fourth = square.sum(axis=(0, 2)), (square * square).sum(axis=(0, 2))
     spread = np.divide(fourth, squares, out=np.zeros_like(squares), where=squares > 0)
     return replace(links, linear=links.linear + 3.0 * links.cubic * spread, cubic=np.zeros_like(links.cubic))
 
@@ -118,7 +118,7 @@ def forces_changed(structure: StructureSpectra, links: AbsorberSet, above: Sampl
     if 2 * count > _COUPLED_POINTS:
         return each_alone(links, nodes, soft + _mean_mobility(structure), moved)
     points = InterfacePoints(structure.problem, links, structure.max_order)
-    receptance = points.receptance(structure.compliance[..., NODES])
+    receptance = np.ascontiguousarray(np.moveaxis(points.between(structure.compliance[..., NODES]), -1, 0))
     index = np.arange(count)
     for a in (0, 1):
         for b in (0, 1):

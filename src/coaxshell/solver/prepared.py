@@ -12,6 +12,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.scaling import Problem
@@ -114,6 +115,10 @@ class StructureSpectra:
         if self.forced.kernels is None:
             self.forced.kernels = KernelTable(self.step_weights([])[0])
         return self.forced.kernels
+
+    def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
+        """Return the points at which absorbers hold the shells, in the terms in which ``kernels`` and motion are given."""
+        return InterfacePoints(self.problem, absorbers, self.max_order)
 
     def step_weights(self, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
         """Return the step weights of modal pressures in the velocities and in the rates of the sensors' voltages of some shells.

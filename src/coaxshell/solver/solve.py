@@ -186,7 +186,7 @@ class Prepared:
         if any(shell.gains is not None for shell in problem.shells):
             rates = [grid.invert(x * grid.nodes)[..., keep] for x in (normal, tangential)]
         stopwatch.lap("inverse transform")
-        interface = None if linked is None else interface_of(structure, links, linked)
+        interface = None if linked is None else interface_of(structure, links, linked, w, keep)
         moved = structure.open_loop if linked is not None and linked.actuation is not None else structure
         error_estimates = estimates.estimated_errors(moved, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
         stopwatch.lap("error estimates")

@@ -1,0 +1,61 @@
+"""The march at longer steps that the step's error is told from: its kernels, and the points of the absorbers marched alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver import step_error
+from coaxshell.solver.absorbers import InterfacePoints, absorber_set
+from coaxshell.solver.march import march
+from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.scaling import dimensionless
+
+ABSORBERS = [
+    cx.Absorber(angle=angle, mass=10, damping=1e5, linear_stiffness=1e9, cubic_stiffness=1e20, inner_shell=inner)
+    for angle, inner in ((0.0, 0), (70.0, 1), (-110.0, 0))
+]
+
+
+@pytest.fixture(scope="module")
+def structure() -> StructureSpectra:
+    bare = cx.presets.load("bare")
+    shells = [bare.shells[0].replace(radius=0.4), *bare.shells]
+    system = bare.replace(shells=shells, fluids=[bare.fluids[0], *bare.fluids], absorbers=ABSORBERS)
+    return StructureSpectra(dimensionless(system), LaplaceGrid(5e-3, 203), 12)
+
+
+@pytest.mark.parametrize("every", [2, 4, 8])
+def test_summed_kernels_answer_forces_linear_over_the_longer_steps_alike(structure: StructureSpectra, every: int) -> None:
+    links = absorber_set(structure.problem, tuple(ABSORBERS), 1)
+    coarser = step_error.CoarserStructure(structure, every, True, links)
+    fine, coarse = structure.kernels.kernels[1, 2, 3], coarser.kernels.kernels[1, 2, 3]
+    force = np.random.default_rng(0).normal(size=coarse.size)
+    force[0] = 0.0
+    between = np.interp(structure.grid.time, coarser.grid.time, force)
+    expected = np.convolve(between, fine)[: fine.size : every][: coarse.size]
+    np.testing.assert_allclose(np.convolve(force, coarse)[: coarse.size], expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_points_alone_move_as_they_do_with_the_shells(structure: StructureSpectra, monkeypatch: pytest.MonkeyPatch) -> None:
+    links = absorber_set(structure.problem, tuple(ABSORBERS), 1)
+    alone = step_error.CoarserStructure(structure, 4, False, links)
+    monkeypatch.setattr(step_error, "_MANY", 0)
+    together = step_error.CoarserStructure(structure, 4, False, links)
+    assert alone.kernels.shape[2] == 1
+    assert together.kernels.shape[2] == structure.max_order + 1
+    found, expected = (march(seen, links).force for seen in (alone, together))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+def test_kernels_between_points_are_their_receptance(structure: StructureSpectra) -> None:
+    links = absorber_set(structure.problem, tuple(ABSORBERS), 1)
+    points = InterfacePoints(structure.problem, links, structure.max_order)
+    nodes = structure.compliance[..., ::50]
+    found = points.between(nodes)
+    np.testing.assert_allclose(np.moveaxis(found, -1, 0), points.receptance(nodes), rtol=0, atol=1e-13 * np.abs(found).max())
+    orders = np.array([0, 3, 7])
+    force = np.random.default_rng(0).normal(size=(points.count, 5))
+    np.testing.assert_allclose(points.project(force, orders), points.project(force)[:, :, orders], rtol=1e-13)
