@@ -13,8 +13,8 @@ import coaxshell as cx
 from benchmarks.measure import median_seconds
 from coaxshell.numerics.convolution import HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, absorber_set
-from coaxshell.solver.linked import solve_linked
+from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
+from coaxshell.solver.interface.linked import solve_linked
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 

@@ -74,8 +74,8 @@ def test_the_papers_hybrid_with_its_25(struck, distances):
 @pytest.fixture
 def few_points(monkeypatch):
     """Let the package clip the voltage at as few angles as the independent solver, whose cost grows with their cube."""
-    monkeypatch.setattr("coaxshell.solver.saturation._OVERSAMPLING", 2)
-    monkeypatch.setattr("coaxshell.solver.saturation._FEWEST_POINTS", 0)
+    monkeypatch.setattr("coaxshell.solver.interface.saturation._OVERSAMPLING", 2)
+    monkeypatch.setattr("coaxshell.solver.interface.saturation._FEWEST_POINTS", 0)
 
 
 @pytest.mark.usefixtures("few_points")

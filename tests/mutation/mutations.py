@@ -217,7 +217,7 @@ MUTATIONS = (
     ),
     Mutation(
         "relaxation-answer",
-        "solver/relaxation.py",
+        "solver/interface/relaxation.py",
         "new = known + (rows @",
         "new = known - (rows @",
         "several steps at once: what the springs' own forces move",
@@ -233,7 +233,7 @@ MUTATIONS = (
     ),
     Mutation(
         "absorber-cubic",
-        "solver/absorbers.py",
+        "solver/interface/absorbers.py",
         '"cubic_stiffness"] * length**2 / pressure',
         '"cubic_stiffness"] * length / pressure',
         "dimensionless cubic stiffness",
@@ -241,7 +241,7 @@ MUTATIONS = (
     ),
     Mutation(
         "absorber-mass",
-        "solver/absorbers.py",
+        "solver/interface/absorbers.py",
         '"mass"] * velocity**2',
         '"mass"] * velocity',
         "dimensionless mass of an absorber",
@@ -249,7 +249,7 @@ MUTATIONS = (
     ),
     Mutation(
         "absorber-radius",
-        "solver/absorbers.py",
+        "solver/interface/absorbers.py",
         "max(absorbers.count, 1)] / problem.shells[i].radius)",
         "max(absorbers.count, 1)])",
         "line force to pressure: 1/R of the shell it acts on",
@@ -281,7 +281,7 @@ MUTATIONS = (
     ),
     Mutation(
         "force-law",
-        "solver/laws.py",
+        "solver/interface/laws.py",
         "beyond = self._cubic * z",
         "beyond = 3.0 * self._cubic * z",
         "cubic force of a spring: D^3, not its derivative",
@@ -289,7 +289,7 @@ MUTATIONS = (
     ),
     Mutation(
         "mass-balance",
-        "solver/block_response.py",
+        "solver/interface/block_response.py",
         "balance = links.inertia[:, None] * u - carry",
         "balance = links.inertia[:, None] * u + carry",
         "equation of motion of an absorber's mass: trapezoidal rule",
@@ -297,7 +297,7 @@ MUTATIONS = (
     ),
     Mutation(
         "mass-mobility",
-        "solver/block_response.py",
+        "solver/interface/block_response.py",
         "np.divide(0.5 * time_step, absorbers.mass",
         "np.divide(time_step, absorbers.mass",
         "motion of an absorber's mass from one block to the next",
@@ -313,7 +313,7 @@ MUTATIONS = (
     ),
     Mutation(
         "saturation-clip",
-        "solver/saturation.py",
+        "solver/interface/saturation.py",
         "given = np.clip(volts, -1.0, 1.0)",
         "given = np.clip(volts, -1.0, 2.0)",
         "saturation of positive voltages",
@@ -321,7 +321,7 @@ MUTATIONS = (
     ),
     Mutation(
         "saturation-beta",
-        "solver/saturation.py",
+        "solver/interface/saturation.py",
         "np.tile(np.where(orders == 0, 2.0, 1.0), parities)",
         "np.tile(np.where(orders == 0, 1.0, 1.0), parities)",
         "projection of what saturated actuators give: beta of order 0",
@@ -345,7 +345,7 @@ MUTATIONS = (
     ),
     Mutation(
         "saturation-limit",
-        "solver/saturation.py",
+        "solver/interface/saturation.py",
         "return field * actuator.thickness",
         "return 2.0 * field * actuator.thickness",
         "voltage at which the actuator stops",

@@ -14,10 +14,10 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response import Response
-from coaxshell.solver.absorbers import absorber_set
-from coaxshell.solver.link_motion import marched_motion
-from coaxshell.solver.march import march
-from coaxshell.solver.newton import ConvergenceError, ImplicitStep
+from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.link_motion import marched_motion
+from coaxshell.solver.interface.march import march
+from coaxshell.solver.interface.newton import ConvergenceError, ImplicitStep
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import dimensionless

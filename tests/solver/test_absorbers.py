@@ -9,8 +9,8 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import InterfacePoints, absorber_set
-from coaxshell.solver.linked import solve_linked
+from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
+from coaxshell.solver.interface.linked import solve_linked
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 

@@ -13,7 +13,8 @@ from coaxshell.errors import InputError
 from coaxshell.model import presets
 from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.response import Response
-from coaxshell.solver import linked, prepared
+from coaxshell.solver import prepared
+from coaxshell.solver.interface import linked
 
 COARSE: dict[str, Any] = {"duration": 2.0, "time_step": 1e-2, "modes": 12}
 

@@ -7,9 +7,9 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import InterfacePoints, absorber_set
-from coaxshell.solver.linear_absorbers import admittance, solve_linear
-from coaxshell.solver.linear_ring import is_ring, solve_ring
+from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
+from coaxshell.solver.interface.linear import admittance, solve_linear
+from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 

@@ -9,11 +9,11 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
-from coaxshell.solver.linked import AbsorberSolution, solve_linked
-from coaxshell.solver.march import MarchResult, march
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
+from coaxshell.solver.interface.linked import AbsorberSolution, solve_linked
+from coaxshell.solver.interface.march import MarchResult, march
+from coaxshell.solver.interface.saturation import circle, voltage_limit
 from coaxshell.solver.prepared import StructureSpectra
-from coaxshell.solver.saturation import circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
 
 PAPERS = {"mass": 10, "damping": 1e6, "linear_stiffness": 1e9}

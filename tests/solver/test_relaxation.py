@@ -8,9 +8,10 @@ from numpy.testing import assert_allclose
 
 from coaxshell.model import presets
 from coaxshell.response import prepare
-from coaxshell.solver import estimates, relaxation
-from coaxshell.solver.laws import CubicSprings
-from coaxshell.solver.relaxation import Relaxation
+from coaxshell.solver import estimates
+from coaxshell.solver.interface import relaxation
+from coaxshell.solver.interface.laws import CubicSprings
+from coaxshell.solver.interface.relaxation import Relaxation
 
 
 @pytest.mark.parametrize(("cubic", "together"), [(1e19, True), (1e20, True), (1e23, False)])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.solver.saturation import LimitedVoltages, circle, voltage_limit
+from coaxshell.solver.interface.saturation import LimitedVoltages, circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
 
 MODES = 7

@@ -8,8 +8,8 @@ import pytest
 import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import step_error
-from coaxshell.solver.absorbers import InterfacePoints, absorber_set
-from coaxshell.solver.march import march
+from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
+from coaxshell.solver.interface.march import march
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 

@@ -17,11 +17,11 @@ from coaxshell.model.pulses import Sampled
 from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.electrodes import largest_demand
-from coaxshell.solver.linked import AbsorberSolution
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.interface.linked import AbsorberSolution
+from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.prepared import StructureSpectra
-from coaxshell.solver.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution

@@ -15,9 +15,9 @@ from coaxshell.model.pulses import Sampled
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.excitation import needs_sine_half
-from coaxshell.solver.linear_ring import is_ring
+from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.linear_ring import is_ring
 from coaxshell.solver.sampled_orders import crossing_order
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import MAX_MODES, Settings

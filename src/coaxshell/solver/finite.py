@@ -11,7 +11,7 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.finite import Array, first_bad
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.linked import AbsorberSolution
+from coaxshell.solver.interface.linked import AbsorberSolution
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.solution import ModalSolution
 

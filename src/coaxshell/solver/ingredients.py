@@ -19,7 +19,7 @@ from coaxshell.structure.ring import RingStiffness, ring_stiffness
 from coaxshell.structure.section import Section
 
 if TYPE_CHECKING:
-    from coaxshell.solver.absorbers import AbsorberSet
+    from coaxshell.solver.interface.absorbers import AbsorberSet
     from coaxshell.solver.scaling import Problem
 
 Radial = Callable[[float, float], RadialFunctions]

@@ -13,9 +13,9 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.estimates import ORDERS_FACTOR
 from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings

@@ -20,8 +20,8 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
-from coaxshell.solver.linear_absorbers import admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.interface.linear import admittance
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
 

@@ -12,7 +12,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, PointsAlone
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.scaling import Problem

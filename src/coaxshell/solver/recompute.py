@@ -13,11 +13,11 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.actuation import pressure_given
 from coaxshell.solver.excitation import needs_sine_half
-from coaxshell.solver.link_motion import LinkMotion, exact_motion, marched_motion
-from coaxshell.solver.linked import AbsorberSolution, modal_pressure_of, solve_linked
+from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
+from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
+from coaxshell.solver.interface.linked import AbsorberSolution, modal_pressure_of, solve_linked
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution

@@ -15,12 +15,12 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks, estimates
-from coaxshell.solver.absorbers import absorber_set
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
-from coaxshell.solver.linked import AbsorberSolution, interface_of, solve_linked
+from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.linked import AbsorberSolution, interface_of, solve_linked
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import SampledOrders, orders_above

@@ -23,9 +23,9 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, PointsAlone
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
+from coaxshell.solver.interface.march import march
 from coaxshell.solver.kernels import voltage_weights
-from coaxshell.solver.march import march
 from coaxshell.solver.orders_left_out import Interface, relative
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import standing_for

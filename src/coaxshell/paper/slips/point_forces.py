@@ -8,9 +8,9 @@ import numpy as np
 
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.excitation import projection
 from coaxshell.solver.ingredients import Ingredients
+from coaxshell.solver.interface.absorbers import AbsorberSet
 
 
 def missing_projection(ingredients: Ingredients) -> Ingredients:

@@ -28,8 +28,8 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
     """Return m (dq/dt)^2/2, the springs' k_l D^2/2 + k_nl D^4/4, D = q - w_i(theta_n) on either side, and what the dampers take.
 
     A damper takes c r^2, r = (Z (dq/dt - dw/dt) + c dD/dt)/(Z + c): the rate from the motion of its ends where it is weaker than the
-    wall, and what its link's law makes of its force (:mod:`coaxshell.solver.link_motion`) where it is stiffer, for then the motion of
-    the ends errs by more than their difference. (Force on the shell less the springs') times dq/dt - dw/dt differs from it by the
+    wall, and what its link's law makes of its force (:mod:`coaxshell.solver.interface.link_motion`) where it is stiffer, for then the
+    motion of the ends errs by more than their difference. (Force on the shell less the springs') times dq/dt - dw/dt differs from it by the
     error of the time step: the defect.
     """
     fitted = motion.problem.system.absorber_list

@@ -16,12 +16,12 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.direct.interface import ExplicitInterface
 from coaxshell.solver.direct.loads import surface_loads
 from coaxshell.solver.direct.modal import ModalStep
 from coaxshell.solver.direct.result import DirectResult
 from coaxshell.solver.direct.weights import fluid_weights
+from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.scaling import Problem
 
 _REPORT_EVERY = 50

@@ -6,9 +6,9 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.direct.modal import ModalStep
-from coaxshell.solver.saturation import SaturatedShell
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.interface.saturation import SaturatedShell
 from coaxshell.solver.scaling import Problem
 
 _TOLERANCE = 1e-12

@@ -9,8 +9,8 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet
 from coaxshell.solver.direct.modal import ModalStep
+from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.scaling import Problem
 
 if TYPE_CHECKING:

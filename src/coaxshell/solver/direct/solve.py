@@ -11,13 +11,13 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.engine import march_directly
 from coaxshell.solver.direct.result import DirectResult
 from coaxshell.solver.estimates import ORDERS_FACTOR
 from coaxshell.solver.excitation import needs_sine_half
 from coaxshell.solver.finite import numerical_failures
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
 from coaxshell.solver.prepared import StructureSpectra

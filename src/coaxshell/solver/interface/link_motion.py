@@ -15,7 +15,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.absorbers import AbsorberSet
+from coaxshell.solver.interface.absorbers import AbsorberSet
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.laws import CubicSprings
+from coaxshell.solver.interface.laws import CubicSprings
 
 UNKNOWNS = 224
 """Of the steps taken at once: above, the product with R costs more than the work a step that it saves."""

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.ingredients import point_force_shares
-from coaxshell.solver.linear_absorbers import solve_linear
-from coaxshell.solver.linear_ring import is_ring, solve_ring
-from coaxshell.solver.march import MarchResult, march
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.interface.linear import solve_linear
+from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
+from coaxshell.solver.interface.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.prepared import StructureSpectra
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.absorbers import AbsorberSet
+from coaxshell.solver.interface.absorbers import AbsorberSet
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.spectral import map_node_blocks
 

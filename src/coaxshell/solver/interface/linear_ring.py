@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.solver.absorbers import AbsorberSet
-from coaxshell.solver.linear_absorbers import LinearAbsorberSpectra, admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.linear import LinearAbsorberSpectra, admittance
 from coaxshell.solver.prepared import StructureSpectra
 
 _SAME_ANGLE = 1e-9

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.saturation import LimitedVoltages
+from coaxshell.solver.interface.saturation import LimitedVoltages
 
 
 class CubicSprings:

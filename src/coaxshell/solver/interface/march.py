@@ -25,13 +25,13 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import HistorySum
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.absorbers import AbsorberSet
-from coaxshell.solver.block_response import LinkConstants, block_response, block_toeplitz
-from coaxshell.solver.laws import CubicSprings, SpringsAndActuators
-from coaxshell.solver.newton import ConvergenceError, ImplicitStep
+from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.block_response import LinkConstants, block_response, block_toeplitz
+from coaxshell.solver.interface.laws import CubicSprings, SpringsAndActuators
+from coaxshell.solver.interface.newton import ConvergenceError, ImplicitStep
+from coaxshell.solver.interface.relaxation import Relaxation
+from coaxshell.solver.interface.saturation import LimitedVoltages, voltage_limit
 from coaxshell.solver.prepared import StructureSpectra
-from coaxshell.solver.relaxation import Relaxation
-from coaxshell.solver.saturation import LimitedVoltages, voltage_limit
 
 _LONGEST_BLOCK = 32
 _BLOCK_UNKNOWNS = 512
