@@ -83,16 +83,19 @@ def test_runs(engine: str, kind: type) -> None:
 
 @pytest.mark.parametrize("distance", [None, 3.0])
 @pytest.mark.parametrize(
-    "pulse",
+    ("pulse", "allowed"),
     [
-        cx.Sampled(time=[0.0, 3e-5], pressure=[1e5, 1e5]),
-        cx.Sampled(time=[0.0, 1e-5, 2e-5, 6e-5], pressure=[0.0, 1e5, -2e4, 0.0]),
-        cx.Step(pressure=1e5, rise_time=2e-5),
+        (cx.Sampled(time=[0.0, 3e-5], pressure=[1e5, 1e5]), 1e-3),
+        (cx.Sampled(time=[0.0, 1e-5, 2e-5, 6e-5], pressure=[0.0, 1e5, -2e4, 0.0]), 1e-5),
+        (cx.Step(pressure=1e5, rise_time=2e-5), 1e-6),
     ],
     ids=["rectangle", "corners", "ramp"],
 )
-def test_arcs_are_split_where_the_pulse_has_corners(distance: float | None, pulse: cx.Sampled | cx.Step) -> None:
-    """Against a Gauss rule on 400 short panels, which a corner spoils by its own panel's share only."""
+def test_arcs_are_split_where_the_pulse_has_corners(distance: float | None, pulse: cx.Sampled | cx.Step, allowed: float) -> None:
+    """Against a Gauss rule on 4000 short panels, which a jump or a corner spoils by its own panel's share only.
+
+    One rule over the whole arc errs by 4e-2, 1e-2 and 4e-4 instead of 5e-4, 1e-6 and 5e-8.
+    """
     bare = cx.presets.load("iakovlev-evacuated")
     source = cx.PlaneWave(pulse=pulse) if distance is None else cx.SphericalWave(pulse=pulse, distance=distance)
     problem, orders = dimensionless(bare.replace(source=source)), all_orders(6)
@@ -107,4 +110,4 @@ def test_arcs_are_split_where_the_pulse_has_corners(distance: float | None, puls
         [cosines @ (share * rays.spread * pulse_history(pulse, t - rays.path, scales.time, scales.pressure)) for t in time], axis=1
     )
     found = arc_integrals(problem, problem.system.sources[0], time, orders)[0]
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-3 * np.abs(expected).max())
+    np.testing.assert_allclose(found, expected, rtol=0, atol=allowed * np.abs(expected).max())

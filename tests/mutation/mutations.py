@@ -416,6 +416,14 @@ MUTATIONS = (
         "RMS of the exterior pressure: product of incident wave and field",
         "response/test_pressure_physics.py response/test_pressure_grids.py",
     ),
+    Mutation(
+        "arc-corners",
+        "solver/direct/loads.py",
+        "np.append(pulse_corners(source.pulse, scales.time), np.inf)",
+        "np.append(pulse_corners(source.pulse, scales.time)[:0], np.inf)",
+        "the direct engine's loads of pulses with corners",
+        "acoustics/test_far_sources.py",
+    ),
     # studies, paper, command line
     Mutation(
         "shared-structure",

@@ -38,3 +38,28 @@ def test_a_cubic_absorber_on_a_film(thickness: str, wall: str) -> None:
     found = solve(system, settings=Settings(duration=1.0, time_step=2e-2, modes=8))
     finer = solve(system, settings=Settings(duration=1.0, time_step=2e-2, modes=8, refinement=2))
     assert np.linalg.norm(found.normal - finer.normal) < 0.02 * np.linalg.norm(finer.normal)
+
+
+@pytest.mark.parametrize(("radius", "gain", "limit"), [(1.0, 1e10, 1e8), (0.005, 2e4, 1e5)])
+def test_saturating_actuators_on_a_film(radius: float, gain: float, limit: float) -> None:
+    """A tube of 20 um between an unlimited and no actuator at all; the energy balance closes and a finer step agrees."""
+    layers = [cx.Layer("pzt-4", 5e-6, role="sensor"), cx.Layer("aluminium", 1e-5), cx.Layer("pzt-4", 5e-6, role="actuator")]
+    control = cx.PDControl(proportional=-gain, derivative=-1e-3 * gain, saturation=True, field_limit=limit)
+    system = cx.System(
+        shells=[cx.Shell(radius=radius, layers=layers)],
+        fluids=["freshwater", "freshwater"],
+        source=cx.PlaneWave(pulse=cx.Exponential(peak_pressure=1e6, decay_time=radius / 1500)),
+        control=control,
+    )
+    settings = {"duration": 1.5, "time_step": 5e-2, "modes": 8}
+    held = cx.simulate(system, **settings)
+    assert "was held at" in " ".join(held.warnings)
+    found = held.solution.normal
+    others = [system.replace(control=control.replace(saturation=False)), system.replace(control=None)]
+    linear, free = (cx.simulate(other, **settings).solution.normal for other in others)
+    whole = np.linalg.norm(linear - free)
+    assert 1e-2 * whole < np.linalg.norm(found - free) < whole
+    assert 1e-2 * whole < np.linalg.norm(found - linear) < whole
+    finer = cx.simulate(system, **settings, refinement=4).solution.normal
+    assert np.linalg.norm(found - finer) < 5e-3 * np.linalg.norm(finer)
+    assert float(np.abs(held.energy()["closure_relative"]).max()) < 1e-4
