@@ -73,7 +73,7 @@ def test_saturation_cuts_at_the_limit(make: Callable[..., ModalSolution], respon
 
 def test_bad_input(make: Callable[..., ModalSolution], response: Response, rigid_core: Response) -> None:
     free = Response(make(response.system.replace(control=None)))
-    with pytest.raises(InputError, match="control: shell 0 is not controlled"):
+    with pytest.raises(InputError, match="control: the inner shell is not controlled"):
         free.actuator_voltage(0)
     for call, role in ((rigid_core.sensor_voltage, "sensor"), (rigid_core.actuator_voltage, "actuator")):
         with pytest.raises(InputError, match=rf"shells\[1\].layers: there is no {role}"):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
 from coaxshell.model.fluids import Vacuum
-from coaxshell.model.naming import shell_number, shell_places
+from coaxshell.model.places import shell_number, shell_words
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.scalars import plain
@@ -32,7 +32,7 @@ def index_of(shell: int | str, count: int) -> int:
     if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < count:
         return number
     numbers = "0" if count == 1 else f"0 to {count - 1}"
-    words = " or ".join(repr(word) for word in shell_places(count))
+    words = " or ".join(repr(word) for word in shell_words(count))
     raise InputError("shell", f"{shell!r} is not a shell of this system", f"must be {numbers} (from the inside), {words}")
 
 

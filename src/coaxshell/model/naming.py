@@ -1,4 +1,4 @@
-"""Names: looked up forgivingly, the nearest one suggested when there is no match; and the names by which shells are called everywhere."""
+"""Names looked up forgivingly, the nearest one suggested when there is no match."""
 
 from __future__ import annotations
 
@@ -44,42 +44,3 @@ def lookup(table: Mapping[str, T], name: str, kind: str, where: str = "") -> T:
         if plain(key) == wanted:
             return value
     raise InputError(where, f"{name[: LONGEST + 1]!r} is not a known {kind}", suggestion(name, table))
-
-
-def shell_name(index: int, count: int) -> str:
-    """Return the name of a shell, counted from 0 inside: "inner", "middle" of three, "outer", "shell 2 of 4"; "shell" of a single one."""
-    if count == 1:
-        return "shell"
-    return {0: "inner", count - 1: "outer"}.get(index, "middle" if count == 3 else f"shell {index + 1} of {count}")
-
-
-def shell_phrase(index: int, count: int) -> str:
-    """Return the name of a shell within a sentence: "inner shell", "shell 2 of 4", "shell"."""
-    name = shell_name(index, count)
-    return name if name.startswith("shell") else f"{name} shell"
-
-
-def shell_places(count: int) -> dict[str, int]:
-    """Return the words that stand for a shell in paths and arguments, and its number: "inner", "outer", "middle" of three."""
-    return {"inner": 0, "outer": count - 1} | ({"middle": 1} if count == 3 else {})
-
-
-def item_places(count: int) -> dict[str, int]:
-    """Return the words that stand for an item of any list of a system that runs from the inside out: of its shells, fluids or layers."""
-    return {**shell_places(count), "interior": 0, "exterior": count - 1}
-
-
-def shell_number(name: str, count: int) -> int | None:
-    """Return the number of a shell, counted from 0 inside, from one of its names; None when it is none.
-
-    Names are those of :func:`shell_name`, digits, and "shell 1" (counted from 0), as files of earlier versions have it.
-    """
-    if len(name) > LONGEST:
-        return None
-    wanted = " ".join(name.split()).lower()
-    if wanted.isdecimal() and len(wanted) < 9:
-        return int(wanted) if int(wanted) < count else None
-    for index in range(count):
-        if wanted in (shell_name(index, count), shell_phrase(index, count), f"shell {index}"):
-            return index
-    return shell_places(count).get(wanted)

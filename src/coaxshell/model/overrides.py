@@ -10,7 +10,8 @@ from coaxshell.errors import InputError
 from coaxshell.limits import PATH
 from coaxshell.model.base import Described, joined, shown, within
 from coaxshell.model.layers import Layer
-from coaxshell.model.naming import item_places, plain, slug, suggestion
+from coaxshell.model.naming import plain, slug, suggestion
+from coaxshell.model.places import item_words
 from coaxshell.model.shells import Shell
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def _grown(thing: Any, tree: Tree, where: str) -> Any:
 def _index(token: str, count: int, where: str) -> int:
     if count == 0:
         raise InputError(joined(where, token), f"this system has no {where}", f"describe {where} first")
-    places = item_places(count)
+    places = item_words(count)
     if token in places:
         return places[token]
     if token.isdecimal() and int(token) < count:

@@ -13,10 +13,11 @@ from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_SAMPLES
 from coaxshell.model.base import shown, within
 from coaxshell.model.units import DIMENSIONS, Dimension, to_si
-from coaxshell.numerics.arrays import FloatArray
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from coaxshell.numerics.arrays import FloatArray
 
 
 _SHOWN = 8

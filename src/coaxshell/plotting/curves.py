@@ -9,7 +9,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
-from coaxshell.model.naming import shell_phrase
+from coaxshell.model.places import shell_phrase
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 

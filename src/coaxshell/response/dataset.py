@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from coaxshell._version import __version__
-from coaxshell.model.naming import shell_name
+from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, time_coordinates

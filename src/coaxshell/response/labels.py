@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.model.naming import shell_name
+from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from coaxshell.model.naming import shell_name
+from coaxshell.model.places import shell_name
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.errors import error_table

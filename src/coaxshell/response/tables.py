@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coaxshell.model import RigidShell
-from coaxshell.model.naming import shell_name
+from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 

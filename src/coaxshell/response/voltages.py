@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.numerics.late import xarray as xr
@@ -37,7 +38,8 @@ def control_gains(solution: ModalSolution, shell: int) -> ControlGains:
     """Return the gains of a shell; InputError if nothing controls it."""
     gains = solution.problem.shells[shell].gains
     if gains is None:
-        raise InputError("control", f"shell {shell} is not controlled", "give the system a PDControl that covers this shell")
+        name = shell_phrase(shell, len(solution.problem.shells))
+        raise InputError("control", f"the {name} is not controlled", "give the system a PDControl that covers this shell")
     return gains
 
 

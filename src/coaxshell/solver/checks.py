@@ -10,7 +10,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
-from coaxshell.model.naming import shell_phrase
+from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.pulses import Sampled
@@ -252,7 +252,7 @@ def tension(problem: Problem, found: Iterable[Tension]) -> list[str]:
     count = len(problem.shells)
     warnings = []
     for low in found:
-        fluid = "the fluid outside" if low.region == count else "the fluid inside" if low.region == 0 else "the fluid in the gap"
+        fluid = region_phrase(low.region, count)
         when = f"t = {low.time:.3g} ({engineering(low.time * problem.scales.time, 's')}), {low.angle:.0f} degrees"
         extent = f"over up to {low.width:.0f} degrees at once, for {engineering(low.lasting * problem.scales.time, 's')} in all"
         warnings.append(

@@ -17,7 +17,8 @@ from coaxshell.errors import InputError
 from coaxshell.limits import EXPRESSION
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell
-from coaxshell.model.naming import shell_phrase, shell_places, suggestion
+from coaxshell.model.naming import suggestion
+from coaxshell.model.places import region_name, region_number, region_place, shell_phrase, shell_place, shell_words
 from coaxshell.model.system import System
 from coaxshell.response import Response
 from coaxshell.studies.reading import DesignReading, MetricSource
@@ -166,14 +167,11 @@ def metrics_of(asked: Metrics, system: System, code: UserCode = ANYWHERE) -> tup
 def metric_names(system: System) -> list[str]:
     """Return the names of all metrics that a system has."""
     count = len(system.shells)
-    named = {0: "shell"} if count == 1 else {number: place for place, number in shell_places(count).items()}
     names: list[str] = []
     for i, wall in enumerate(system.shells):
-        place = named.get(i, f"shells[{i}]")
+        place = shell_place(i, count)
         names += [f"{place}.{key}" for key, entry in SHELL_QUANTITIES.items() if _lacks(wall, entry) is None]
-    gaps = range(1, count)
-    places = ["interior", *(["gap"] if len(gaps) == 1 else [f"fluids[{i}]" for i in gaps]), "exterior"]
-    names += [f"{place}.rms_pressure" for place, fluid in zip(places, system.fluids, strict=True) if not isinstance(fluid, Vacuum)]
+    names += [f"{region_place(i, count)}.rms_pressure" for i, fluid in enumerate(system.fluids) if not isinstance(fluid, Vacuum)]
     return names + [f"{place}.{key}" for place, keys in WITHOUT_SHELL.items() for key in keys]
 
 
@@ -218,7 +216,7 @@ def _split(text: str) -> tuple[str, str]:
 def _shell(place: str, system: System) -> int | None:
     count = len(system.shells)
     match = re.fullmatch(r"shells\[(\d+)\]", place)
-    number = int(match.group(1)) if match else shell_places(count).get(place)
+    number = int(match.group(1)) if match else shell_words(count).get(place)
     if number is None and place == "shell" and count == 1:
         number = 0
     return number if number is not None and number < count else None
@@ -233,12 +231,11 @@ def _lacks(wall: object, entry: Quantity) -> str | None:
 def _of_fluid(text: str, label: str, place: str, quantity: str, system: System, where: str) -> Metric:
     count = len(system.shells)
     match = re.fullmatch(r"fluids\[(\d+)\]", place)
-    number = int(match.group(1)) if match else {"interior": 0, "gap": 1 if count == 2 else None, "exterior": count}.get(place)
+    number = int(match.group(1)) if match else region_number(place, count)
     if number is None or number > count or quantity not in FLUID_QUANTITIES or isinstance(system.fluids[number], Vacuum):
         raise InputError(where, f"{text!r} is not a metric of this system", suggestion(text, metric_names(system)))
     entry = FLUID_QUANTITIES[quantity]
-    region = "interior" if number == 0 else "exterior" if number == count else "gap" if count == 2 else f"gap {number}"
-    return Metric(label, entry.units, f"{entry.long_name}, {region}", number, quantity)
+    return Metric(label, entry.units, f"{entry.long_name}, {region_name(number, count)}", number, quantity)
 
 
 def _of_function(function: UserFunction, name: str | None) -> Metric:

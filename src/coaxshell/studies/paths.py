@@ -13,7 +13,8 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import PDControl
 from coaxshell.model.explanations import explanations
-from coaxshell.model.naming import item_places, plain, slug
+from coaxshell.model.naming import plain, slug
+from coaxshell.model.places import item_words
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
 from coaxshell.model.units import Quantity, whole
@@ -123,7 +124,7 @@ def _child(node: Any, token: str) -> Any:
     if isinstance(node, dict):
         return node.get(plain(token))
     if isinstance(node, tuple):
-        number = item_places(len(node)).get(token, int(token) if token.isdecimal() else -1)
+        number = item_words(len(node)).get(token, int(token) if token.isdecimal() else -1)
         return node[number] if 0 <= number < len(node) else None
     return getattr(node, token, None) if isinstance(node, Described) and token in type(node).model_fields else None
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from coaxshell.model import RigidShell, Shell
-from coaxshell.model.naming import shell_name
+from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
 from coaxshell.response.histories import combined

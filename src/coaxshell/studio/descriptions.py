@@ -7,7 +7,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell, Shell, System
-from coaxshell.model.naming import shell_phrase
+from coaxshell.model.places import shell_phrase
 from coaxshell.model.toml import loads
 from coaxshell.studies.metrics import metric_names
 from coaxshell.studio import limits, refusals

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import System
+from coaxshell.model.places import region_name
 from coaxshell.plotting.energy import group_colours
 from coaxshell.plotting.field import absorber_places, ring_radii
 from coaxshell.plotting.field_scales import field_scales
@@ -93,9 +94,10 @@ def point(system: System, settings: Settings, x: float, y: float) -> Packed:
     pressure = np.asarray(response.pressure(x=[x], y=[y], time=response.time, progress=worker.report)).reshape(-1)
     radius = float(np.hypot(x, y))
     inside = sum(radius >= ring for ring in ring_radii(system))
-    count = len(system.shells)
-    region = "exterior" if inside == count else "interior" if inside == 0 else "gap" if count == 2 else f"gap {inside}"
-    return packed({"x": x, "y": y, "region": region}, {"time": Item(response.time, "transits"), "pressure": Item(pressure, "Pa")})
+    return packed(
+        {"x": x, "y": y, "region": region_name(inside, len(system.shells))},
+        {"time": Item(response.time, "transits"), "pressure": Item(pressure, "Pa")},
+    )
 
 
 def energy(system: System, settings: Settings, every: int) -> Packed:

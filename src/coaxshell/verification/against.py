@@ -10,7 +10,7 @@ from time import perf_counter
 import numpy as np
 
 from coaxshell.errors import InputError, PhysicsWarning
-from coaxshell.model.naming import shell_name
+from coaxshell.model.places import shell_name
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.files import write_text
@@ -210,7 +210,7 @@ def template(system: System, path: Path, *, time_step: float = 0.01, duration: f
     every = max(1, round(time_step / response.settings.time_step))
     columns: dict[str, FloatArray] = {"time [transits]": response.time[::every]}
     count = response.shells
-    names = [shell_name(shell, count) for shell in range(count)] if count <= 3 else ["inner", *map(str, range(1, count - 1)), "outer"]
+    names = [str(shell) if " " in name else name for shell in range(count) for name in (shell_name(shell, count),)]
     head = system.sources[0].angle
     for quantity in ("displacement", "stress"):
         unit = UNIT[quantity]

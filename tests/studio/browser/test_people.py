@@ -6,6 +6,8 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from page_reading import until
 
+from coaxshell.model.places import region_side, shell_name, shell_phrase
+
 TABS = ("peaks", "wave", "energy", "studies")
 
 
@@ -56,3 +58,16 @@ def test_the_theme_can_be_switched_and_is_kept(page):
     page.reload()
     until(page, "window.coaxshell?.state.runs.current")
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+
+
+NAMES = """async count => {
+  const {shellName, shellPhrase, regionSide} = await import('/page/js/words.js'), upTo = length => Array.from({length}, (_, i) => i);
+  return [...[shellName, shellPhrase].map(name => upTo(count).map(i => name(i, count))), upTo(count + 1).map(i => regionSide(i, count))];
+}"""
+
+
+def test_the_page_names_shells_and_fluids_as_the_library_does(open_page):
+    page = open_page(wait=False)
+    for count in (1, 2, 3, 12):
+        library = [[name(i, count) for i in range(count)] for name in (shell_name, shell_phrase)]
+        assert page.evaluate(NAMES, count) == [*library, [region_side(i, count) for i in range(count + 1)]]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from coaxshell.model.absorbers import AbsorberRing
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
 from coaxshell.model.fluids import Fluid, Vacuum
-from coaxshell.model.naming import shell_phrase
+from coaxshell.model.places import region_side, shell_phrase
 from coaxshell.model.shells import RigidShell, Shell
 
 if TYPE_CHECKING:
@@ -64,9 +64,9 @@ def _cell(text: str) -> str:
 def _parts(system: System) -> list[Cells]:
     rows: list[Cells] = []
     for number, shell in enumerate(system.shells):
-        rows.append(("", _fluid_name(number, len(system.shells)), _fluid(system.fluids[number])))
+        rows.append(("", region_side(number, len(system.shells)), _fluid(system.fluids[number])))
         rows += _shell_rows(number, len(system.shells), shell)
-    rows.append(("", "outside", _fluid(system.fluids[-1])))
+    rows.append(("", region_side(len(system.shells), len(system.shells)), _fluid(system.fluids[-1])))
     rows += [("", "source", _source(system, source)) for source in system.sources]
     if system.absorber_list:
         rows.append(("", "absorbers", _absorbers(system)))
@@ -76,12 +76,6 @@ def _parts(system: System) -> list[Cells]:
         shells = ", ".join(shell_phrase(i, len(system.shells)) for i in system.controlled_shells)
         rows.append(("", "control", f"k_p = {control.proportional:g}, k_d = {control.derivative:g} on {shells}{stop}"))
     return rows
-
-
-def _fluid_name(number: int, shells: int) -> str:
-    if number == 0:
-        return "inside"
-    return "gap" if shells == 2 else f"gap {number}"
 
 
 def _shell_rows(number: int, shells: int, shell: Shell | RigidShell) -> list[Cells]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model.naming import shell_phrase
+from coaxshell.model.places import region_name, shell_name, shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.finite import require_finite
@@ -113,7 +113,7 @@ def _shells(motion: Motion) -> dict[str, Entry]:
         found = shell_energy(motion, i)
         if found is None:
             continue
-        name = "shell" if count == 1 else {0: "inner", count - 1: "outer"}.get(i, f"shell_{i}")
+        name = shell_name(i, count) if i in (0, count - 1) else f"shell_{i}"
         group = shell_phrase(i, count)
         for part, what in (("kinetic", "kinetic"), ("strain", "strain"), ("piezoelectric", "piezoelectric (open-circuit)")):
             entries[f"{name}_{part}"] = Entry(getattr(found, part), "store", group, f"{what} energy of the {group}")
@@ -139,9 +139,8 @@ def _fluids(motion: Motion, progress: ShareDone) -> dict[str, Entry]:
         found = fluid_energy(motion, i, lambda fraction, i=i: progress((i + fraction) / regions))  # type: ignore[misc]
         if found is None:
             continue
-        name, group = ("interior", "interior fluid") if i == 0 else ("gap", "gap fluid")
-        if i and regions > 2:
-            name, group = f"gap_{i}", f"fluid of gap {i}"
+        region = region_name(i, regions)
+        name, group = region.replace(" ", "_"), f"fluid of {region}" if " " in region else f"{region} fluid"
         entries[f"{name}_kinetic"] = Entry(found.kinetic, "store", group, f"kinetic energy of the {group}")
         entries[f"{name}_compression"] = Entry(found.compression, "store", group, f"compression energy of the {group}")
     return entries

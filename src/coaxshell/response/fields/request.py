@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.model.places import region_number
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.progress import Progress, ShareDone
@@ -284,17 +285,12 @@ def domain_of(problem: Problem, name: str | int, radius: float | None) -> Domain
 def _region(problem: Problem, name: str | int) -> Region:
     known = regions(problem)
     gaps = known[1:-1]
-    if name == "interior":
-        return known[0]
-    if name == "exterior":
-        return known[-1]
+    number = region_number(name, len(problem.shells)) if isinstance(name, str) else name
+    if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < len(known):
+        return known[number]
     if name == "gap":
-        if len(gaps) == 1:
-            return gaps[0]
         remedy = f"name the fluid by its number, 1 to {len(gaps)} from the inside" if gaps else 'use "interior" or "exterior"'
         raise InputError("region", f"{len(gaps) or 'no'} gaps lie between {len(problem.shells)} shells", remedy)
-    if isinstance(name, int) and not isinstance(name, bool) and 0 <= name < len(known):
-        return known[name]
     raise InputError("region", f"{name!r} is unknown", f'allowed: "interior", "gap", "exterior" or a number from 0 to {len(known) - 1}')
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
+from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import Problem
@@ -87,8 +88,9 @@ class ModalStep:
             vv, vw, ww = (x[i, 0] / self.mass[i] for x in (self.vv, self.vw, self.ww))
             highest = float(np.sqrt(0.5 * (vv + ww + np.sqrt((vv - ww) ** 2 + 4.0 * vw**2))).max())
             if highest * self.step >= 2.0:
+                name = shell_phrase(int(i), len(self.free))
                 raise InputError(
                     "time_step",
-                    f"{self.step:g} is unstable for the direct engine: shell {i} vibrates at up to {highest:.4g} per transit",
+                    f"{self.step:g} is unstable for the direct engine: the {name} vibrates at up to {highest:.4g} per transit",
                     f'use at most {1.9 / highest:.2g}, fewer modes, or engine = "spectral"',
                 )

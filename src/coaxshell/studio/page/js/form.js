@@ -5,7 +5,7 @@ import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
 import { editor } from "./record.js";
 import { fresh, kinds, kindTitle, limits, matches, resolve, use } from "./schema.js";
 import { editable, numeral, show } from "./units.js";
-import { capital, gapName, inWords, shellName, shellPhrase, title } from "./words.js";
+import { capital, inWords, regionSide, shellName, shellPhrase, title } from "./words.js";
 
 const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
@@ -208,7 +208,7 @@ function library(path, name, value, choices, known, entryName, key) {
   const own = named < 0 ? el("option", { value: "", selected: true }, value?.[key] ? `${value[key]} (own)` : "own") : null;
   const select = el("select", { id, "data-path": path, onchange: () => select.value !== "" && change(path, structuredClone(known[select.value][entryName])) },
     own, ...known.map((item, i) => el("option", { value: i, selected: i === named, title: item.reference }, item.name)));
-  const line = el("div", { class: "field" }, el("label", { for: id }, entryName === "fluid" ? capital(gapName(Number(path.match(/\[(\d+)\]$/)[1]), shells)) : "Material"), select);
+  const line = el("div", { class: "field" }, el("label", { for: id }, entryName === "fluid" ? capital(regionSide(Number(path.match(/\[(\d+)\]$/)[1]), shells)) : "Material"), select);
   const kind = choices.find((one) => matches(one, value)) ?? choices[0];
   const constants = value && typeof value === "object" ? group(`${path}.constants`, "Constants", false, "", table(kind, path, name, value, true)) : null;
   return el("div", { "data-group": path }, line, constants);

@@ -4,7 +4,7 @@ import { shellCount } from "./form.js";
 import { read } from "./paths.js";
 import { rangeOf, span } from "./ranges.js";
 import { editable, pretty } from "./units.js";
-import { gapName, shellName } from "./words.js";
+import { regionSide, shellName } from "./words.js";
 
 // Every number of the form, those with a slider first; with `each`, the absorbers one by one too.
 export function fields(each = false) {
@@ -18,7 +18,7 @@ export function fields(each = false) {
 // A dotted path, or a text that holds some, with the names that the form gives to shells, layers and fluids.
 export function spelt(text) {
   const shells = shellCount();
-  return text.replace(/\bshells\[(\d+)\]/g, (_, i) => shellName(Number(i), shells)).replace(/\bfluids\[(\d+)\]/g, (_, i) => gapName(Number(i), shells))
+  return text.replace(/\bshells\[(\d+)\]/g, (_, i) => shellName(Number(i), shells)).replace(/\bfluids\[(\d+)\]/g, (_, i) => regionSide(Number(i), shells))
     .replace(/\b(layer|absorber)s\[(\d+)\]/g, (_, name, i) => `${name} ${Number(i) + 1}`).replaceAll("_", " ");
 }
 

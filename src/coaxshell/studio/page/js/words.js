@@ -1,7 +1,7 @@
 // The page's own words: names of shells, of fields by their paths, and the library's remedies as things to do here.
 import { split } from "./paths.js";
 
-// Of shells, counted from 0 inside, as everywhere in the library: "inner", "middle" of three, "outer", "shell 2 of 4", "shell".
+// Of shells and fluids, counted from 0 inside: the names of the library's model/places.py, kept the same by a test.
 export function shellName(index, count) {
   if (count === 1) return "shell";
   if (index === 0) return "inner";
@@ -12,6 +12,10 @@ export function shellName(index, count) {
 export function shellPhrase(index, count) {
   const name = shellName(index, count);
   return name.startsWith("shell") ? name : `${name} shell`;
+}
+
+export function regionSide(number, shells) {
+  return number === 0 ? "inside" : number === shells ? "outside" : shells === 2 ? "gap" : `gap ${number}`;
 }
 
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -28,10 +32,6 @@ export function title(name) {
   return /^[a-z]{1,3}\d\d$/.test(name) ? words : capital(words);
 }
 
-export function gapName(number, shells) {
-  return number === 0 ? "inside" : number === shells ? "outside" : shells === 2 ? "gap" : `gap ${number}`;
-}
-
 // A dotted path for people: "inner shell, layer 2, thickness".
 export function placeName(path, shells) {
   const parts = split(path), words = [];
@@ -41,7 +41,7 @@ export function placeName(path, shells) {
       if (typeof parts[i + 1] === "number" && /^(shells|fluids|layers|absorbers|source)$/.test(part)) return;
       words.push(title(part).replace(/ \(.*\)$/, "").replace(/^[A-Z](?=[a-z])(?!oung|oisson)/, (c) => c.toLowerCase()));
     } else if (before === "shells") words.push(shellPhrase(part, shells));
-    else if (before === "fluids") words.push(`fluid ${gapName(part, shells)}`);
+    else if (before === "fluids") words.push(`fluid ${regionSide(part, shells)}`);
     else words.push(`${String(before ?? "item").replace(/s$/, "")} ${part + 1}`);
   });
   return words.join(", ");

@@ -1,18 +1,30 @@
-"""One set of names for shells, whatever asks for them."""
+"""One set of names for shells and fluids, whatever asks for them."""
 
 from __future__ import annotations
 
 import pytest
 
 import coaxshell as cx
-from coaxshell.model.naming import shell_name, shell_number, shell_phrase
+from coaxshell.model.places import region_name, region_number, region_phrase, shell_name, shell_number, shell_phrase
 from coaxshell.studies.metrics import metric_names, metrics_of
 
 NAMES = {
     1: ["shell"],
     2: ["inner", "outer"],
     3: ["inner", "middle", "outer"],
-    4: ["inner", "shell 2 of 4", "shell 3 of 4", "outer"],
+    12: ["inner", *(f"shell {number} of 12" for number in range(2, 12)), "outer"],
+}
+REGIONS = {
+    1: ["interior", "exterior"],
+    2: ["interior", "gap", "exterior"],
+    3: ["interior", "gap 1", "gap 2", "exterior"],
+    12: ["interior", *(f"gap {number}" for number in range(1, 12)), "exterior"],
+}
+SENTENCES = {
+    1: ["the fluid inside", "the fluid outside"],
+    2: ["the fluid inside", "the fluid in the gap", "the fluid outside"],
+    3: ["the fluid inside", "the fluid in gap 1", "the fluid in gap 2", "the fluid outside"],
+    12: ["the fluid inside", *(f"the fluid in gap {number}" for number in range(1, 12)), "the fluid outside"],
 }
 
 
@@ -32,6 +44,31 @@ def test_every_name_is_read_back(count):
             assert shell_number(known, count) == index, known
     assert shell_number("nonsense", count) is None
     assert shell_number("middle", 2) is None
+
+
+@pytest.mark.parametrize("count", REGIONS)
+def test_fluids_are_named_and_found_by_name(count):
+    for index, name in enumerate(REGIONS[count]):
+        assert region_name(index, count) == name
+        assert region_number(name, count) == index
+        assert region_phrase(index, count) == SENTENCES[count][index]
+    assert region_number("gap" if count != 2 else "gap 1", count) is None
+    assert region_number("nonsense", count) is None
+
+
+@pytest.mark.parametrize("count", REGIONS)
+def test_responses_metrics_and_energies_share_the_names_of_fluids(count):
+    system = nested(count)
+    names = REGIONS[count]
+    response = cx.simulate(system, duration=0.2, time_step=0.02, modes=4)
+    for index, name in enumerate(names[:-1]):
+        assert response.pressure_rms(index).equals(response.pressure_rms(name))
+        (metric,) = metrics_of([f"fluids[{index}].rms_pressure"], system)
+        assert metric.long_name == f"RMS pressure over area and time, {name}"
+        if " " not in name:
+            assert metrics_of([f"{name}.rms_pressure"], system)[0].identity == metric.identity
+    kinetic = {name.removesuffix("_kinetic") for name in response.energy(every=5).data_vars if name.endswith("_kinetic")}
+    assert {name.replace(" ", "_") for name in names[:-1]} <= kinetic
 
 
 @pytest.mark.parametrize("count", NAMES)
