@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from coaxshell.cli.scenario import load_system
 from coaxshell.cli.streams import echo, printable
 from coaxshell.cli.tables import tell_warnings
+from coaxshell.model.paths import parts
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -29,12 +30,8 @@ def load_reference(scenario: str, changes: Sequence[str] = (), where: str = "--c
         No such preset or file, something wrong in the file, or a change that is not allowed.
     """
     plain = load_system(scenario, where=where)
-    missing = [name for name, there in zip(_FITTINGS, (plain.absorbers != (), plain.control is not None), strict=True) if not there]
-    return load_system(scenario, [change for change in changes if _root(change) not in missing], where)
-
-
-def _root(change: str) -> str:
-    return change.partition("=")[0].strip().partition(".")[0].partition("[")[0]
+    missing = [[name] for name, there in zip(_FITTINGS, (plain.absorbers != (), plain.control is not None), strict=True) if not there]
+    return load_system(scenario, [change for change in changes if parts(change.partition("=")[0])[:1] not in missing], where)
 
 
 def labels(first: System, second: System) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, ValidationError
@@ -12,24 +12,7 @@ from pydantic_core import CoreSchema, ErrorDetails
 from coaxshell.errors import InputError
 from coaxshell.model.explanations import explanations
 from coaxshell.model.naming import suggestion
-
-
-def dotted(location: Sequence[str | int]) -> str:
-    """Write a location such as ``("shells", 0, "radius")`` as ``shells[0].radius``."""
-    text = ""
-    for part in location:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
-    return text
-
-
-def joined(outer: str, inner: str) -> str:
-    """Join two dotted paths; an empty one, or an inner one starting with an index, adds no dot."""
-    return outer + inner if not outer or not inner or inner.startswith("[") else f"{outer}.{inner}"
-
-
-def within(outer: str, error: InputError) -> InputError:
-    """Return *error*, and what else is wrong, with paths continued outwards by *outer*."""
-    return InputError(joined(outer, error.where), error.problem, error.remedy, tuple(within(outer, one) for one in error.also))
+from coaxshell.model.paths import within, written
 
 
 def shown(value: object) -> str:
@@ -160,7 +143,7 @@ def _each(error: InputError) -> list[InputError]:
 
 def _one(first: ErrorDetails, cls: type[BaseModel]) -> InputError:
     """Translate one of pydantic's reports."""
-    where = dotted(first["loc"])
+    where = written(first["loc"])
     value = first["input"]
     name = getattr(cls, "called", "") or cls.__name__
     context: Mapping[str, Any] = first.get("ctx") or {}

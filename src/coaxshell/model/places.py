@@ -76,6 +76,8 @@ def region_number(name: str, shells: int) -> int | None:
     return next((index for index in range(shells + 1) if region_name(index, shells) == name), None)
 
 
-def item_words(count: int) -> dict[str, int]:
-    """Return the words that stand for an item of any list of a system that runs from the inside out: of its shells, fluids or layers."""
-    return {**shell_words(count), "interior": 0, "exterior": count - 1}
+def item_words(listing: str, count: int) -> dict[str, int]:
+    """Return the words that stand for the items of a list of a system that runs from the inside out: its shells, fluids or layers."""
+    if listing != "fluids":
+        return {**shell_words(count), "interior": 0, "exterior": count - 1}
+    return {"interior": 0, **({"gap": 1} if count == 3 else {}), "exterior": count - 1, **shell_words(count)}

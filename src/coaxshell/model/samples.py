@@ -11,7 +11,8 @@ from pydantic_core import core_schema
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_SAMPLES
-from coaxshell.model.base import shown, within
+from coaxshell.model.base import shown
+from coaxshell.model.paths import within
 from coaxshell.model.units import DIMENSIONS, Dimension, to_si
 
 if TYPE_CHECKING:

@@ -11,9 +11,10 @@ from pydantic import BeforeValidator, model_validator
 from coaxshell.errors import InputError
 from coaxshell.model import consistency, overrides, toml
 from coaxshell.model.absorbers import Absorber, AbsorberRing
-from coaxshell.model.base import UNSTATED, Described, shown, stated, within
+from coaxshell.model.base import UNSTATED, Described, shown, stated
 from coaxshell.model.control import PDControl
 from coaxshell.model.fluids import AnyFluid, Fluid, Vacuum
+from coaxshell.model.paths import within
 from coaxshell.model.shells import AnyShell, RigidShell, Shell
 from coaxshell.model.sources import Source, as_source, source_distance
 from coaxshell.numerics.files import write_text

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
-from coaxshell.model.base import within
 from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
+from coaxshell.model.paths import within
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.sources import LineWave, PlaneWave, Source, SphericalWave
 from coaxshell.model.toml_text import parsed

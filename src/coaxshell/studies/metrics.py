@@ -18,6 +18,7 @@ from coaxshell.limits import EXPRESSION
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell
 from coaxshell.model.naming import suggestion
+from coaxshell.model.paths import parts
 from coaxshell.model.places import region_name, region_number, region_place, shell_phrase, shell_place, shell_words
 from coaxshell.model.system import System
 from coaxshell.response import Response
@@ -27,6 +28,8 @@ from coaxshell.studies.user_functions import UserCode, UserFunction, from_callab
 MetricLike = str | Callable[[Response], float]
 Metrics = Sequence[MetricLike] | Mapping[str, MetricLike]
 ANYWHERE = UserCode()
+
+_DIGITS = re.compile(r"[0-9]{1,9}")
 
 
 class Quantity(NamedTuple):
@@ -84,8 +87,6 @@ WITHOUT_SHELL = {
     "system": {"mass": "total_mass", "time_window_error": "time_window_error"},
 }
 """Quantities of the absorbers and of the system, by their names in text, and the properties of a reading that give them."""
-
-_INDEXED = re.compile(r"(shells|fluids)[.\[](\w+)\]?\.(\w+)")
 
 
 @dataclass(frozen=True)
@@ -175,26 +176,26 @@ def metric_names(system: System) -> list[str]:
     return names + [f"{place}.{key}" for place, keys in WITHOUT_SHELL.items() for key in keys]
 
 
-def _metric(item: Any, name: str | None, system: System, where: str, code: UserCode) -> Metric:
-    if isinstance(item, Metric):
-        return item
-    if callable(item):
-        return _of_function(from_callable(item, where, name), name)
-    if not isinstance(item, str):
-        raise InputError(where, f"{item!r} is not a metric", "give a name such as inner.peak_stress, or a function of a Response")
-    EXPRESSION.check(len(item), where)
-    text = item.strip()
+def _metric(asked: Any, name: str | None, system: System, where: str, code: UserCode) -> Metric:
+    if isinstance(asked, Metric):
+        return asked
+    if callable(asked):
+        return _of_function(from_callable(asked, where, name), name)
+    if not isinstance(asked, str):
+        raise InputError(where, f"{asked!r} is not a metric", "give a name such as inner.peak_stress, or a function of a Response")
+    EXPRESSION.check(len(asked), where)
+    text = asked.strip()
     if ":" in text:
         return _of_function(from_text(text, where, code), name)
-    place, quantity = _split(text)
+    listing, item, quantity = _split(text)
     label = name or text
-    if place in WITHOUT_SHELL and quantity in WITHOUT_SHELL[place]:
-        attribute = WITHOUT_SHELL[place][quantity]
+    if isinstance(item, str) and quantity in WITHOUT_SHELL.get(item, {}):
+        attribute = WITHOUT_SHELL[item][quantity]
         entry = {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}[attribute]
-        return Metric(label, entry.units, entry.long_name, place, attribute)
-    if (quantity in FLUID_QUANTITIES and place in ("interior", "gap", "exterior")) or place.startswith("fluids"):
-        return _of_fluid(text, label, place, quantity, system, where)
-    shell = _shell(place, system)
+        return Metric(label, entry.units, entry.long_name, item, attribute)
+    if listing == "fluids" or (quantity in FLUID_QUANTITIES and item in ("interior", "gap", "exterior")):
+        return _of_fluid(text, label, item, quantity, system, where)
+    shell = _shell(item, system)
     if shell is None or quantity not in SHELL_QUANTITIES:
         raise InputError(where, f"{text!r} is not a known metric", suggestion(text, metric_names(system)))
     entry = SHELL_QUANTITIES[quantity]
@@ -204,21 +205,18 @@ def _metric(item: Any, name: str | None, system: System, where: str, code: UserC
     return Metric(label, entry.units, f"{entry.long_name}, {shell_phrase(shell, len(system.shells))}", shell, quantity)
 
 
-def _split(text: str) -> tuple[str, str]:
-    indexed = _INDEXED.fullmatch(text)
-    if indexed:
-        kind, index, quantity = indexed.groups()
-        return (f"{kind}[{index}]" if index.isdigit() else index), quantity
-    place, _, quantity = text.partition(".")
-    return place, quantity
+def _split(text: str) -> tuple[str, str | int, str]:
+    """Return list, item and quantity of a name: "shells[1].mass" gives "shells", 1, "mass"; "inner.mass" gives "", "inner", "mass"."""
+    *place, quantity = parts(text) or [""]
+    listing = place.pop(0) if len(place) == 2 and place[0] in ("shells", "fluids") else ""
+    item = ".".join(place)
+    return listing, int(item) if listing and _DIGITS.fullmatch(item) else item, quantity
 
 
-def _shell(place: str, system: System) -> int | None:
+def _shell(item: str | int, system: System) -> int | None:
     count = len(system.shells)
-    match = re.fullmatch(r"shells\[(\d+)\]", place)
-    number = int(match.group(1)) if match else shell_words(count).get(place)
-    if number is None and place == "shell" and count == 1:
-        number = 0
+    words = {**shell_words(count), **({"shell": 0} if count == 1 else {})}
+    number = item if isinstance(item, int) else words.get(item)
     return number if number is not None and number < count else None
 
 
@@ -228,10 +226,9 @@ def _lacks(wall: object, entry: Quantity) -> str | None:
     return f"has a layer with the role {entry.needs!r}" if entry.needs and getattr(wall, entry.needs) is None else None
 
 
-def _of_fluid(text: str, label: str, place: str, quantity: str, system: System, where: str) -> Metric:
+def _of_fluid(text: str, label: str, item: str | int, quantity: str, system: System, where: str) -> Metric:
     count = len(system.shells)
-    match = re.fullmatch(r"fluids\[(\d+)\]", place)
-    number = int(match.group(1)) if match else region_number(place, count)
+    number = item if isinstance(item, int) else region_number(item, count)
     if number is None or number > count or quantity not in FLUID_QUANTITIES or isinstance(system.fluids[number], Vacuum):
         raise InputError(where, f"{text!r} is not a metric of this system", suggestion(text, metric_names(system)))
     entry = FLUID_QUANTITIES[quantity]

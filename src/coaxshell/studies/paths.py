@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from typing import Any, get_args
 
 from coaxshell.errors import InputError
-from coaxshell.limits import PATH
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import PDControl
 from coaxshell.model.explanations import explanations
-from coaxshell.model.naming import plain, slug
-from coaxshell.model.places import item_words
-from coaxshell.model.shells import Shell
+from coaxshell.model.overrides import entry
+from coaxshell.model.paths import EXAMPLE, parsed
 from coaxshell.model.system import System
 from coaxshell.model.units import Quantity, whole
 
@@ -69,7 +67,8 @@ def varied(system: System, changes: Mapping[str, Any]) -> System:
     controls: dict[str, Any] = {}
     absorbers: dict[str, Any] = {}
     for path, value in changes.items():
-        head, _, field = path.partition(".")
+        head, *rest = parsed(path)
+        field = ".".join(rest)
         if head == "control" and system.control is None and field:
             controls[field] = value
         elif head == "absorbers" and isinstance(system.absorbers, tuple) and field in _settable(system.absorbers):
@@ -85,25 +84,19 @@ def varied(system: System, changes: Mapping[str, Any]) -> System:
 
 def field_of(system: System, path: str) -> Field:
     """Return the field at a path of a system; InputError, with the nearest that exists, if there is none."""
-    if not isinstance(path, str) or not path.strip():
-        raise InputError("over", f"{path!r} is not a path", "write it as source.peak_pressure or shells[0].radius")
-    PATH.check(len(path), "over", "write it as source.peak_pressure or shells[0].radius")
+    *way, last = parsed(path, "over")
     path = path.strip()
-    head, _, name = path.partition(".")
-    if head == "control" and system.control is None and name in _GAINS:
-        return _described(path, PDControl, name, 0.0)
-    if head == "absorbers" and isinstance(system.absorbers, tuple) and system.absorbers and name in Absorber.model_fields:
-        return _described(path, Absorber, name, getattr(system.absorbers[0], name))
-    *way, last = [token for token in re.split(r"[.\[\]]+", path) if token]
-    node: Any = system
-    for token in way:
-        node = _child(node, token)
+    if way == ["control"] and system.control is None and last in _GAINS:
+        return _described(path, PDControl, last, 0.0)
+    if way == ["absorbers"] and isinstance(system.absorbers, tuple) and system.absorbers and last in Absorber.model_fields:
+        return _described(path, Absorber, last, getattr(system.absorbers[0], last))
+    node = entry(system, way)
     if isinstance(node, Described) and last in type(node).model_fields:
         return _described(path, type(node), last, getattr(node, last))
-    if isinstance(node, tuple) and (item := _child(node, last)) is not None:
+    if isinstance(node, tuple) and (item := entry(system, [*way, last])) is not None:
         return Field(path, "1", path, None, False, item)
     system.with_overrides({path: 1.0})  # raises the error that names what is allowed there
-    raise InputError(path, "is not a field of this system", "write it as source.peak_pressure or shells[0].radius")
+    raise InputError(path, "is not a field of this system", EXAMPLE)
 
 
 def _described(path: str, kind: type[Described], name: str, present: Any) -> Field:
@@ -114,19 +107,6 @@ def _described(path: str, kind: type[Described], name: str, present: Any) -> Fie
     long_name = re.sub(r"\s*\([^()]*\)", "", explanations(kind).get(name, name).split(". ")[0].split("; ")[0]).rstrip(".")
     units = (quantity.dimension.unit if quantity is not None else "") or "1"
     return Field(path, units, f"{long_name} ({path})", quantity, integer, present)
-
-
-def _child(node: Any, token: str) -> Any:
-    """Return what a token of a path names in a part of the description; None if nothing."""
-    if isinstance(node, System) and token == "materials":
-        layers = [layer for shell in node.shells if isinstance(shell, Shell) for layer in shell.layers]
-        return {plain(slug(layer.material.name)): layer.material for layer in layers}
-    if isinstance(node, dict):
-        return node.get(plain(token))
-    if isinstance(node, tuple):
-        number = item_words(len(node)).get(token, int(token) if token.isdecimal() else -1)
-        return node[number] if 0 <= number < len(node) else None
-    return getattr(node, token, None) if isinstance(node, Described) and token in type(node).model_fields else None
 
 
 def _whole(given: Any) -> int:

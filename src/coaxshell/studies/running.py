@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import within
+from coaxshell.model.paths import within
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
 from coaxshell.studies.cost import case_cost, require_room

@@ -11,7 +11,8 @@ from pydantic import ConfigDict
 from pydantic import Field as Entry
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import Described, shown, within
+from coaxshell.model.base import Described, shown
+from coaxshell.model.paths import within
 from coaxshell.studies.paths import Field
 
 MOST_VALUES = 1_000_000

@@ -11,8 +11,9 @@ from pydantic import BeforeValidator, Field
 
 from coaxshell.errors import InputError
 from coaxshell.model import presets, toml
-from coaxshell.model.base import Described, shown, within
+from coaxshell.model.base import Described, shown
 from coaxshell.model.naming import suggestion
+from coaxshell.model.paths import joined, within
 from coaxshell.model.system import System
 from coaxshell.model.toml_text import parsed
 from coaxshell.studies.design import Design, design_of
@@ -177,7 +178,7 @@ def flat(tables: Mapping[str, Any], entries: frozenset[str] = SPANS) -> dict[str
     found: dict[str, Any] = {}
     for key, value in tables.items():
         if isinstance(value, Mapping) and not entries & set(value):
-            found |= {f"{key}{inner if inner.startswith('[') else '.' + inner}": item for inner, item in flat(value, entries).items()}
+            found |= {joined(key, inner): item for inner, item in flat(value, entries).items()}
         else:
             found[key] = value
     return found

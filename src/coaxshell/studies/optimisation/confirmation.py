@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import within
+from coaxshell.model.paths import within
 from coaxshell.model.system import System
 from coaxshell.studies.optimisation.search import Runner
 from coaxshell.studies.optimisation.targets import Targets
