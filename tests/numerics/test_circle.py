@@ -63,16 +63,45 @@ def test_nothing_exceeds_what_is_reachable(parities: int) -> None:
     assert reachable(alone) == pytest.approx(np.hypot(*alone[:, 3, 0]) if parities == 2 else 3.0)
 
 
+def fine(modal: np.ndarray) -> np.ndarray:
+    """Return the magnitude at angles FINE times closer than those of the circle."""
+    arguments = np.radians(np.outer(np.arange(0.0, 360.0, 1.0 / circle.FINE), np.arange(modal.shape[1])))
+    return np.asarray(np.abs(sum(wave(arguments) @ part for wave, part in zip((np.cos, np.sin), modal, strict=False))))
+
+
 @pytest.mark.parametrize("parities", [1, 2])
 @pytest.mark.parametrize("seed", range(5))
-def test_crest_is_the_largest_of_the_whole_field(parities: int, seed: int) -> None:
+def test_peak_is_the_largest_of_the_whole_field(parities: int, seed: int) -> None:
     modal = histories(parities, seed=seed)
-    field = np.abs(plain(modal))
-    place, instant = np.unravel_index(field.argmax(), field.shape)
+    values = fine(modal)
+    place, instant = np.unravel_index(values.argmax(), values.shape)
     found = peak_on_circle(modal)
     assert found is not None
-    assert (found.place, found.instant) == (place, instant)
-    assert found.value == pytest.approx(field.max(), rel=1e-12)
+    assert found.instant == instant
+    angle = circle_angles(modal.shape[1], parities)[found.place]
+    assert min(abs(angle - x) for x in (place / circle.FINE, 360.0 - place / circle.FINE)) <= 1.0
+    assert found.value == pytest.approx(values.max(), rel=1e-12)
+
+
+@pytest.mark.parametrize("parities", [1, 2])
+@pytest.mark.parametrize("reversed_", [False, True])
+def test_of_two_crests_that_between_the_angles_is_not_missed(parities: int, reversed_: bool) -> None:
+    """Its neighbours are lower than the other crest, which lies on an angle."""
+    orders = 30
+    m = np.arange(1, orders)
+    modal = np.zeros((parities, orders, 2))
+    for instant, (angle, size) in enumerate(((40.5, 1.005), (90.0, 1.0))):
+        modal[0, 1:, instant] = size * np.cos(m * np.radians(angle))
+        if parities == 2:
+            modal[1, 1:, instant] = size * np.sin(m * np.radians(angle))
+    modal = modal[..., ::-1] if reversed_ else modal
+    on_angles = np.abs(plain(modal)).max(axis=0)
+    values = fine(modal).max(axis=0)
+    assert on_angles.argmax() != values.argmax()
+    found = peak_on_circle(modal)
+    assert found is not None
+    assert found.instant == values.argmax()
+    assert found.value == pytest.approx(values.max(), rel=1e-12)
 
 
 def test_crest_is_found_where_few_instants_promise_it() -> None:
@@ -101,7 +130,7 @@ def test_crest_of_few_instants(times: int) -> None:
     modal = histories(2)[..., 150 : 150 + times]
     found = peak_on_circle(modal)
     assert found is not None
-    assert found.value == pytest.approx(np.abs(plain(modal)).max(), rel=1e-12)
+    assert found.value == pytest.approx(fine(modal).max(), rel=1e-12)
 
 
 def test_crest_above_a_limit() -> None:

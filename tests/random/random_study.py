@@ -66,7 +66,7 @@ class Study:
             for name in oracles:
                 found = ORACLES[name](case, response)
                 if found is not None:
-                    allowed = limit(name, case)
+                    allowed = limit(name, case, response)
                     over = found / allowed if allowed else float(found > 0)
                     self.mismatches.setdefault(name, []).append((over, seed, case.kind))
             if refine:

@@ -206,7 +206,7 @@ def test_a_bad_every_is_refused(solved: Callable[[str], Response], every: object
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
-@pytest.mark.parametrize(("name", "limit"), [("bare", 1e-6), ("absorbers", 1e-5), ("active", 1e-6), ("hybrid", 1e-4)])
+@pytest.mark.parametrize(("name", "limit"), [("bare", 1e-6), ("absorbers", 1e-5), ("active", 1e-6), ("hybrid", 3e-5)])
 def test_presets_close_at_the_papers_resolution(name: str, limit: float) -> None:
-    # Measured 4.5e-7, 8.4e-6, 5.5e-7, 8.7e-5: with dampers the error of the march in the rates is what is left.
+    # Measured 5.1e-7, 6.2e-6, 5.5e-7, 1.7e-5: with dampers the error of the march in the rates is what is left.
     assert worst(cx.simulate(cx.presets.load(name)).energy()) < limit
