@@ -6,10 +6,11 @@ import math
 from typing import Any
 
 from coaxshell.errors import InputError
-from coaxshell.model import RigidShell, Shell, System
+from coaxshell.model import RigidShell, System
 from coaxshell.model.places import shell_phrase
 from coaxshell.model.toml import loads
 from coaxshell.studies.metrics import metric_names
+from coaxshell.studies.reading import absorber_mass, shell_mass
 from coaxshell.studio import limits, refusals
 from coaxshell.studio.record_views import viewed
 
@@ -49,22 +50,22 @@ def derived(system: System) -> list[dict[str, Any]]:
     transit = system.reference_radius / system.exterior.sound_speed
     rows = [("transit_time", "transit time a/c", transit, "s")]
     count = len(system.shells)
-    shell_mass = 0.0
+    shells_mass = 0.0
     for index, shell in enumerate(system.shells):
         name = shell_phrase(index, count)
         if isinstance(shell, RigidShell):
             continue
-        mass = _mass(shell)
-        shell_mass += mass
+        mass = shell_mass(shell)
+        shells_mass += mass
         rows += [
             (f"mass/{index}", f"mass of the {name}", mass, "kg/m"),
             (f"thickness/{index}", f"thickness of the {name}", shell.thickness, "m"),
         ]
         rows += [(f"slenderness/{index}", f"radius by thickness of the {name}", shell.radius / shell.thickness, "")]
-    added = sum(absorber.mass for absorber in system.absorber_list)
-    rows += [("shell_mass", "mass of all shells", shell_mass, "kg/m"), ("absorber_mass", "mass of all absorbers", added, "kg/m")]
-    if shell_mass:
-        rows.append(("absorber_share", "absorbers by shells", added / shell_mass, ""))
+    added = absorber_mass(system)
+    rows += [("shell_mass", "mass of all shells", shells_mass, "kg/m"), ("absorber_mass", "mass of all absorbers", added, "kg/m")]
+    if shells_mass:
+        rows.append(("absorber_share", "absorbers by shells", added / shells_mass, ""))
     for index, source in enumerate(system.sources):
         of = "" if len(system.sources) == 1 else f" of source {index}"
         rows.append((f"peak_pressure/{index}", f"free-field peak at the head{of}", _peak(source.pulse), "Pa"))
@@ -72,16 +73,6 @@ def derived(system: System) -> list[dict[str, Any]]:
         if distance is not None:
             rows.append((f"distance/{index}", f"distance from the axis{of}", distance, "m"))
     return [{"name": name, "label": label, "value": value, "unit": unit} for name, label, value, unit in rows if math.isfinite(value)]
-
-
-def _mass(shell: Shell) -> float:
-    """Return the mass of a shell (kg/m): sum of rho pi (r_o^2 - r_i^2) over the layers."""
-    inner, total = shell.inner_radius, 0.0
-    for layer in shell.layers:
-        outer = inner + layer.thickness
-        total += layer.material.density * math.pi * (outer**2 - inner**2)
-        inner = outer
-    return total
 
 
 def _peak(pulse: Any) -> float:

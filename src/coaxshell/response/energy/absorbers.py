@@ -10,6 +10,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.synthesis import angle_basis, at_angles
+from coaxshell.solver.interface.absorbers import properties
 
 
 class AbsorberEnergy(NamedTuple):
@@ -38,15 +39,8 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
     powers, energies = np.zeros((2, time.size)), np.zeros((2, time[kept].size))
     if links is not None:
         q, dq, force = links.displacement, links.velocity, links.force
-        scales = motion.problem.scales
-        units = {
-            "mass": scales.pressure * (scales.length / scales.velocity) ** 2,
-            "damping": scales.pressure * scales.length / scales.velocity,
-            "linear_stiffness": scales.pressure,
-            "cubic_stiffness": scales.pressure / scales.length**2,
-        }
-        column = {name: np.array([getattr(a, name) for a in fitted])[:, None] / unit for name, unit in units.items()}
-        energies[0] = np.sum(0.5 * column["mass"] * dq[:, kept] ** 2, axis=0)
+        law = properties(fitted, motion.problem.scales)
+        energies[0] = np.sum(0.5 * law.mass[:, None] * dq[:, kept] ** 2, axis=0)
         for shell in range(len(motion.problem.shells)):
             ends = [(n, shell - a.inner_shell) for n, a in enumerate(fitted) if shell - a.inner_shell in (0, 1)]
             if not ends:
@@ -54,7 +48,7 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
             here, side = (list(part) for part in zip(*ends, strict=True))
             w, dw = _at_absorbers(motion, shell, np.array([fitted[n].angle for n in here]))
             stretch, parting = q[here] - w, dq[here] - dw
-            damping, linear, cubic = (column[name][here] for name in ("damping", "linear_stiffness", "cubic_stiffness"))
+            damping, linear, cubic = (column[here, None] for column in (law.damping, law.linear, law.cubic))
             spring = linear * stretch + cubic * stretch**3
             share = damping / (damping + _impedance(motion, shell))
             rate = parting + share * (links.stretch_rate[here, side] - parting)

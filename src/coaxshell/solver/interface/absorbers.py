@@ -9,9 +9,10 @@ and a line force f at radius R is the modal pressure f cos(m theta_n)/(beta pi R
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,12 +21,31 @@ from coaxshell.acoustics.operators import all_orders
 from coaxshell.model.absorbers import Absorber
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.excitation import projection
-from coaxshell.solver.scaling import Problem
+from coaxshell.solver.scaling import Problem, Scales
 
 Array = npt.NDArray[Any]
 
 _SAME_ANGLE = 1e-9
 """Degrees within which two angles count as one."""
+
+
+class Properties(NamedTuple):
+    """Properties of absorbers, shape (N,): m/(rho_e a^2), c/(rho_e c_e a), k_l/(rho_e c_e^2), k_nl a^2/(rho_e c_e^2)."""
+
+    mass: FloatArray
+    damping: FloatArray
+    linear: FloatArray
+    cubic: FloatArray
+
+
+def properties(absorbers: Sequence[Absorber], scales: Scales) -> Properties:
+    """Return the dimensionless properties of absorbers given in SI per metre of length."""
+    length, pressure, velocity = scales.length, scales.pressure, scales.velocity
+    given = [(one.mass, one.damping, one.linear_stiffness, one.cubic_stiffness) for one in absorbers]
+    mass, damping, linear, cubic = np.array(given, dtype=np.float64).reshape(-1, 4).T.copy()
+    mass = mass * velocity**2 / (pressure * length**2)
+    damping = damping * velocity / (pressure * length)
+    return Properties(mass, damping, linear / pressure, cubic * length**2 / pressure)
 
 
 @dataclass(frozen=True)
@@ -37,7 +57,7 @@ class AbsorberSet:
     angle : ndarray, shape (N,)
         Degrees.
     mass, damping, linear, cubic : ndarray, shape (N,)
-        m/(rho_e a^2), c/(rho_e c_e a), k_l/(rho_e c_e^2), k_nl a^2/(rho_e c_e^2).
+        As :class:`Properties`.
     inner_shell : ndarray of int, shape (N,)
     multiplicity : ndarray, shape (N,)
         2 for one that stands for itself and its mirror image, else 1.
@@ -79,7 +99,6 @@ class AbsorberSet:
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halves: int) -> AbsorberSet:
     """Return the dimensionless absorbers; with symmetric sources and layout, one of each mirrored pair."""
-    length, pressure, velocity = problem.scales.length, problem.scales.pressure, problem.scales.velocity
     symmetric = source_halves == 1 and _mirror_symmetric(absorbers)
     carried: list[Absorber] = []
     multiplicity: list[float] = []
@@ -97,15 +116,9 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halve
             multiplicity.append(1.0)
             found[key] = index
         member.append(index)
-    column = {
-        name: np.array([getattr(a, name) for a in carried], dtype=np.float64) for name in Absorber.model_fields if name != "inner_shell"
-    }
     return AbsorberSet(
-        angle=column["angle"],
-        mass=column["mass"] * velocity**2 / (pressure * length**2),
-        damping=column["damping"] * velocity / (pressure * length),
-        linear=column["linear_stiffness"] / pressure,
-        cubic=column["cubic_stiffness"] * length**2 / pressure,
+        angle=np.array([a.angle for a in carried], dtype=np.float64),
+        **properties(carried, problem.scales)._asdict(),
         inner_shell=np.array([a.inner_shell for a in carried], dtype=np.int64),
         multiplicity=np.array(multiplicity),
         member=np.array(member, dtype=np.int64),
