@@ -87,7 +87,7 @@ def test_refusals_leave_nothing(hybrid, tmp_path, write, suffix):
 
 
 def test_mat_refuses_what_the_format_cannot_hold(hybrid, tmp_path, monkeypatch):
-    monkeypatch.setattr(tables, "_MAT_LIMIT", 1000)
+    monkeypatch.setattr(tables, "_LARGEST", 1000)
     with pytest.raises(InputError, match=r"do not fit a \.mat file"):
         export_mat(hybrid, tmp_path / "run.mat")
     assert list(tmp_path.iterdir()) == []

@@ -7,14 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.signal  # noqa: F401 - what a run imports late is no part of its arrays
 
 import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.export.paraview import export_paraview
-from coaxshell.export.tables import export_csv
+from coaxshell.export.tables import export_csv, export_mat
 from coaxshell.model import presets
 from coaxshell.numerics import memory
 from coaxshell.numerics.cost import Cost
+from coaxshell.plotting import FieldView, save_film
+from coaxshell.plotting.film import film_cost
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
 
@@ -169,7 +172,44 @@ def test_energies_and_exports_that_do_not_fit(run: cx.Response, tmp_path: Path, 
         export_paraview(run, tmp_path / "series")
     with pytest.raises(InputError, match="a table of 18 columns and 201 rows needs about"):
         export_csv(run, tmp_path / "table.csv")
+    with pytest.raises(InputError, match=r"a \.mat file of 201 instants and orders 0 to 12 needs about"):
+        export_mat(run, tmp_path / "run.mat")
+    with pytest.raises(InputError, match=r"the mean square pressure of orders 0 to 12 at 201 instants needs about .*ask for some instants"):
+        run.pressure_rms("gap", time=run.time)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_films_that_do_not_fit(run: cx.Response, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(memory.VARIABLE, "300 MB")
+    with pytest.raises(InputError, match=r"memory: a film of 3 frames of 4,000 x 4,000 pixels needs about .* are free; use fewer pixels"):
+        save_film(run, path=tmp_path / "film.webp", frames=3, view=FieldView(3.0, 4000))
+    assert list(tmp_path.iterdir()) == []
+    small, long = film_cost(1, 100, FieldView()), film_cost(1, 100_000, FieldView())
+    assert long.seconds > 300 * small.seconds
+    assert long.memory < 1.5 * small.memory  # blocks of frames become smaller where less is free
+
+
+@pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
+@pytest.mark.parametrize("export", [False, True], ids=["pressure_rms", "mat"])
+def test_estimates_of_exports_and_mean_squares_are_honest(export: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    long = cx.simulate(presets.load("bare"), duration=5.0, time_step=2e-3, modes=30)
+
+    def work() -> None:
+        if export:
+            export_mat(long, tmp_path / "run.mat")
+        else:
+            long.pressure_rms("gap", time=np.linspace(0.0, 5.0, 40_001))
+
+    work()
+    tracemalloc.start()
+    work()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    monkeypatch.setenv(memory.VARIABLE, f"{0.66 * peak / 1e6:.6f} MB")
+    with pytest.raises(InputError, match="needs about"):
+        work()
+    monkeypatch.setenv(memory.VARIABLE, f"{1.6 * peak / 1e6:.6f} MB")
+    work()
 
 
 def test_studies_that_do_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import typer
 from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
 from coaxshell.cli.files import Outputs
-from coaxshell.cli.progress import progress
+from coaxshell.cli.progress import progress, tell_time
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.streams import echo
 
@@ -44,6 +44,7 @@ def animate(
     The hoop stress is drawn on the shells; with --compare, two systems side by side.
     """
     from coaxshell.plotting import FILM_SUFFIXES, FieldView, check_film, check_units, save_film
+    from coaxshell.plotting.film import film_cost, require_room
 
     target = Outputs(force).file(output, "--output", FILM_SUFFIXES)
     last = None if until is None else values.number("--until", until)
@@ -53,6 +54,9 @@ def animate(
         view = FieldView(0.5 * values.number("--width", width), size)
         check_units(units)
         check_film(target, frames, fps)
+        cost = film_cost(2 if compare else 1, frames, view)
+        require_room(cost, frames, view)
+    tell_time(cost, "the film", quiet)
     responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
     with values.named_as_options(), progress(quiet) as report:
         save_film(

@@ -12,14 +12,19 @@ import numpy.typing as npt
 from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model import RigidShell
+from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing
+from coaxshell.numerics.memory import words_of
 from coaxshell.plotting.saving import known_suffix
 from coaxshell.response.tables import UNITS, history_table, quantities_of
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
-_MAT_LIMIT = 2**31 - 1
+_LARGEST = 2**31 - 2**20
+"""Bytes that MATLAB reads in one variable of this format, here the struct array of the shells."""
+_HELD = 5.0
+"""Copies of the modal amplitudes that stand side by side: read, gathered, written out and compressed."""
 
 
 def export_csv(response: Response, path: str | Path) -> Path:
@@ -57,6 +62,7 @@ def export_mat(response: Response, path: str | Path) -> Path:
 
     target = Path(path)
     known_suffix(target, (".mat",))
+    _require_room(response)
     content: dict[str, Any] = {
         "time": np.asarray(response.time),
         "time_seconds": np.asarray(response.time_seconds),
@@ -67,14 +73,19 @@ def export_mat(response: Response, path: str | Path) -> Path:
     }
     if response.system.absorber_list:
         content["absorber_displacement"] = np.asarray(response.absorber_displacement())
-    largest = 8 * (response.solution.normal.size // max(1, len(response.system.shells)))
-    if largest > _MAT_LIMIT:
-        raise InputError(
-            "path", f"modal arrays of {largest / 1e9:.1f} GB do not fit a .mat file", "at most 2.1 GB: use a coarser time step"
-        )
     with replacing(target) as partial, partial.open("wb") as file:
         savemat(cast(Any, file), content, do_compression=True, oned_as="column")
     return target
+
+
+def _require_room(response: Response) -> None:
+    """Raise InputError if the modal amplitudes of a run do not fit into a MATLAB file, or into memory while it is written."""
+    modal = 2.0 * response.solution.normal.nbytes
+    what = f"{response.time.size:,} instants and orders 0 to {response.modes:,}"
+    if modal > _LARGEST:
+        problem = f"modal amplitudes of {what}, {words_of(modal)}, do not fit a .mat file"
+        raise InputError("path", problem, f"at most {words_of(_LARGEST)}: use a coarser time step, or Response.thin")
+    Cost(_HELD * modal).require(f"a .mat file of {what}", "use a coarser time step, or Response.thin")
 
 
 def _shell_structs(response: Response) -> npt.NDArray[np.object_]:

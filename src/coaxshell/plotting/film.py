@@ -12,6 +12,8 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.memory import available
 from coaxshell.numerics.scalars import plain
 from coaxshell.plotting.field_scales import FieldScales, field_scales
 from coaxshell.plotting.film_canvas import Canvas
@@ -25,7 +27,11 @@ if TYPE_CHECKING:
 Bytes = npt.NDArray[np.uint8]
 
 _STAGE = "film"
+BLOCK_MEMORY = 0.9e9
+"""Bytes that the pressure of one block of frames may take unless told otherwise."""
 _SAMPLES, _SAMPLE_PIXELS = 40, 90
+_WORKING = 0.4e9
+"""Bytes with which the field of a block of frames is computed, beside the block itself."""
 
 
 def save_film(
@@ -40,7 +46,7 @@ def save_film(
     names: Sequence[str] = (),
     units: str = "auto",
     progress: Report | None = None,
-    memory: float = 0.9e9,
+    memory: float = BLOCK_MEMORY,
 ) -> Path:
     """Write a film of the pressure field and of the stress on the shells; several responses are shown side by side.
 
@@ -66,7 +72,7 @@ def save_film(
     progress : callable, optional
         Called with the fraction done and the name of the stage.
     memory : float
-        Bytes that the pressure of one block of frames may take, all systems together.
+        Bytes that the pressure of one block of frames may take, all systems together; less where less is free.
 
     Returns
     -------
@@ -75,15 +81,18 @@ def save_film(
     Raises
     ------
     InputError
-        An argument is not allowed, or the film cannot be written.
+        An argument is not allowed, the film does not fit into memory, or cannot be written.
     """
     target = Path(path)
     check_film(target, frames, fps)
     view = view or FieldView()
     times = _times(responses, frames, until)
+    halves = max(response.solution.normal.shape[1] for response in responses)
+    kept = sum(4.0 * response.solution.normal.nbytes for response in responses)
+    require_room(film_cost(len(responses), frames, view, halves=halves, kept=kept, memory=memory), frames, view)
     scales = _film_scales(responses, times, view, pressure_limit, stress_limit)
     canvas = Canvas(responses, headings(responses, names), view, scales, units)
-    pictures = _pictures(canvas, responses, times, view, memory / len(responses), progress)
+    pictures = _pictures(canvas, responses, times, view, _for_blocks(memory) / len(responses), progress)
     write_film(target, (canvas.width, canvas.height), len(times), fps, pictures)
     return target
 
@@ -96,6 +105,42 @@ def check_film(path: Path, frames: int, fps: float) -> None:
     if not (math.isfinite(fps) and 0.1 <= fps <= 240):
         raise InputError("fps", f"{fps!r} is not allowed", "give a number from 0.1 to 240")
     film_writer(path)
+
+
+def film_cost(systems: int, frames: int, view: FieldView, *, halves: int = 1, kept: float = 0.0, memory: float = BLOCK_MEMORY) -> Cost:
+    """Return what a film costs beside its runs; the seconds were measured, and hold within a factor of 3.
+
+    Parameters
+    ----------
+    systems : int
+        Side by side.
+    frames : int
+    view : FieldView
+    halves : int
+        1 where the fields are their own mirror images, and half of each is computed; else 2.
+    kept : float
+        Bytes of the transforms of the walls' motion, all systems together.
+    memory : float
+        As of :func:`save_film`.
+    """
+    rows = -(-view.pixels // 2) if halves == 1 else view.pixels
+    frame = 8.0 * rows * view.pixels
+    block = max(1.0, min(frames, _for_blocks(memory) / systems // frame))
+    held = frame * (1.5 * block + 0.5 * min(block, frames - block))  # in double and in single precision, and the block before
+    return Cost(systems * held + _WORKING + kept, systems * (8.0 + frames * (0.033 + 7e-8 * view.pixels**2)))
+
+
+def require_room(cost: Cost, frames: int, view: FieldView) -> None:
+    """Raise InputError if a film does not fit into memory."""
+    if not cost.fits:
+        what = f"a film of {frames:,} frames of {view.pixels:,} x {view.pixels:,} pixels"
+        cost.require(what, "use fewer pixels")
+
+
+def _for_blocks(memory: float) -> float:
+    """Return the bytes that blocks of frames may take: less than was said where less is free."""
+    free = available()
+    return memory if free is None else min(memory, 0.3 * free)
 
 
 def _times(responses: Sequence[Response], frames: int, until: float | None) -> FloatArray:

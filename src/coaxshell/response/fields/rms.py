@@ -7,6 +7,7 @@ import numpy.typing as npt
 import scipy.fft
 
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.fields.grids import instants_of
@@ -17,6 +18,9 @@ from coaxshell.response.fields.request import Domain, FieldRequest, default_inst
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.scaling import Problem
+
+_HELD = 3.0
+"""Arrays of all orders, circles of a block and instants that stand side by side."""
 
 
 def pressure_rms(
@@ -78,6 +82,7 @@ def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, ti
     weight = mode_filter(asked.filter, spectra.max_order)[:, None]
     points = scipy.fft.next_fast_len(max(720, 4 * weight.size), real=True) if domain.region.exterior else 0
     block = max(1, int(asked.memory / 4 / (8 * times.size * (4 * weight.size + 3 * points))))
+    _require_room(spectra, times.size, min(block, radii.size))
     total = np.zeros(times.size)
     for start in range(0, radii.size, block):
         here, share = radii[start : start + block], weights[start : start + block]
@@ -91,6 +96,16 @@ def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, ti
         if asked.progress is not None:
             asked.progress(min(1.0, (start + block) / radii.size), "mean square")
     return total
+
+
+def _require_room(spectra: SolvedSpectra, instants: int, circles: int) -> None:
+    """Raise InputError if the orders on so many circles at all instants, and the walls' own transforms, do not fit into memory."""
+    orders = spectra.normal.shape[1] * spectra.normal.shape[2]
+    cost = Cost(_HELD * 8.0 * circles * instants * orders + 2.0 * spectra.normal.nbytes)
+    if not cost.fits:
+        cost.require(
+            f"the mean square pressure of orders 0 to {spectra.max_order} at {instants:,} instants", "ask for some instants at a time"
+        )
 
 
 def _with_incident(problem: Problem, radii: FloatArray, times: FloatArray, modal: FloatArray | None, points: int) -> FloatArray:
