@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 from coaxshell.cli import main
+from coaxshell.errors import InputError
+from coaxshell.numerics import memory
 from coaxshell.paper import FIGURES, Resolution, StudyRecipe
 from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
@@ -18,6 +20,7 @@ from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.reproduction import VARIANTS, reproduce, write
 from coaxshell.paper.reproduction import run as running
 from coaxshell.paper.reproduction import work as working
+from coaxshell.paper.reproduction.cost import part_cost
 from coaxshell.paper.reproduction.plan import Part, groups, parts
 from coaxshell.paper.slips import SLIPS
 
@@ -147,3 +150,19 @@ def test_the_whole_paper_at_its_resolution(tmp_path):
     assert main(["reproduce", "--output", str(tmp_path), "--quiet"]) == 0
     assert (tmp_path / "report.html").stat().st_size > 1e6
     assert len(list((tmp_path / "figures").iterdir())) == len(FIGURES)
+
+
+def test_what_does_not_fit_side_by_side_is_refused_and_the_time_is_told(tmp_path, monkeypatch):
+    told = []
+    monkeypatch.setenv(memory.VARIABLE, "2 GB")
+    with pytest.raises(InputError, match=r"the reproduction of \d+ parts in 8 processes needs about .* use workers=[12]"):
+        reproduce(tmp_path, TINY, workers=8)
+    assert not any((tmp_path / "parts").glob("*.npz"))
+    monkeypatch.delenv(memory.VARIABLE)
+    reproduce(tmp_path, TINY, only=frozenset({"estimate"}), workers=1, tell=told.append)
+    reproduce(tmp_path, TINY, only=frozenset({"estimate"}), workers=1, tell=told.append)
+    assert told[0].seconds > 0.1
+    assert told[1].seconds == 0.0  # all is there
+    fine = Resolution()
+    costs = {part.kind: part_cost(part, fine) for part in parts(fine)}
+    assert costs["direct"].seconds > costs["fields"].seconds > 10.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +11,7 @@ import typer
 
 from coaxshell.cli import options, values
 from coaxshell.cli.interruption import Interrupted
-from coaxshell.cli.progress import progress
+from coaxshell.cli.progress import progress, tell_time
 from coaxshell.cli.streams import echo
 from coaxshell.errors import InputError
 
@@ -50,10 +51,11 @@ def reproduce(
     resolution = _resolution(quick, duration, time_step, modes)
     count = None if workers is None else values.whole("--workers", workers)
     prepare(output)
+    told = partial(tell_time, what="what is left to do", quiet=quiet)
     suffix = (".mp4" if find_spec("imageio_ffmpeg") else ".webp") if film else None
     try:
         with values.named_as_options(), progress(quiet, left=True) as report:
-            found = compute(output, resolution, only=wanted, film_suffix=suffix, workers=count, progress=report)
+            found = compute(output, resolution, only=wanted, film_suffix=suffix, workers=count, progress=report, tell=told)
     except KeyboardInterrupt:
         raise Interrupted(f"interrupted; finished parts are kept in {str(output)!r}: the same command goes on") from None
     paths = write(found, output)

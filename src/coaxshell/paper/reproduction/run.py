@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.progress import Progress
+from coaxshell.paper.reproduction.cost import require_room
 from coaxshell.paper.reproduction.plan import Part, parts
 from coaxshell.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims
 from coaxshell.paper.reproduction.work import Job, carry_out
@@ -28,6 +31,7 @@ def reproduce(
     film_suffix: str | None = ".mp4",
     workers: int | None = None,
     progress: Progress | None = None,
+    tell: Callable[[Cost], None] | None = None,
 ) -> Results:
     """Compute the paper's figures, claims and slips; what is finished in the folder already is taken up.
 
@@ -45,17 +49,22 @@ def reproduce(
         Processes; one a core unless given.
     progress : callable, optional
         Called with the fraction done and the part that was finished.
+    tell : callable, optional
+        Called with the cost of all that is left to do before it is begun.
 
     Raises
     ------
     InputError
-        A part or an option is not allowed.
+        A part or an option is not allowed, or so many parts side by side do not fit into memory.
     """
     start = time.perf_counter()
     resolution = resolution or Resolution()
     store = Store(folder / FINISHED)
     jobs = [Job(part, resolution, store.folder, film_suffix or "") for part in parts(resolution, only=only, film=film_suffix is not None)]
     waiting = [job for job in jobs if job.key not in store]
+    cost = require_room([job.part for job in waiting], resolution, worker_count(workers))
+    if tell:
+        tell(cost)
     done = len(jobs) - len(waiting)
     resumed = done
     for job, outcome in completed(waiting, carry_out, workers=workers):

@@ -1,0 +1,76 @@
+"""What the parts of the reproduction cost before they are begun: their runs as estimated, and what fields, pictures and films add."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, replace
+
+from coaxshell.model.system import System
+from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.memory import available
+from coaxshell.paper import cases
+from coaxshell.paper.claims import systems
+from coaxshell.paper.figures import FIGURES
+from coaxshell.paper.recipes import FigureRecipe
+from coaxshell.paper.reproduction.plan import DIRECT_SAMPLE, Part, groups
+from coaxshell.paper.runs import Resolution
+from coaxshell.solver.cost import run_cost
+from coaxshell.solver.settings import Settings
+
+_FIELDS, _FILM = Cost(1e9, 40.0), Cost(0.7e9, 60.0)
+"""Beside their runs; the fields' own blocks stay within 1 GB."""
+_SLIPS = 12
+"""Times that the slips solve the four presets, each and in pairs."""
+_READ = 0.1
+"""Seconds to read the peaks of a run and to keep it."""
+
+
+def part_cost(part: Part, resolution: Resolution) -> Cost:
+    """Return what one part costs; seconds of one processor, within a factor of 3."""
+    if part.kind == "runs":
+        group = groups(resolution)[part.about]
+        return _runs(group.systems.values(), group.resolution)
+    if part.kind == "direct":
+        sample = cases.count(systems.preset("bare"), DIRECT_SAMPLE).values()
+        return _runs(sample, resolution).then(_runs(sample, replace(resolution, refinement=1), "direct"))
+    if part.kind == "slips":
+        each = _runs([systems.preset(name) for name in ("bare", "absorbers", "active", "hybrid")], resolution)
+        return Cost(each.memory, _SLIPS * each.seconds)
+    if part.kind == "film":
+        return _runs([systems.preset(name) for name in ("bare", "hybrid")], resolution).then(_FILM)
+    if part.kind == "fields":
+        return _runs([systems.preset(part.about)], resolution).then(_FIELDS)
+    recipe = FIGURES[part.about]
+    presets = recipe.presets if isinstance(recipe, FigureRecipe) else ()
+    return _runs([systems.preset(name) for name in presets], resolution).then(_FIELDS)
+
+
+def reproduction_cost(parts: Sequence[Part], resolution: Resolution, workers: int) -> Cost:
+    """Return what some parts cost, so many at a time: the memory of the largest of them side by side."""
+    costs = [part_cost(part, resolution) for part in parts]
+    if not costs:
+        return Cost(0.0)
+    each = Cost(max(cost.memory for cost in costs), sum(cost.seconds for cost in costs) / len(costs))
+    return each.times(len(costs), workers)
+
+
+def require_room(parts: Sequence[Part], resolution: Resolution, workers: int) -> Cost:
+    """Return the cost of some parts; InputError, with the number of processes that fit, if they do not fit into memory side by side."""
+    cost = reproduction_cost(parts, resolution, workers)
+    if cost.fits:
+        return cost
+    free = available() or 0
+    fewer = next((n for n in range(workers, 0, -1) if reproduction_cost(parts, resolution, n).memory <= free), 0)
+    cost.require(
+        f"the reproduction of {len(parts)} parts in {min(workers, len(parts))} processes",
+        f"use workers={fewer}" if fewer else "use fewer orders or a coarser step",
+    )
+    return cost
+
+
+def _runs(solved: Iterable[System], resolution: Resolution, engine: str = "spectral") -> Cost:
+    settings = Settings(**{**asdict(resolution), "engine": engine})
+    total = Cost(0.0)
+    for system in solved:
+        total = total.then(run_cost(system, settings)).then(Cost(0.0, _READ))
+    return total
