@@ -86,7 +86,7 @@ MUTATIONS = (
         "np.add(work, ratios[m], out=work)",
         "np.subtract(work, ratios[m], out=work)",
         "downward recurrence of I_{m+1}/I_m",
-        "acoustics/test_bessel_ratios.py",
+        "numerics/test_bessel_ratios.py",
     ),
     Mutation(
         "bessel-k-index",
@@ -94,7 +94,7 @@ MUTATIONS = (
         "np.multiply(two_over_z, m, out=work)\n        np.add(ratios[m], work, out=ratios[m])",
         "np.multiply(two_over_z, m - 1, out=work)\n        np.add(ratios[m], work, out=ratios[m])",
         "upward recurrence of K_{m+1}/K_m: its order",
-        "acoustics/test_bessel_ratios.py",
+        "numerics/test_bessel_ratios.py",
     ),
     Mutation(
         "annulus-coupling",
@@ -150,7 +150,7 @@ MUTATIONS = (
         "np.exp(self.shift * self.time) / self.time_step",
         "np.exp(0.999 * self.shift * self.time) / self.time_step",
         "exponential window of the inverse transform",
-        "acoustics/test_laplace_grid.py",
+        "numerics/test_laplace_grid.py",
     ),
     Mutation(
         "hat-power",
@@ -158,7 +158,7 @@ MUTATIONS = (
         "(np.sinh(half) / half) ** 2, dtype",
         "(np.sinh(half) / half), dtype",
         "forces linear between steps",
-        "acoustics/test_laplace_grid.py solver/test_march.py",
+        "numerics/test_laplace_grid.py solver/test_march.py",
     ),
     # solver
     Mutation(
@@ -205,7 +205,7 @@ MUTATIONS = (
         "2 * np.pi * np.bincount",
         "np.pi * np.bincount",
         "turns of the determinant around zero: a whole turn a crossing",
-        "solver/test_winding.py solver/test_stability.py",
+        "numerics/test_winding.py solver/test_stability.py",
     ),
     Mutation(
         "determinant-coupling",
@@ -306,16 +306,16 @@ MUTATIONS = (
     Mutation(
         "history-blocks",
         "numerics/convolution.py",
-        "self._add_forcing(count * (blocks & -blocks))",
-        "self._add_forcing(count)",
+        "inputs[-(blocks & -blocks) :]",
+        "inputs[-1:]",
         "history sum: dyadic blocks of the past",
-        "solver/test_history.py",
+        "numerics/test_convolution.py",
     ),
     Mutation(
         "saturation-clip",
         "solver/interface/saturation.py",
-        "given = np.clip(volts, -1.0, 1.0)",
-        "given = np.clip(volts, -1.0, 2.0)",
+        "np.clip(amplitudes @ self._around, -1.0, 1.0)",
+        "np.clip(amplitudes @ self._around, -1.0, 2.0)",
         "saturation of positive voltages",
         "solver/test_saturation.py",
     ),

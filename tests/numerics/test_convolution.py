@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import coaxshell as cx
-from coaxshell.numerics.convolution import HistorySum, KernelTable
+from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.kernels import exponential_weights, velocity_weights
 from coaxshell.solver.prepared import StructureSpectra
@@ -16,13 +16,15 @@ from coaxshell.solver.scaling import dimensionless
 
 def march(table: KernelTable, inputs: np.ndarray, block: int = 8) -> np.ndarray:
     """Return the sums of all inputs, the present one included, pushed by blocks."""
-    history = HistorySum(table, inputs.shape[1])
+    convolution, history = HistorySum(table, inputs.shape[1]), History()
     sums = []
     for start in range(0, inputs.shape[-1], block):
         pushed = inputs[..., start : start + block]
-        before = history.forcing(pushed.shape[-1]).copy()
-        sums.append(before + history.push(pushed))
-    np.testing.assert_array_equal(history.inputs, inputs)
+        before = convolution.forcing(history, pushed.shape[-1])
+        earlier, (history, own) = history, convolution.push(history, pushed)
+        np.testing.assert_array_equal(convolution.forcing(earlier, pushed.shape[-1]), before)  # the old one stays as it was
+        sums.append(before + own)
+    np.testing.assert_array_equal(np.concatenate(history.inputs, axis=-1), inputs)
     return np.concatenate(sums, axis=-1)
 
 
@@ -51,10 +53,10 @@ def test_the_present_weight_belongs_to_the_block_itself() -> None:
     kernels = np.random.default_rng(2).normal(size=(1, 1, 2, 200))
     table = KernelTable(kernels)
     np.testing.assert_array_equal(table.present, kernels[..., 0])
-    history = HistorySum(table, 1)
-    own = history.push(np.eye(1, 4)[None, None] * np.ones((1, 1, 2, 1)))
+    convolution = HistorySum(table, 1)
+    history, own = convolution.push(History(), np.eye(1, 4)[None, None] * np.ones((1, 1, 2, 1)))
     np.testing.assert_allclose(own[:, 0], kernels[0, ..., :4], rtol=1e-14)
-    np.testing.assert_allclose(history.forcing(4)[:, 0], kernels[0, ..., 4:8], rtol=1e-14)
+    np.testing.assert_allclose(convolution.forcing(history, 4)[:, 0], kernels[0, ..., 4:8], rtol=1e-14)
 
 
 @pytest.mark.parametrize(("decay", "tolerance"), [(1e-6, 1e-11), (0.3, 1e-11), (5.0, 1e-11), (200.0, 1e-11)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.interface.linked import AbsorberSolution, solve_linked
-from coaxshell.solver.interface.march import MarchResult, march
+from coaxshell.solver.interface.march import MarchResult, march, march_block
+from coaxshell.solver.interface.plan import march_plan, motion_without
 from coaxshell.solver.interface.saturation import circle, voltage_limit
+from coaxshell.solver.interface.state import MarchState
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 
@@ -209,6 +212,42 @@ class TestDiscreteLaws:
         damping, linear, cubic = (np.tile(x, 2)[:, None] for x in (links.damping, links.linear, links.cubic))
         law = damping * rate + linear * stretch + cubic * stretch**3
         np.testing.assert_allclose(found.force[:, 1:], law[:, 1:], rtol=0, atol=1e-9 * abs(law).max())
+
+
+CONTINUED = {
+    "relaxed": ("absorbers", {"absorbers.count": 24, "absorbers.cubic_stiffness": 1e19}, False, {True}),
+    "relaxed at first": ("absorbers", {"absorbers.count": 24, "absorbers.cubic_stiffness": 1e23}, False, {True, False}),
+    "one step at a time": ("hybrid", {"absorbers.cubic_stiffness": 1e22}, False, {True, False}),
+    "saturated": ("hybrid", {"control.saturation": True, "control.field_limit": 2e5, "absorbers.count": 5}, True, {False}),
+}
+
+
+@pytest.mark.parametrize("name", CONTINUED)
+def test_a_march_stopped_at_any_block_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
+    preset, changes, saturate, relaxing = CONTINUED[name]
+    problem = dimensionless(cx.presets.load(preset).with_overrides(changes))
+    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 130), 16)
+    links = absorber_set(problem, problem.system.absorber_list, 1)
+    plan = march_plan(structure, links, saturate=saturate)
+    motion = motion_without(structure, links, plan)
+    states, outputs = [MarchState.at_rest(plan)], []
+    while states[-1].step < motion.steps:
+        state, found = march_block(plan, states[-1], motion[states[-1].step : min(states[-1].step + plan.length, motion.steps)])
+        states.append(state)
+        outputs.append(found)
+    assert {state.relaxed is not None for state in states} == relaxing
+    assert states[-1].saturated == saturate
+    whole = march(structure, links, saturate=saturate)
+    np.testing.assert_array_equal(np.concatenate([x.modal_pressure for x in outputs], axis=-1), whole.modal_pressure[..., 1:])
+    for block in (0, 1, len(outputs) // 2, len(outputs) - 1):
+        np.savez(tmp_path / "state.npz", **states[block].to_arrays())
+        with np.load(tmp_path / "state.npz") as saved:
+            state = MarchState.from_arrays(plan, dict(saved))
+        for k in range(block, len(outputs)):
+            state, found = march_block(plan, state, motion[state.step : min(state.step + plan.length, motion.steps)])
+            for one, other in zip(found, outputs[k], strict=True):
+                np.testing.assert_array_equal(one, other)
+        assert (state.iterations, state.saturated, state.step) == (whole.iterations, whole.saturated, motion.steps)
 
 
 def test_linear_absorbers_are_marched_only_when_asked() -> None:

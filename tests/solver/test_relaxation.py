@@ -39,7 +39,9 @@ def test_it_solves_its_equation_or_says_that_it_cannot():
     rows = np.tril(random.normal(size=(steps * size, steps * size))) * 1e-5
     springs = CubicSprings(random.uniform(0.5, 2.0, size), np.zeros(size))
     known = random.normal(size=(steps, size))
-    added = Relaxation(rows, size, springs).solve(known)
-    z = known + (rows @ added.ravel()).reshape(known.shape)
-    assert_allclose(springs.nonlinear_part(z), added, rtol=1e-10)
+    solved = Relaxation(rows, size, springs).solve(known)
+    assert solved is not None
+    z = known + (rows @ solved.nonlinear_part.ravel()).reshape(known.shape)
+    assert_allclose(springs.nonlinear_part(z), solved.nonlinear_part, rtol=1e-10)
+    assert_allclose(solved.z, z, rtol=1e-10)
     assert Relaxation(1e4 * rows, size, springs).solve(known) is None

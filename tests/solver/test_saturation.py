@@ -40,7 +40,7 @@ def test_what_limited_voltages_give(parities: int) -> None:
     expected[:, 0] /= 2.0
     law = LimitedVoltages(1, parities, MODES)
     found = law.nonlinear_part(given.ravel()).reshape(parities, MODES)
-    assert law.saturated
+    assert law.saturates(np.stack([np.zeros(given.size), given.ravel()]))
     # Corners of the clipped voltage lie between the points of the circle: second order in their distance, 2 degrees or less.
     np.testing.assert_allclose(found, expected, rtol=0, atol=6e-4 * np.abs(expected).max())
 
@@ -48,7 +48,7 @@ def test_what_limited_voltages_give(parities: int) -> None:
 def test_voltages_within_the_limit_are_given() -> None:
     law, volts = LimitedVoltages(1, 1, MODES), np.full(MODES, 0.99 / MODES)
     np.testing.assert_array_equal(law.nonlinear_part(volts), volts)
-    assert not law.saturated
+    assert not law.saturates(volts)
 
 
 def test_the_limit_is_field_times_thickness() -> None:

@@ -6,6 +6,8 @@ their whole contribution to as many blocks ahead is added at once, by FFT or, wh
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import fft
 
@@ -70,66 +72,85 @@ class KernelTable:
         return self._matrices[key]
 
 
+@dataclass(frozen=True)
+class History:
+    """The inputs of a march so far and what they give to the steps to come; a new one at every push, the old one stays as it is.
+
+    Attributes
+    ----------
+    step : int
+        n, of the next step.
+    inputs : tuple of ndarray, each of shape (inputs, parities, M + 1, count)
+        x_0 to x_{n-1} as they were pushed, block by block.
+    pending : tuple of (int, ndarray of shape (outputs, parities, M + 1, length))
+        First step and sum of every contribution that reaches beyond n, in the order in which they were made.
+    """
+
+    step: int = 0
+    inputs: tuple[FloatArray, ...] = ()
+    pending: tuple[tuple[int, FloatArray], ...] = ()
+
+
 class HistorySum:
-    """State of one march: inputs so far and what they already promise to later steps.
+    """The convolution of one table with a history; holds nothing of the march itself.
 
     Parameters
     ----------
     table : KernelTable
     parities : int
-        Independent copies (cosine and sine halves) that share the kernels.
+        Independent copies (cosine and sine) that share the kernels.
     """
 
     def __init__(self, table: KernelTable, parities: int) -> None:
-        outputs, inputs, modes = table.shape
-        self._table = table
-        self._step = 0
-        self.inputs = np.zeros((inputs, parities, modes, table.steps))
-        self._forcing = np.zeros((outputs, parities, modes, table.steps))
+        self._table, self._parities = table, parities
 
-    def forcing(self, count: int) -> FloatArray:
+    def forcing(self, history: History, count: int) -> FloatArray:
         """Return what the inputs so far, x_0 to x_{n-1}, give to the steps n to n + count - 1: (outputs, parities, M + 1, count).
 
         ``count`` is at most the length of the blocks pushed.
         """
-        return self._forcing[..., self._step : self._step + count]
+        outputs, _, modes = self._table.shape
+        total = np.zeros((outputs, self._parities, modes, count))
+        for start, values in history.pending:
+            part = values[..., history.step - start : history.step - start + count]
+            total[..., : part.shape[-1]] += part
+        return total
 
-    def push(self, values: FloatArray) -> FloatArray:
+    def push(self, history: History, values: FloatArray) -> tuple[History, FloatArray]:
         """Append the inputs of a block of steps and advance.
 
         All blocks have the same length; only the last may be shorter.
 
         Parameters
         ----------
+        history : History
         values : ndarray, shape (inputs, parities, M + 1, count)
 
         Returns
         -------
+        History
         ndarray, shape (outputs, parities, M + 1, count)
             What these inputs give to their own steps, k_0 included.
         """
         count = values.shape[-1]
-        self.inputs[..., self._step : self._step + count] = values
-        own = self._by_matrix(values, 0)
-        self._step += count
-        if self._step < self._table.steps:
-            blocks = self._step // count
-            self._add_forcing(count * (blocks & -blocks))
-        return own
+        step, inputs = history.step + count, (*history.inputs, values)
+        pending = tuple((start, made) for start, made in history.pending if start + made.shape[-1] > step)
+        if step < self._table.steps:
+            blocks = step // count
+            pending = (*pending, (step, self._contribution(inputs[-(blocks & -blocks) :])))
+        return History(step, inputs, pending), self._by_matrix(values, 0)
 
     def _by_matrix(self, values: FloatArray, offset: int) -> FloatArray:
         inputs, parities, modes, length = values.shape
         stacked = values.transpose(2, 0, 3, 1).reshape(modes, inputs * length, parities)
         return np.asarray((self._table.matrix(length, offset) @ stacked).transpose(0, 3, 1, 2))
 
-    def _add_forcing(self, length: int) -> None:
-        """Add the contribution of the last ``length`` steps to as many steps ahead."""
-        start, stop = self._step - length, min(self._step + length, self._table.steps)
-        recent = self.inputs[..., start : self._step]
+    def _contribution(self, blocks: tuple[FloatArray, ...]) -> FloatArray:
+        """Return what the last blocks of inputs give to as many steps after them."""
+        recent = blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=-1)
+        length = recent.shape[-1]
         if length <= _BY_MATRIX:
-            forcing = self._by_matrix(recent, length)
-        else:
-            block = fft.rfft(recent, 2 * length, axis=-1, workers=WORKERS)
-            total = np.einsum("ijmk,jhmk->ihmk", self._table.transform(length), block)
-            forcing = fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length:]
-        self._forcing[..., self._step : stop] += forcing[..., : stop - self._step]
+            return self._by_matrix(recent, length)
+        spectrum = fft.rfft(recent, 2 * length, axis=-1, workers=WORKERS)
+        total = np.einsum("ijmk,jhmk->ihmk", self._table.transform(length), spectrum)
+        return np.asarray(fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length:])

@@ -1,13 +1,57 @@
-"""What nonlinear laws add to the linear ones at the interface: cubic springs, and actuators that stop at their limit."""
+"""What nonlinear laws add to the linear ones at the interface: cubic springs, and actuators that stop at their limit.
+
+A law is a set of constants. Its tangent is a value that it makes at some z and that is handed back to it.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.interface.saturation import LimitedVoltages
+
+Tangent = TypeVar("Tangent")
+
+
+class InterfaceLaw(Protocol, Generic[Tangent]):
+    """What nonlinear laws add to linear ones, n(z)."""
+
+    tolerance: float
+    """Error of z, relative."""
+    contraction_limit: float
+    """The tangent is renewed when an iteration gains less than this factor."""
+    most_iterations: int
+    """Before the residual is watched."""
+
+    def nonlinear_part(self, z: FloatArray) -> FloatArray:
+        """Return n(z)."""
+        ...
+
+    def linearise(self, z: FloatArray) -> Tangent:
+        """Return the tangent T at z."""
+        ...
+
+    def times_tangent(self, response: FloatArray, tangent: Tangent) -> FloatArray:
+        """Return R T."""
+        ...
+
+    def tangent_remainder(self, z: FloatArray, tangent: Tangent) -> FloatArray:
+        """Return n(z) - T z."""
+        ...
+
+    def relative(self, change: FloatArray, z: FloatArray) -> float:
+        """Return the size of a change of z relative to z."""
+        ...
+
+
+class SpringTangent(NamedTuple):
+    """T = 3 k_nl D^2 of every link, and T + kappa, both of shape (n,)."""
+
+    slope: FloatArray
+    offset: FloatArray
 
 
 class CubicSprings:
@@ -25,23 +69,25 @@ class CubicSprings:
 
     def __init__(self, cubic: FloatArray, auxiliary_stiffness: FloatArray) -> None:
         self._cubic, self._auxiliary_stiffness = cubic, auxiliary_stiffness
-        self._offset = auxiliary_stiffness.copy()
 
     def nonlinear_part(self, z: FloatArray) -> FloatArray:
         """Return n(D)."""
         return np.asarray((self._cubic * z * z - self._auxiliary_stiffness) * z)
 
-    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
-        """Keep T = 3 k_nl D^2, without the kappa that makes the tangent of a massless absorber singular at D = 0; return R T."""
-        tangent = 3.0 * self._cubic * z * z
-        self._offset = tangent + self._auxiliary_stiffness
-        return np.asarray(response * tangent)
+    def linearise(self, z: FloatArray) -> SpringTangent:
+        """Return T = 3 k_nl D^2, without the kappa that makes the tangent of a massless absorber singular at D = 0."""
+        slope = 3.0 * self._cubic * z * z
+        return SpringTangent(slope, slope + self._auxiliary_stiffness)
 
-    def tangent_remainder(self, z: FloatArray) -> FloatArray:
+    def times_tangent(self, response: FloatArray, tangent: SpringTangent) -> FloatArray:
+        """Return R T."""
+        return np.asarray(response * tangent.slope)
+
+    def tangent_remainder(self, z: FloatArray, tangent: SpringTangent) -> FloatArray:
         """Return n(D) - T D."""
         beyond = self._cubic * z
         beyond *= z
-        beyond -= self._offset
+        beyond -= tangent.offset
         beyond *= z
         return beyond
 
@@ -51,7 +97,7 @@ class CubicSprings:
 
 
 class SpringsAndActuators:
-    """Cubic springs first, then the voltages of limited actuators.
+    """Cubic springs first, then the voltages of limited actuators; the tangent is that of the springs and where voltages are held.
 
     Parameters
     ----------
@@ -70,18 +116,23 @@ class SpringsAndActuators:
         self._springs, self._links, self._voltages = springs, links, voltages
 
     def nonlinear_part(self, z: FloatArray) -> FloatArray:
-        """Return both."""
+        """Return n(D), then the voltages given."""
         return np.concatenate([self._springs.nonlinear_part(z[: self._links]), self._voltages.nonlinear_part(z[self._links :])])
 
-    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
-        """Keep both tangents and return R T."""
-        n = self._links
-        springs = self._springs.linearise(z[:n], response[:, :n])
-        return np.concatenate([springs, self._voltages.linearise(z[n:], response[:, n:])], axis=1)
+    def linearise(self, z: FloatArray) -> tuple[SpringTangent, FloatArray]:
+        """Return the tangents of springs and voltages."""
+        return self._springs.linearise(z[: self._links]), self._voltages.linearise(z[self._links :])
 
-    def tangent_remainder(self, z: FloatArray) -> FloatArray:
-        """Return both."""
-        return np.concatenate([self._springs.tangent_remainder(z[: self._links]), self._voltages.tangent_remainder(z[self._links :])])
+    def times_tangent(self, response: FloatArray, tangent: tuple[SpringTangent, FloatArray]) -> FloatArray:
+        """Return R T."""
+        n = self._links
+        springs = self._springs.times_tangent(response[:, :n], tangent[0])
+        return np.concatenate([springs, self._voltages.times_tangent(response[:, n:], tangent[1])], axis=1)
+
+    def tangent_remainder(self, z: FloatArray, tangent: tuple[SpringTangent, FloatArray]) -> FloatArray:
+        """Return n(z) - T z."""
+        springs = self._springs.tangent_remainder(z[: self._links], tangent[0])
+        return np.concatenate([springs, self._voltages.tangent_remainder(z[self._links :], tangent[1])])
 
     def relative(self, change: FloatArray, z: FloatArray) -> float:
         """Return the larger of the two relative changes."""

@@ -8,6 +8,8 @@ E. Lelarasmee, A. E. Ruehli, A. L. Sangiovanni-Vincentelli, The waveform relaxat
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
@@ -20,8 +22,16 @@ _SLOWEST = 0.05
 """The change of an iteration over that of the one before it, at most."""
 
 
+class Relaxed(NamedTuple):
+    """Some steps solved at once: z and n(z), both of shape (steps, size), and the iterations, each counted once for every step."""
+
+    z: FloatArray
+    nonlinear_part: FloatArray
+    iterations: int
+
+
 class Relaxation:
-    """Fixed-point iteration over a few steps.
+    """Fixed-point iteration over a few steps; constants only.
 
     Parameters
     ----------
@@ -35,21 +45,15 @@ class Relaxation:
     ----------
     steps : int
         How many are taken at once.
-    last : ndarray, shape (steps, size)
-        z of the steps last solved.
-    iterations : int
-        In all, each counted once for every step.
     """
 
     def __init__(self, rows: FloatArray, size: int, springs: CubicSprings) -> None:
         self.steps = max(1, min(UNKNOWNS // max(size, 1), rows.shape[0] // max(size, 1)))
         self._springs = springs
         self._rows = [np.ascontiguousarray(rows[: count * size, : count * size]) for count in range(self.steps + 1)]
-        self.last = np.empty((0, size))
-        self.iterations = 0
 
-    def solve(self, known: FloatArray) -> FloatArray | None:
-        """Return n(z) at some steps, shape (steps, size), from z_known, or None if the iteration converges too slowly for it to pay."""
+    def solve(self, known: FloatArray) -> Relaxed | None:
+        """Return z of some steps from z_known, shape (steps, size), or None if the iteration converges too slowly for it to pay."""
         springs, rows = self._springs, self._rows[len(known)]
         z, last = known, 0.0
         for iteration in range(1, _MOST_ITERATIONS + 1):
@@ -62,8 +66,6 @@ class Relaxation:
                     return None
                 size *= rate  # what the next one would change
             if size <= springs.tolerance:
-                self.last = z
-                self.iterations += iteration * len(z)
-                return springs.nonlinear_part(z)
+                return Relaxed(z, springs.nonlinear_part(z), iteration * len(z))
             last = size
         return None

@@ -44,59 +44,60 @@ def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
 class LimitedVoltages:
     """What limited actuators give, n(u) = clip(u), by modes; u in units of each actuator's limit.
 
+    Its tangent says which points of each circle are held at a limit: 1 there and 0 elsewhere, shape (shells, points).
+
     Parameters
     ----------
     shells : int
         Controlled shells.
     parities, modes : int
-
-    Attributes
-    ----------
-    saturated : bool
-        Whether any voltage given was cut.
     """
 
     def __init__(self, shells: int, parities: int, modes: int) -> None:
-        self.saturated = False
         self._shape = (shells, parities * modes)
         self._evaluate, self._project = circle(modes, parities)
         self._around, self._back = np.ascontiguousarray(self._evaluate.T), np.ascontiguousarray(self._project.T)
-        self._held = np.zeros((shells, self._evaluate.shape[0]))
 
     def _within(self, amplitudes: FloatArray) -> bool:
         """Return whether no sum of these amplitudes can reach a limit."""
         return bool(np.abs(amplitudes).sum(axis=1).max() <= 1.0)
+
+    def saturates(self, z: FloatArray) -> bool:
+        """Return whether any voltage asked for at some steps is cut, z of shape (steps, shells * parities * M + 1)."""
+        amplitudes = z.reshape(-1, self._shape[1])
+        return not self._within(amplitudes) and bool(np.abs(amplitudes @ self._around).max() > 1.0)
 
     def nonlinear_part(self, z: FloatArray) -> FloatArray:
         """Return n(u) by modes."""
         amplitudes = z.reshape(self._shape)
         if self._within(amplitudes):
             return z.copy()
-        volts = amplitudes @ self._around
-        given = np.clip(volts, -1.0, 1.0)
-        self.saturated = self.saturated or not np.array_equal(given, volts)
+        given = np.clip(amplitudes @ self._around, -1.0, 1.0)
         return np.asarray((given @ self._back).ravel())
 
-    def linearise(self, z: FloatArray, response: FloatArray) -> FloatArray:
-        """Keep the tangent, 0 on the saturated points and 1 elsewhere, and return R T."""
-        self._held = (np.abs(z.reshape(self._shape) @ self._around) > 1.0).astype(np.float64)
+    def linearise(self, z: FloatArray) -> FloatArray:
+        """Return where voltages are held."""
+        return (np.abs(z.reshape(self._shape) @ self._around) > 1.0).astype(np.float64)
+
+    def times_tangent(self, response: FloatArray, held: FloatArray) -> FloatArray:
+        """Return R T, T the identity but for the points held."""
         answer = response.copy()
         width = self._shape[1]
-        for shell, held in enumerate(self._held):
-            rows = np.flatnonzero(held)
+        for shell, here in enumerate(held):
+            rows = np.flatnonzero(here)
             if rows.size:
                 part = slice(shell * width, (shell + 1) * width)
                 tangent = self._project[:, rows] @ self._evaluate[rows]
                 answer[:, part] -= response[:, part] @ tangent
         return answer
 
-    def tangent_remainder(self, z: FloatArray) -> FloatArray:
-        """Return n(u) - T u with the tangent last kept."""
+    def tangent_remainder(self, z: FloatArray, held: FloatArray) -> FloatArray:
+        """Return n(u) - T u."""
         amplitudes = z.reshape(self._shape)
-        if not self._held.any() and self._within(amplitudes):
+        if not held.any() and self._within(amplitudes):
             return np.zeros_like(z)
         volts = amplitudes @ self._around
-        beyond = np.clip(volts, -1.0, 1.0) + (self._held - 1.0) * volts
+        beyond = np.clip(volts, -1.0, 1.0) + (held - 1.0) * volts
         return np.asarray((beyond @ self._back).ravel())
 
 
