@@ -7,7 +7,6 @@ from dataclasses import asdict, replace
 
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.memory import available
 from coaxshell.paper import cases
 from coaxshell.paper.claims import systems
 from coaxshell.paper.figures import FIGURES
@@ -17,7 +16,7 @@ from coaxshell.paper.runs import Resolution
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
 
-_FIELDS, _FILM = Cost(1e9, 40.0), Cost(0.7e9, 60.0)
+_FIELDS, _FILM = Cost(1e9, 15.0), Cost(0.7e9, 30.0)
 """Beside their runs; the fields' own blocks stay within 1 GB."""
 _SLIPS = 12
 """Times that the slips solve the four presets, each and in pairs."""
@@ -45,27 +44,24 @@ def part_cost(part: Part, resolution: Resolution) -> Cost:
     return _runs([systems.preset(name) for name in presets], resolution).then(_FIELDS)
 
 
-def reproduction_cost(parts: Sequence[Part], resolution: Resolution, workers: int) -> Cost:
-    """Return what some parts cost, so many at a time: the memory of the largest of them side by side."""
-    costs = [part_cost(part, resolution) for part in parts]
-    if not costs:
-        return Cost(0.0)
-    each = Cost(max(cost.memory for cost in costs), sum(cost.seconds for cost in costs) / len(costs))
-    return each.times(len(costs), workers)
-
-
 def require_room(parts: Sequence[Part], resolution: Resolution, workers: int) -> Cost:
-    """Return the cost of some parts; InputError, with the number of processes that fit, if they do not fit into memory side by side."""
-    cost = reproduction_cost(parts, resolution, workers)
-    if cost.fits:
-        return cost
-    free = available() or 0
-    fewer = next((n for n in range(workers, 0, -1) if reproduction_cost(parts, resolution, n).memory <= free), 0)
-    cost.require(
-        f"the reproduction of {len(parts)} parts in {min(workers, len(parts))} processes",
-        f"use workers={fewer}" if fewer else "use fewer orders or a coarser step",
-    )
-    return cost
+    """Return the cost of some parts, so many at a time: the memory of the largest of them side by side.
+
+    Raises
+    ------
+    InputError
+        They do not fit into memory side by side; it names the number of processes that do.
+    """
+    if not parts:
+        return Cost(0.0)
+    costs = [part_cost(part, resolution) for part in parts]
+    each = Cost(max(cost.memory for cost in costs), sum(cost.seconds for cost in costs) / len(costs))
+    together = each.times(len(costs), workers)
+    if not together.fits:
+        fewer = next((n for n in range(workers, 0, -1) if each.times(len(costs), n).fits), 0)
+        remedy = f"use workers={fewer}" if fewer else "use fewer orders or a coarser step"
+        together.require(f"the reproduction of {len(costs)} parts in {min(workers, len(costs))} processes", remedy)
+    return together
 
 
 def _runs(solved: Iterable[System], resolution: Resolution, engine: str = "spectral") -> Cost:
