@@ -8,7 +8,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solve import Prepared
-from coaxshell.solver.tension import AMBIENT, HARMLESS, tensions, wall_pressures
+from coaxshell.solver.tension import AMBIENT, HARMLESS, spectra_of_motion, tensions, wall_pressures
 
 QUICK = {"duration": 3.0, "time_step": 0.01, "modes": 24}
 LOUD = {"source": cx.PlaneWave(pulse=cx.Gaussian(peak_pressure="2 MPa", width="0.15 ms"))}  # smooth: what 24 orders resolve
@@ -94,3 +94,31 @@ def test_a_charge_within_the_fit_is_no_matter() -> None:
     assert source.within_fit
     response = cx.simulate(cx.presets.load("iakovlev-evacuated").replace(source=source), **QUICK)
     assert not [text for text in response.warnings if "similitude" in text]
+
+
+@pytest.mark.parametrize("name", ["iakovlev-evacuated", "bare", "hybrid"])
+@pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
+def test_the_direct_engine_finds_what_the_spectral_one_finds(name: str) -> None:
+    system = cx.presets.load(name).with_overrides(LOUD)
+    told = {}
+    for engine in ("spectral", "direct"):
+        response = cx.simulate(system, **QUICK, engine=engine)
+        told[engine] = [text.split(" at t = ") for text in response.warnings if "cavitate" in text]
+    assert told["spectral"]
+    assert len(told["spectral"]) == len(told["direct"])
+    for ours, theirs in zip(told["direct"], told["spectral"], strict=True):
+        assert ours[0].split("falls to")[0] == theirs[0].split("falls to")[0]
+        number, wanted = (float(text.split("falls to ")[1].split()[0]) for text in (ours[0], theirs[0]))
+        assert number == pytest.approx(wanted, rel=0.03)
+        assert float(ours[1].split()[0]) == pytest.approx(float(theirs[1].split()[0]), abs=0.03)
+
+
+def test_a_motion_that_is_cut_off_ends_in_no_pressure_of_its_own() -> None:
+    found = prepared("bare", LOUD)
+    grid, normal = found.structure.grid, found.structure.linear.normal
+    window = np.exp(-20.0 * np.linspace(0.0, 1.0, grid.nodes.size) ** 4)
+    again = spectra_of_motion(grid, grid.invert(normal))
+    pressures = zip(wall_pressures(found.problem, grid, again), wall_pressures(found.problem, grid, normal), strict=True)
+    for (_, _, ours), (_, _, theirs) in pressures:
+        wanted = grid.invert(theirs, window)
+        assert abs(grid.invert(ours, window) - wanted).max() < 0.02 * abs(wanted).max()

@@ -16,9 +16,9 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus
-from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.circle import circle_angles, on_circle
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.scaling import Problem
 
@@ -54,6 +54,11 @@ class Tension(NamedTuple):
     lasting: float
 
 
+def watched(problem: Problem) -> bool:
+    """Return whether the sources are strong enough for tension to be looked for."""
+    return sum(abs(source.pulse.peak) for source in problem.system.sources) > HARMLESS * AMBIENT
+
+
 def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[Tension]:
     """Return the wetted surfaces on which the total pressure falls below -AMBIENT within the run.
 
@@ -64,7 +69,7 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[
     normal : ndarray, shape (shells, parities, M + 1, nodes)
         Transforms of W.
     """
-    if sum(abs(source.pulse.peak) for source in problem.system.sources) <= HARMLESS * AMBIENT:
+    if not watched(problem):
         return []
     coarse = _first_nodes(grid)
     within = coarse.time <= grid.time[-1] * (1 + 1e-12)
@@ -77,6 +82,36 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[
         if lowest is not None:
             found.append(Tension(region, shell, *lowest))
     return found
+
+
+def spectra_of_motion(grid: LaplaceGrid, histories: FloatArray) -> ComplexArray:
+    """Return transforms of displacements that are known until the end of a run, as :func:`tensions` takes them.
+
+    The period lasts at least twice as long, and a motion that broke off would end in a pressure of its own. It goes on with its
+    velocity and acceleration, faded out; until the end no pressure depends on what comes after it.
+
+    Parameters
+    ----------
+    grid : LaplaceGrid
+    histories : ndarray, shape (shells, halves, M + 1, T)
+
+    Returns
+    -------
+    ndarray, shape (shells, halves, at most 61, nodes)
+    """
+    known = histories[:, :, : _MOST_ORDERS + 1]
+    apart = max(1, min((known.shape[-1] - 1) // 2, round(_RESOLUTION / grid.time_step)))
+    before, between, last = known[..., -1 - 2 * apart], known[..., -1 - apart], known[..., -1]
+    interval = apart * grid.time_step
+    velocity = (1.5 * last - 2.0 * between + 0.5 * before) / interval
+    acceleration = (last - 2.0 * between + before) / interval**2
+    after = grid.time_step * np.arange(1, grid.samples - known.shape[-1] + 1)
+    fading = np.exp(-20.0 * (after / after[-1]) ** 4)
+    rest = (last[..., None] + velocity[..., None] * after + 0.5 * acceleration[..., None] * after**2) * fading
+    whole = np.concatenate([known, rest], axis=-1)
+    whole *= grid.time_step * np.exp(-grid.shift * grid.time_step * np.arange(grid.samples))
+    spectra: ComplexArray = fft.rfft(whole, axis=-1, workers=WORKERS)
+    return spectra
 
 
 def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> Iterator[tuple[int, int, ComplexArray]]:

@@ -27,6 +27,7 @@ from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.tension import spectra_of_motion, tensions, watched
 
 
 def solve_by_marching(system: System, settings: Settings, progress: Progress | None = None) -> ModalSolution:
@@ -70,6 +71,9 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         solution = replace(solution, absorber_displacement=displacement[:, keep], absorber_force=force[..., keep])
     if result.correction is not None:
         solution = replace(solution, control_correction=result.correction[..., keep])
+    if watched(problem):
+        warnings += checks.tension(problem, tensions(problem, grid, spectra_of_motion(grid, w)))
+        stopwatch.lap("pressure on the walls")
     warnings += checks.before(problem, grid, order) + checks.after(problem, error_estimates, solution.settings) + checks.actuators(solution)
     return replace(solution, warnings=tuple(warnings))
 
