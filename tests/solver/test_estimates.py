@@ -170,3 +170,26 @@ def test_the_direct_engine_says_what_it_does_not_know() -> None:
     assert np.isnan(errors.sel(cause="combined")).all()
     assert response.summary().shells[0].errors["stress"]["time step"] is None
     assert "unknown" in str(response.summary())
+
+
+@pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
+@pytest.mark.parametrize("limit", [2e4, 1e5, 6e5])
+@pytest.mark.parametrize("plane", [False, True])
+def test_orders_left_out_count_where_actuators_saturate(limit: float, plane: bool) -> None:
+    """Their harmonics, and what the orders above ask for beside: without, the printed error was up to 2000 times too small."""
+    active = cx.presets.load("active")
+    pulse = cx.Gaussian(peak_pressure=1e5, width=1.5e-4)
+    system = active.replace(
+        source=cx.PlaneWave(pulse=pulse) if plane else active.source,
+        control=active.control.replace(saturation=True, field_limit=limit),
+    )
+    coarse, many = (cx.simulate(system, **{**SETTINGS, "modes": modes}) for modes in (10, 60))
+    within(coarse.estimates.orders, true_error(coarse, many), 0.1, 50)
+
+
+@pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
+def test_a_limit_out_of_reach_changes_nothing() -> None:
+    active = cx.presets.load("active")
+    high = active.replace(control=active.control.replace(saturation=True, field_limit=1e12))
+    linear, limited = (cx.simulate(system, **SETTINGS).estimates.orders for system in (active, high))
+    np.testing.assert_allclose(limited, linear, rtol=1e-9)

@@ -22,6 +22,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import admittance
+from coaxshell.solver.limited_orders import actuators_of, asked_above, moved_above, moved_below, softened
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
 
@@ -49,6 +50,8 @@ class Interface:
         Whether steps were taken, or the interface solved exactly.
     saturating : StructureSpectra or None
         With its feedback, where actuators acted as forces on the structure without.
+    asked : ndarray, shape (shells, parities, M + 1, instants), or None
+        Modal pressures that the control law asked for, at the instants of the run, where actuators saturated.
     """
 
     links: AbsorberSet
@@ -57,6 +60,7 @@ class Interface:
     actuation: FloatArray | None
     marched: bool
     saturating: StructureSpectra | None = None
+    asked: FloatArray | None = None
 
 
 def surface_norms(normal: npt.NDArray[np.number], tangential: npt.NDArray[np.number]) -> FloatArray:
@@ -170,13 +174,32 @@ def left_out(
     grid = structure.grid
     along = surface_norms(*(x[..., NODES] for x in spectra))
     lasting = persistence(grid, whole, along)
-    squares, changed = above.excited, np.zeros_like(along)
+    high = slice(-max(1, whole.shape[-1] // 3), None)
+    beyond = persistence(grid, whole[..., high].sum(axis=-1), along[..., high].sum(axis=-1))
+    changed = np.zeros_like(along)
+    links = force = None
     if interface is not None and interface.links.count:
         links = mean_tangent(interface.links, interface.stretch)
         force = grid.transform_linear(interface.force)[:, NODES].reshape(2, links.count, -1)
+
+    def moving(above: SampledOrders) -> tuple[FloatArray, ComplexArray | None]:
+        """Return |W|^2 of the orders above M, and by how much the absorbers' forces change."""
+        if links is None or force is None:
+            return above.excited, None
         change = forces_changed(structure, links, above, force)
-        squares = squares + above.forced(force_density(above.problem, links, force + change))
-        changed = moved_by(structure, links, change)
-    high = slice(-max(1, whole.shape[-1] // 3), None)
-    beyond = persistence(grid, whole[..., high].sum(axis=-1), along[..., high].sum(axis=-1))
+        return above.excited + above.forced(force_density(above.problem, links, force + change)), change
+
+    squares, change = moving(above)
+    if interface is not None and interface.asked is not None:
+        problem, lasts = (interface.saturating or structure).problem, beyond[:, 0] / grid.time[-1]
+        actuators = actuators_of(problem, interface.asked, above, asked_above(problem, above, squares), lasts)
+        if actuators:
+            above = SampledOrders.of(softened(problem, actuators), grid, above.orders)
+            squares, change = moving(above)
+            further = asked_above(problem, above, squares)
+            actuators = actuators_of(problem, interface.asked, above, further, lasts) or actuators
+            squares = squares + moved_above(above, grid, actuators)
+            changed = moved_below(structure, further, actuators)
+    if links is not None and change is not None:
+        changed = changed + moved_by(structure, links, change)
     return of_the_truth(above.norms(squares) @ above.weight * beyond, (changed * lasting).sum(axis=-1), whole.sum(axis=-1))

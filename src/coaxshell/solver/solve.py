@@ -187,6 +187,8 @@ class Prepared:
             rates = [grid.invert(x * grid.nodes)[..., keep] for x in (normal, tangential)]
         stopwatch.lap("inverse transform")
         interface = None if linked is None else interface_of(structure, links, linked, w, keep)
+        if saturate and interface is not None and rates[0] is not None and rates[1] is not None:
+            interface = replace(interface, asked=pressure_asked(problem, w, v, rates[0], rates[1]))
         moved = structure.open_loop if linked is not None and linked.actuation is not None else structure
         error_estimates = estimates.estimated_errors(moved, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
         stopwatch.lap("error estimates")
