@@ -34,8 +34,8 @@ class Mutation(NamedTuple):
 
 MUTATIONS = (
     # structure
-    Mutation("ring-bending-w", "structure/ring.py", "-(m**2) / radius**2", "-m / radius**2", "bending of a ring by w: m^2", "structure"),
-    Mutation("ring-cross", "structure/ring.py", "2 * b * ev * kv", "b * ev * kv", "coupling of stretch and bending in K_vv", "structure"),
+    Mutation("ring-bending-w", "structure/thin.py", "-(m**2) / radius**2", "-m / radius**2", "bending of a ring by w: m^2", "structure"),
+    Mutation("ring-cross", "structure/thin.py", "2 * b * ev * kv", "b * ev * kv", "coupling of stretch and bending in K_vv", "structure"),
     Mutation(
         "bending-integral",
         "structure/section.py",
@@ -46,14 +46,14 @@ MUTATIONS = (
     ),
     Mutation(
         "open-circuit-radius",
-        "structure/ring.py",
+        "structure/thin.py",
         "(layer.zeta33 + m**2 * layer.zeta22 / radius**2)",
         "(layer.zeta33 + m**2 * layer.zeta22 / radius**4)",
         "open-circuit stiffening: 1/R^2 once, not twice",
         "structure",
     ),
     Mutation(
-        "sensor-gain", "structure/ring.py", "-gain * m**2", "gain * m**2", "sensor voltage per W: sign", "structure solver/test_scaling.py"
+        "sensor-gain", "structure/thin.py", "-gain * m**2", "gain * m**2", "sensor voltage per W: sign", "structure solver/test_scaling.py"
     ),
     Mutation(
         "reduced-coupling",

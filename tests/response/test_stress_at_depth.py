@@ -12,9 +12,9 @@ from coaxshell.errors import InputError
 from coaxshell.model import VACUUM, Fluid, Layer, Shell, SphericalShock, System, materials
 from coaxshell.response import Response
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.ring import open_circuit_stiffness, ring_stiffness
 from coaxshell.structure.section import Section, section
 from coaxshell.structure.stress import control_stress, place, strain_gain, stress_gain
+from coaxshell.structure.thin import open_circuit_stiffness, wall_stiffness
 
 ORDERS = np.array([0.0, 1.0, 2.0, 5.0, 40.0])
 THICKNESS = 13e-3
@@ -58,14 +58,14 @@ def test_mid_surface_strain_is_that_of_a_stretched_ring() -> None:
     np.testing.assert_allclose(found, (2e-6 * gain_v - 1e-6 * gain_w) * np.cos(3 * theta), rtol=0, atol=1e-10)
 
 
-def resultants(ring: Section, component: int) -> tuple[np.ndarray, np.ndarray]:
+def resultants(wall: Section, component: int) -> tuple[np.ndarray, np.ndarray]:
     """Integrate stress and stress times z through the wall by Gauss points in every layer."""
     points, weights = np.polynomial.legendre.leggauss(12)
     force, moment = np.zeros_like(ORDERS), np.zeros_like(ORDERS)
-    for bottom, top, _ in ring.layers:
+    for bottom, top, _ in wall.layers:
         for x, weight in zip(points, weights, strict=True):
             z = (bottom + top) / 2 + x * (top - bottom) / 2
-            sigma = stress_gain(ring, ORDERS, place(ring, z))[component]
+            sigma = stress_gain(wall, ORDERS, place(wall, z))[component]
             force += weight * (top - bottom) / 2 * sigma
             moment += weight * (top - bottom) / 2 * sigma * z
     return force, moment
@@ -74,26 +74,26 @@ def resultants(ring: Section, component: int) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("component", [0, 1])
 def test_resultants_are_the_section_times_strain_and_curvature(lopsided_section: Section, component: int) -> None:
     # The open-circuit layers must stiffen the bending by kappa, in agreement with the ring's modal stiffness.
-    ring = lopsided_section
-    strain = strain_gain(ORDERS, ring.radius, 0.0)[component]
-    curvature = strain_gain(ORDERS, ring.radius, 1.0)[component] - strain
-    stiffening = sum(open_circuit_stiffness(layer, ORDERS, ring.radius) for layer in ring.piezoelectric)
-    force, moment = resultants(ring, component)
-    assert abs(ring.cross) > 1e-3 * ring.membrane * THICKNESS  # the layup is lopsided indeed
-    assert (stiffening > 1e-3 * ring.bending).all()  # and the potentials count
-    np.testing.assert_allclose(force, ring.membrane * strain + ring.cross * curvature, rtol=1e-12, atol=1e-6)
-    np.testing.assert_allclose(moment, ring.cross * strain + (ring.bending + stiffening) * curvature, rtol=1e-10, atol=1e-6)
+    wall = lopsided_section
+    strain = strain_gain(ORDERS, wall.radius, 0.0)[component]
+    curvature = strain_gain(ORDERS, wall.radius, 1.0)[component] - strain
+    stiffening = sum(open_circuit_stiffness(layer, ORDERS, wall.radius) for layer in wall.piezoelectric)
+    force, moment = resultants(wall, component)
+    assert abs(wall.cross) > 1e-3 * wall.membrane * THICKNESS  # the layup is lopsided indeed
+    assert (stiffening > 1e-3 * wall.bending).all()  # and the potentials count
+    np.testing.assert_allclose(force, wall.membrane * strain + wall.cross * curvature, rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(moment, wall.cross * strain + (wall.bending + stiffening) * curvature, rtol=1e-10, atol=1e-6)
 
 
 def test_resultants_do_the_work_of_the_modal_stiffness(lopsided_section: Section) -> None:
-    ring = lopsided_section
-    stiffness = ring_stiffness(ring, ORDERS)
+    wall = lopsided_section
+    stiffness = wall_stiffness(wall, ORDERS)
     work = {}
     for i in (0, 1):
-        force, moment = resultants(ring, i)
+        force, moment = resultants(wall, i)
         for j in (0, 1):
-            strain = strain_gain(ORDERS, ring.radius, 0.0)[j]
-            curvature = strain_gain(ORDERS, ring.radius, 1.0)[j] - strain
+            strain = strain_gain(ORDERS, wall.radius, 0.0)[j]
+            curvature = strain_gain(ORDERS, wall.radius, 1.0)[j] - strain
             work[i, j] = force * strain + moment * curvature
     scale = abs(np.array([stiffness.vv, stiffness.vw, stiffness.ww])).max()
     for found, expected in ((work[0, 0], stiffness.vv), (work[0, 1], stiffness.vw), (work[1, 0], stiffness.vw), (work[1, 1], stiffness.ww)):

@@ -12,8 +12,8 @@ from coaxshell.model import PDControl
 from coaxshell.response import Response
 from coaxshell.response.voltages import time_derivative
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.ring import potential_gain
 from coaxshell.structure.section import Section
+from coaxshell.structure.thin import potential_gain
 
 
 def test_sensor_voltage_is_eq_20(response: Response, lopsided_section: Section) -> None:

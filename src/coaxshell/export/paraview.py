@@ -127,15 +127,15 @@ def _write_shells(response: Response, folder: Path, index: npt.NDArray[np.intp],
     theta = np.radians(_ANGLES)
     radial = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1)
     around = np.stack([-np.sin(theta), np.cos(theta), np.zeros_like(theta)], axis=1)
-    stress, normal, tangential = ([_on_ring(response, shell, index, name) for shell in range(len(shells))] for name in _QUANTITIES)
+    stress, normal, tangential = ([_on_wall(response, shell, index, name) for shell in range(len(shells))] for name in _QUANTITIES)
     names = [f"data/shells_{number:05d}.vtp" for number in range(len(index))]
     for number, name in enumerate(names):
         vectors = [v[number][:, None] * around - w[number][:, None] * radial for w, v in zip(normal, tangential, strict=True)]
         lines = [shell.radius * radial + displaced * vector for shell, vector in zip(shells, vectors, strict=True)]
         data = {
-            "hoop_stress": np.concatenate([ring[number] for ring in stress]),
+            "hoop_stress": np.concatenate([around[number] for around in stress]),
             "displacement": np.concatenate(vectors),
-            "normal_displacement": np.concatenate([ring[number] for ring in normal]),
+            "normal_displacement": np.concatenate([around[number] for around in normal]),
         }
         write_lines(folder / name, lines, data, {"shell": np.arange(len(shells), dtype=np.int32)})
     return names
@@ -144,7 +144,7 @@ def _write_shells(response: Response, folder: Path, index: npt.NDArray[np.intp],
 _QUANTITIES = ("stress", "normal", "tangential")
 
 
-def _on_ring(response: Response, shell: int, index: npt.NDArray[np.intp], quantity: str) -> FloatArray:
+def _on_wall(response: Response, shell: int, index: npt.NDArray[np.intp], quantity: str) -> FloatArray:
     """Return a quantity at all points of a shell and the chosen instants, shape (instants, angles); zeros for a rigid one."""
     if isinstance(response.system.shells[shell], RigidShell):
         return np.zeros((len(index), len(_ANGLES)))

@@ -17,7 +17,7 @@ from coaxshell.plotting.field_scales import (
     pressure_unit,
     stress_unit,
 )
-from coaxshell.plotting.frames import RING_ANGLES, FieldView, Frames, field_frames, gathered
+from coaxshell.plotting.frames import WALL_ANGLES, FieldView, Frames, field_frames, gathered
 from coaxshell.plotting.style import new_figure, style
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from coaxshell.response import Response
 
 
-RING_WIDTH = 0.11
+WALL_WIDTH = 0.11
 """Drawn width of a shell, in a; true walls of a few millimetres would not be seen."""
 WALL_COLOUR = "#262626"
 ABSORBER_COLOUR = "#1A1A1A"
@@ -102,8 +102,8 @@ def draw_frame(
     ax.imshow(
         frames.field(index), extent=(-edge, edge, -edge, edge), origin="lower", cmap=image.cmap, norm=image.norm, interpolation="auto"
     )
-    for radius, ring in zip(ring_radii(system), frames.stress, strict=True):
-        _ring(ax, radius, None if ring is None else ring[index], scales.stress)
+    for radius, around in zip(wall_radii(system), frames.stress, strict=True):
+        _wall(ax, radius, None if around is None else around[index], scales.stress)
     if absorbers and system.absorber_list:
         x, y = absorber_places(system)
         ax.plot(x, y, linestyle="none", marker="o", markersize=1.6, color=ABSORBER_COLOUR, markeredgewidth=0, zorder=4)
@@ -119,25 +119,25 @@ def time_stamp(frames: Frames, index: int, *, mathematics: bool = True) -> str:
     return f"{letter} = {frames.time[index]:.2f}  ({frames.milliseconds[index]:.3f} ms)"
 
 
-def ring_radii(system: System) -> list[float]:
+def wall_radii(system: System) -> list[float]:
     """Return the mid-surface radius of each shell, in a."""
     return [shell.radius / system.reference_radius for shell in system.shells]
 
 
 def absorber_places(system: System) -> tuple[FloatArray, FloatArray]:
     """Return x and y of the absorbers, in a, half-way between the shells they link."""
-    radii = np.array(ring_radii(system))
+    radii = np.array(wall_radii(system))
     inner = np.array([absorber.inner_shell for absorber in system.absorber_list], dtype=np.intp)
     angle = np.radians([absorber.angle for absorber in system.absorber_list])
     middle = 0.5 * (radii[inner] + radii[inner + 1])
     return middle * np.cos(angle), middle * np.sin(angle)
 
 
-def _ring(ax: Axes, radius: float, stress: FloatArray | None, limit: float) -> None:
+def _wall(ax: Axes, radius: float, stress: FloatArray | None, limit: float) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Circle
 
-    inner, outer = radius - 0.5 * RING_WIDTH, radius + 0.5 * RING_WIDTH
+    inner, outer = radius - 0.5 * WALL_WIDTH, radius + 0.5 * WALL_WIDTH
     if stress is None:
         ax.add_patch(Circle((0, 0), radius, fill=False, edgecolor=WALL_COLOUR, linewidth=1.5, zorder=3))
         return
@@ -151,7 +151,7 @@ def _ring(ax: Axes, radius: float, stress: FloatArray | None, limit: float) -> N
 
 def _segments(inner: float, outer: float) -> FloatArray:
     """Return the corners of one quadrilateral for each degree, centred on it, shape (360, 4, 2)."""
-    start, end = np.radians(RING_ANGLES - 0.5), np.radians(RING_ANGLES + 0.5)
+    start, end = np.radians(WALL_ANGLES - 0.5), np.radians(WALL_ANGLES + 0.5)
     corners = ((inner, start), (outer, start), (outer, end), (inner, end))
     return np.stack([np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1) for radius, angle in corners], axis=1)
 

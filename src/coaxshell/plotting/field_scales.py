@@ -83,8 +83,8 @@ def field_scales(frames: Iterable[Frames], pressure: float | None = None, stress
         values = [np.abs(part.pressure).ravel()[:: 1 + part.pressure.size // 2_000_000] for part in every]
         pressure = round_up(_share(values, _PRESSURE_SHARE))
     if stress is None:
-        rings = [np.abs(ring).ravel() for part in every for ring in part.stress if ring is not None]
-        stress = round_up(_share(rings, _STRESS_SHARE))
+        stresses = [np.abs(around).ravel() for part in every for around in part.stress if around is not None]
+        stress = round_up(_share(stresses, _STRESS_SHARE))
     return FieldScales(pressure, stress)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.plotting.field import ABSORBER_COLOUR, RING_WIDTH, WALL_COLOUR, absorber_places, ring_radii, time_stamp
+from coaxshell.plotting.field import ABSORBER_COLOUR, WALL_COLOUR, WALL_WIDTH, absorber_places, time_stamp, wall_radii
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
     STRESS_COLOURS,
@@ -41,7 +41,7 @@ _FEWEST_WITH_AXES = 240  # pixels of a panel: figures on smaller ones could not 
 
 
 @dataclass(frozen=True)
-class _Ring:
+class _Band:
     """The pixels of a shell: where they are, whose degree they show, and how much of each pixel the shell covers."""
 
     rows: npt.NDArray[np.intp]
@@ -77,19 +77,19 @@ class Canvas:
         self._colours = _table(PRESSURE_COLOURS)
         self._stress_colours = _table(STRESS_COLOURS)
         self._background = self._draw_background(responses, names, units)
-        self._rings = [[self._ring(radius) for radius in ring_radii(response.system)] for response in responses]
+        self._bands = [[self._band(radius) for radius in wall_radii(response.system)] for response in responses]
         self._overlays = [_Overlay(_draw_overlay(response.system, view)) for response in responses]
         self._stamp = _Stamp(max(9, self._px(13)))
 
     def frame(self, parts: Sequence[Frames], index: int) -> Bytes:
         """Return one frame, shape (height, width, 3), from the same index of each system's frames."""
         picture = self._background.copy()
-        for left, part, rings, overlay in zip(self._left, parts, self._rings, self._overlays, strict=True):
+        for left, part, bands, overlay in zip(self._left, parts, self._bands, self._overlays, strict=True):
             panel = picture[self._top : self._top + self.view.pixels, left : left + self.view.pixels]
             panel[:] = _coloured(compressed(part.field(index)[::-1] / np.float32(self.scales.pressure)), 1.0, self._colours)
-            for ring, stress in zip(rings, part.stress, strict=True):
+            for band, stress in zip(bands, part.stress, strict=True):
                 if stress is not None:
-                    _blend(panel, ring, _coloured(stress[index], self.scales.stress, self._stress_colours))
+                    _blend(panel, band, _coloured(stress[index], self.scales.stress, self._stress_colours))
             overlay.onto(panel)
             panel[[0, -1]] = panel[:, [0, -1]] = _FRAME
         self._stamp.write(picture, time_stamp(parts[0], index, mathematics=False), self._left[0], self._top)
@@ -98,15 +98,15 @@ class Canvas:
     def _px(self, at_450: float) -> int:
         return round(at_450 * self._zoom)
 
-    def _ring(self, radius: float) -> _Ring:
+    def _band(self, radius: float) -> _Band:
         """Return the pixels of a shell, rows counted from the top, with soft edges."""
         x = self.view.centres
         y = x[::-1, None]
-        covered = 0.5 + (0.5 * RING_WIDTH - np.abs(np.hypot(x, y) - radius)) / self.view.pixel
+        covered = 0.5 + (0.5 * WALL_WIDTH - np.abs(np.hypot(x, y) - radius)) / self.view.pixel
         rows, columns = np.nonzero(covered > 0)
         angle = np.degrees(np.arctan2(y[rows, 0], x[columns]))
         degree = np.rint(angle).astype(np.intp) % 360
-        return _Ring(rows, columns, degree, np.clip(covered[rows, columns], 0.0, 1.0).astype(np.float32))
+        return _Band(rows, columns, degree, np.clip(covered[rows, columns], 0.0, 1.0).astype(np.float32))
 
     def _draw_background(self, responses: Sequence[Response], names: Sequence[str], units: str) -> Bytes:
         """Return the page without fields: names, frames of the panels, colour bars."""
@@ -192,8 +192,8 @@ def _draw_overlay(system: System, view: FieldView) -> Bytes:
         ax.set_axis_off()
         ax.set(xlim=(-view.half_width, view.half_width), ylim=(-view.half_width, view.half_width))
         zoom = view.pixels / 450.0
-        for radius in ring_radii(system):
-            for edge in (radius - 0.5 * RING_WIDTH, radius + 0.5 * RING_WIDTH):
+        for radius in wall_radii(system):
+            for edge in (radius - 0.5 * WALL_WIDTH, radius + 0.5 * WALL_WIDTH):
                 ax.add_patch(Circle((0, 0), edge, fill=False, edgecolor=WALL_COLOUR, linewidth=0.6 * zoom))
         if system.absorber_list:
             x, y = absorber_places(system)
@@ -237,7 +237,7 @@ def _coloured(values: npt.NDArray[Any], limit: float, table: Bytes) -> Bytes:
     return np.asarray(table[index], dtype=np.uint8)
 
 
-def _blend(panel: Bytes, ring: _Ring, colours: Bytes) -> None:
-    under = panel[ring.rows, ring.columns].astype(np.float32)
-    cover = ring.cover[:, None]
-    panel[ring.rows, ring.columns] = (under + cover * (colours[ring.degree] - under) + 0.5).astype(np.uint8)
+def _blend(panel: Bytes, band: _Band, colours: Bytes) -> None:
+    under = panel[band.rows, band.columns].astype(np.float32)
+    cover = band.cover[:, None]
+    panel[band.rows, band.columns] = (under + cover * (colours[band.degree] - under) + 0.5).astype(np.uint8)

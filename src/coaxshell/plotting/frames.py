@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Report = Progress
 
-RING_ANGLES: FloatArray = np.arange(360.0)
+WALL_ANGLES: FloatArray = np.arange(360.0)
 """Where the stress of a shell is taken: every degree."""
 
 _STAGE = "fields"
@@ -70,7 +70,7 @@ class Frames:
         Pa; columns from the lowest x, the source's side last. Rows run upward from the lowest y, or, where the field is its own mirror
         image, from the middle: ``rows`` is then half of ``pixels``, rounded up. :meth:`field` gives whole squares.
     stress : tuple of (ndarray, shape (K, 360), or None)
-        Hoop stress of each shell at RING_ANGLES, Pa; None for a rigid one.
+        Hoop stress of each shell at WALL_ANGLES, Pa; None for a rigid one.
     """
 
     time: FloatArray
@@ -132,7 +132,7 @@ def field_frames(
     """
     view = view or FieldView()
     index = instants(response, times)
-    stress = [_ring_stress(response, shell) for shell in range(len(response.system.shells))]
+    stress = [_wall_stress(response, shell) for shell in range(len(response.system.shells))]
     rows = len(_rows(response, view))
     per_block = max(1, int(memory // (8 * rows * view.pixels)))
     for start in range(0, len(index), per_block):
@@ -145,7 +145,7 @@ def field_frames(
             time=np.asarray(response.time, dtype=np.float64)[chosen],
             milliseconds=1e3 * np.asarray(response.time_seconds, dtype=np.float64)[chosen],
             pressure=pressure,
-            stress=tuple(None if ring is None else ring[chosen] for ring in stress),
+            stress=tuple(None if around is None else around[chosen] for around in stress),
         )
 
 
@@ -159,14 +159,14 @@ def gathered(blocks: Iterator[Frames]) -> Frames:
         time=np.concatenate([part.time for part in parts]),
         milliseconds=np.concatenate([part.milliseconds for part in parts]),
         pressure=np.concatenate([part.pressure for part in parts]),
-        stress=tuple(None if rings[0] is None else np.concatenate(rings) for rings in stress),
+        stress=tuple(None if parts[0] is None else np.concatenate(parts) for parts in stress),
     )
 
 
-def _ring_stress(response: Response, shell: int) -> FloatArray | None:
+def _wall_stress(response: Response, shell: int) -> FloatArray | None:
     if isinstance(response.system.shells[shell], RigidShell):
         return None
-    return np.asarray(response.stress(shell, angle=RING_ANGLES), dtype=np.float64)
+    return np.asarray(response.stress(shell, angle=WALL_ANGLES), dtype=np.float64)
 
 
 def _pressure(response: Response, times: FloatArray, view: FieldView, progress: Report | None) -> npt.NDArray[np.float32]:

@@ -14,8 +14,8 @@ from coaxshell.model.fluids import Fluid
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.system import System
 from coaxshell.solver.ingredients import OWN, Ingredients
-from coaxshell.structure.ring import RingStiffness, potential_gain
 from coaxshell.structure.section import Section, section
+from coaxshell.structure.thin import WallStiffness, potential_gain
 
 
 @dataclass(frozen=True)
@@ -118,29 +118,29 @@ class Problem:
         """The same without feedback."""
         return replace(self, shells=tuple(replace(shell, gains=None) for shell in self.shells))
 
-    def stiffness(self, index: int, m: np.ndarray) -> RingStiffness:
+    def stiffness(self, index: int, m: np.ndarray) -> WallStiffness:
         """Return the dimensionless modal stiffness of one shell, K a/(rho_e c_e^2)."""
-        ring = self.shells[index].section
-        assert ring is not None
+        wall = self.shells[index].section
+        assert wall is not None
         factor = self.scales.length / self.scales.pressure
-        return RingStiffness(*(factor * entry for entry in self.ingredients.stiffness(ring, m)))
+        return WallStiffness(*(factor * entry for entry in self.ingredients.stiffness(wall, m)))
 
     def sensor_gain(self, index: int, m: np.ndarray, role: str = "sensor") -> tuple[np.ndarray, np.ndarray]:
         """Return volts of a layer per unit dimensionless (V, W) of one shell (Eq. 20); zeros if it has no such layer."""
-        ring = self.shells[index].section
-        layer = ring.layer(role) if ring is not None else None
-        if ring is None or layer is None:
+        wall = self.shells[index].section
+        layer = wall.layer(role) if wall is not None else None
+        if wall is None or layer is None:
             return np.zeros_like(m), np.zeros_like(m)
-        gain_v, gain_w = potential_gain(layer, m, ring.radius)
+        gain_v, gain_w = potential_gain(layer, m, wall.radius)
         return self.scales.length * gain_v, self.scales.length * gain_w
 
     def actuator_pressure(self, index: int) -> float:
         """Return the dimensionless inward pressure per volt of control, -e32/(R rho_e c_e^2) (Eqs. 4, 13)."""
-        ring = self.shells[index].section
-        actuator = ring.layer("actuator") if ring is not None else None
-        if ring is None or actuator is None:
+        wall = self.shells[index].section
+        actuator = wall.layer("actuator") if wall is not None else None
+        if wall is None or actuator is None:
             return 0.0
-        return -actuator.actuator_coupling / (ring.radius * self.scales.pressure)
+        return -actuator.actuator_coupling / (wall.radius * self.scales.pressure)
 
 
 def dimensionless(system: System) -> Problem:
@@ -158,8 +158,8 @@ def _shell(system: System, index: int, mass_scale: float) -> ShellProblem:
     radius = shell.radius / system.reference_radius
     if isinstance(shell, RigidShell):
         return ShellProblem(radius, None, 0.0)
-    ring = section(shell)
-    return ShellProblem(radius, ring, ring.mass / mass_scale, _gains(system, index))
+    wall = section(shell)
+    return ShellProblem(radius, wall, wall.mass / mass_scale, _gains(system, index))
 
 
 def _gains(system: System, index: int) -> ControlGains | None:

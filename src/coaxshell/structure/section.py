@@ -1,4 +1,4 @@
-"""Section integrals of a layered ring (paper's Eq. A.11) and what its piezoelectric layers add.
+"""Section integrals of a layered wall (paper's Eq. A.11) and what its piezoelectric layers add.
 
 The through-thickness coordinate z runs outward from the mid-surface; strain is positive in tension:
 

@@ -1,4 +1,4 @@
-"""Hoop stress of a layered ring per unit modal displacement: the design stress (Eq. 22) and the stress at any depth (Eqs. A.4, A.5).
+"""Hoop stress of a layered wall per unit modal displacement: the design stress (Eq. 22) and the stress at any depth (Eqs. A.4, A.5).
 
 z runs outward from the mid-surface and w is positive inward, so a straight normal moves tangentially by v + (z/R)(v + dw/dtheta) and
 
@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.structure.ring import potential_gain
 from coaxshell.structure.section import PiezoelectricLayer, Section
+from coaxshell.structure.thin import potential_gain
 
 
 class StressGain(NamedTuple):

@@ -11,21 +11,21 @@ import numpy.typing as npt
 from coaxshell.model import System
 from coaxshell.model.places import region_name
 from coaxshell.plotting.energy import group_colours
-from coaxshell.plotting.field import absorber_places, ring_radii
+from coaxshell.plotting.field import absorber_places, wall_radii
 from coaxshell.plotting.field_scales import field_scales
 from coaxshell.plotting.frames import FieldView, Frames, field_frames, gathered
 from coaxshell.solver.settings import Settings
 from coaxshell.studio import worker
 from coaxshell.studio.arrays import Item, Packed, packed
 
-Rings = dict[int, npt.NDArray[np.float32]]
+Stresses = dict[int, npt.NDArray[np.float32]]
 """Stress by number of the shell."""
 
 LEVELS = 127
 """Steps of a byte on either side of no pressure."""
 
 
-def film(system: System, settings: Settings, every: int, size: int, half_width: float, path: Path) -> tuple[dict[str, Any], Rings]:
+def film(system: System, settings: Settings, every: int, size: int, half_width: float, path: Path) -> tuple[dict[str, Any], Stresses]:
     """Write the field at every so many instants of a run to a file; return what the page needs to play it, and the shells' stress.
 
     The file is a .npy of the pressure over ``scale`` as float16, shape (K, size, size); the stress is in Pa, shape (K, 360) each.
@@ -42,7 +42,7 @@ def film(system: System, settings: Settings, every: int, size: int, half_width: 
         pressure[index] = frames.field(index) / largest
     with path.open("wb") as file:
         np.save(file, pressure, allow_pickle=False)
-    rings = {i: ring.astype(np.float32) for i, ring in enumerate(frames.stress) if ring is not None}
+    stresses = {i: around.astype(np.float32) for i, around in enumerate(frames.stress) if around is not None}
     about = {
         **_told(system, frames, scales.pressure, scales.stress),
         "every": every,
@@ -50,7 +50,7 @@ def film(system: System, settings: Settings, every: int, size: int, half_width: 
         "half_width": half_width,
         "scale": largest,
     }
-    return about, rings
+    return about, stresses
 
 
 def _told(system: System, frames: Frames, pressure: float, stress: float) -> dict[str, Any]:
@@ -63,12 +63,12 @@ def _told(system: System, frames: Frames, pressure: float, stress: float) -> dic
         "transit_time_seconds": transit,
         "pressure_limit": float(pressure),
         "stress_limit": float(stress),
-        "radii": [float(radius) for radius in ring_radii(system)],
+        "radii": [float(radius) for radius in wall_radii(system)],
         "absorbers": [[float(a), float(b)] for a, b in zip(x, y, strict=True)],
     }
 
 
-def frames_of(path: Path, about: dict[str, Any], rings: Rings, start: int, count: int, limit: float | None) -> Packed:
+def frames_of(path: Path, about: dict[str, Any], stresses: Stresses, start: int, count: int, limit: float | None) -> Packed:
     """Return a slice of a film as ``uint8``, whose ends stand for the limit (Pa), or as ``float16`` without a limit."""
     chosen = slice(start, min(start + count, about["frames"]))
     held: npt.NDArray[np.float16] = np.load(path, mmap_mode="r", allow_pickle=False)[chosen]
@@ -79,7 +79,7 @@ def frames_of(path: Path, about: dict[str, Any], rings: Rings, start: int, count
         pressure = bytes_of(np.asarray(held, dtype=np.float32) * (about["scale"] / scale))
     time = np.asarray(about["time"][chosen])
     items = {"pressure": Item(pressure, "Pa", {"scale": scale}), "time": Item(time, "transits")}
-    items |= {f"stress/{i}": Item(ring[chosen], "Pa") for i, ring in rings.items()}
+    items |= {f"stress/{i}": Item(around[chosen], "Pa") for i, around in stresses.items()}
     return packed({"start": start, "frames": len(time), "half_width": about["half_width"]}, items)
 
 
@@ -93,7 +93,7 @@ def point(system: System, settings: Settings, x: float, y: float) -> Packed:
     response = worker.answer(system, settings)
     pressure = np.asarray(response.pressure(x=[x], y=[y], time=response.time, progress=worker.report)).reshape(-1)
     radius = float(np.hypot(x, y))
-    inside = sum(radius >= ring for ring in ring_radii(system))
+    inside = sum(radius >= wall for wall in wall_radii(system))
     return packed(
         {"x": x, "y": y, "region": region_name(inside, len(system.shells))},
         {"time": Item(response.time, "transits"), "pressure": Item(pressure, "Pa")},

@@ -171,14 +171,14 @@ async def frames(request: Request) -> Response:
     found, query = studio_of(request).jobs.finished(request.path_params["job"]), dict(request.query_params)
     if found.kind != "field" or found.file is None:
         raise RefusedError(404, "not-found", "frames", f"a {found.kind} has none", "start a job of the kind field")
-    (about, rings), path = found.result, found.file
+    (about, stresses), path = found.result, found.file
     begin, count = bodies.whole_of(query, "start", 0, about["frames"] - 1, 0), bodies.whole_of(query, "count", 1, limits.STEPS, 24)
     kind = bodies.one_of(query, "format", ("uint8", "float16"), "uint8")
     values = min(count, about["frames"] - begin) * about["size"] ** 2
     if values > limits.FRAME_VALUES:
         raise RefusedError(422, "limit", "count", f"{values:,} values are too many", f"at most {limits.FRAME_VALUES:,}")
     limit = bodies.number_of(query, "limit", 1e-30, 1e30, about["pressure_limit"]) if kind == "uint8" else None
-    return arrays.answer(await run_in_threadpool(fields.frames_of, path, about, rings, begin, count, limit))
+    return arrays.answer(await run_in_threadpool(fields.frames_of, path, about, stresses, begin, count, limit))
 
 
 async def job_file(request: Request) -> Response:

@@ -27,14 +27,14 @@ GAINS = PDControl(proportional=-2e4, derivative=-150)
 """The paper's gains."""
 
 
-def ring(radius: float = 1.0, thickness: float = 1e-2, **changes: Any) -> Shell:
+def thin_shell(radius: float = 1.0, thickness: float = 1e-2, **changes: Any) -> Shell:
     """Return a one-layer shell, by default of steel, 1 m and 1 cm."""
     return Shell(radius=radius, layers=[Layer(STEEL.replace(**changes), thickness)])
 
 
 def evacuated(radius: float = 1.0, thickness: float = 1e-2) -> System:
     """Return one steel shell with nothing inside, under a plane step."""
-    return System(shells=[ring(radius, thickness)], fluids=[VACUUM, WATER], source=PLANE_STEP)
+    return System(shells=[thin_shell(radius, thickness)], fluids=[VACUUM, WATER], source=PLANE_STEP)
 
 
 def smooth(preset: str) -> System:

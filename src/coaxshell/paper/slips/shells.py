@@ -11,8 +11,8 @@ from scipy.integrate import quad
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.scaling import Problem
-from coaxshell.structure.ring import RingStiffness, bending_strain, membrane_strain, open_circuit_stiffness
 from coaxshell.structure.section import PiezoelectricLayer, Section
+from coaxshell.structure.thin import WallStiffness, bending_strain, membrane_strain, open_circuit_stiffness
 
 
 def control_sign(problem: Problem) -> Problem:
@@ -44,12 +44,12 @@ def printed_strain(ingredients: Ingredients) -> Ingredients:
     Only section stiffness is changed; the open-circuit stiffening of piezoelectric layers keeps Eq. 20, which has both terms.
     """
 
-    def stiffness(section: Section, m: FloatArray) -> RingStiffness:
+    def stiffness(section: Section, m: FloatArray) -> WallStiffness:
         ev, ew = membrane_strain(m, section.radius)
         kv, kw = bending_strain(m, section.radius)
         a, b, d = section.membrane, section.cross, section.bending
         electric = sum(open_circuit_stiffness(layer, m, section.radius) for layer in section.piezoelectric)
-        return RingStiffness(
+        return WallStiffness(
             vv=a * ev * ev + 2 * b * ev * kv + (d + electric) * kv * kv,
             vw=a * ev * ew + b * ew * kv + electric * kv * kw,
             ww=a * ew * ew + electric * kw * kw,

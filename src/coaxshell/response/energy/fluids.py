@@ -178,10 +178,10 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     total = np.zeros((2, motion.grid.time[motion.kept].size))
     parities = motion.spectra.normal.shape[1]
     memory = 5 * 16 * parities * motion.orders.size * sampler.length
-    work = partial(_ring_energy, motion, fluid, blocks, sampler)
+    work = partial(_circle_energy, motion, fluid, blocks, sampler)
     with ThreadPoolExecutor(max(1, min(WORKERS, _WORK_BYTES // memory))) as pool:
-        for done, (ring, r, weight) in enumerate(zip(pool.map(work, places), places, weights, strict=True), start=1):
-            total += (0.5 * (outer - inner) * weight * r) * ring
+        for done, (circle, r, weight) in enumerate(zip(pool.map(work, places), places, weights, strict=True), start=1):
+            total += (0.5 * (outer - inner) * weight * r) * circle
             if progress is not None:
                 progress(done / places.size)
     return FluidEnergy(*total)
@@ -207,7 +207,7 @@ def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: F
     return _Block(nodes, fluid.slowness * s, field)
 
 
-def _ring_energy(motion: Motion, fluid: FluidRegion, blocks: list[_Block], sampler: Sampler, r: float) -> FloatArray:
+def _circle_energy(motion: Motion, fluid: FluidRegion, blocks: list[_Block], sampler: Sampler, r: float) -> FloatArray:
     """Return kinetic and compression energy per unit of r dr at a radius, shape (2, kept instants)."""
     parities, orders = motion.spectra.normal.shape[1], motion.orders
     sums = np.zeros((3, parities, orders.size, sampler.length), np.complex128)

@@ -10,7 +10,7 @@ import numpy as np
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
-from coaxshell.structure.ring import RingStiffness, bending_strain, open_circuit_stiffness, ring_stiffness
+from coaxshell.structure.thin import WallStiffness, bending_strain, open_circuit_stiffness, wall_stiffness
 
 
 class ShellEnergy(NamedTuple):
@@ -27,18 +27,18 @@ def shell_energy(motion: Motion, shell: int) -> ShellEnergy | None:
     kinetic (R/2) sum beta pi M (dW/dt^2 + dV/dt^2); strain (R/2) sum beta pi (V, W) K (V, W) with the layers' own membrane,
     cross and bending stiffness; piezoelectric the same with sum_j kappa_j k k', the open-circuit stiffening.
     """
-    ring = motion.problem.shells[shell]
-    if ring.section is None:
+    wall = motion.problem.shells[shell]
+    if wall.section is None:
         return None
     w, v, dw, dv = (x[..., motion.kept] for x in motion.histories(shell))
-    weight = 0.5 * ring.radius * motion.circle
+    weight = 0.5 * wall.radius * motion.circle
     scale = motion.problem.scales.length / motion.problem.scales.pressure
-    elastic = ring_stiffness(replace(ring.section, piezoelectric=()), motion.orders)
-    electric = sum((open_circuit_stiffness(x, motion.orders, ring.section.radius) for x in ring.section.piezoelectric), 0.0 * weight)
-    bend_v, bend_w = bending_strain(motion.orders, ring.section.radius)
+    elastic = wall_stiffness(replace(wall.section, piezoelectric=()), motion.orders)
+    electric = sum((open_circuit_stiffness(x, motion.orders, wall.section.radius) for x in wall.section.piezoelectric), 0.0 * weight)
+    bend_v, bend_w = bending_strain(motion.orders, wall.section.radius)
     bending = bend_v[:, None] * v + bend_w[:, None] * w
     return ShellEnergy(
-        kinetic=ring.mass * (_square(weight, dw, dw) + _square(weight, dv, dv)),
+        kinetic=wall.mass * (_square(weight, dw, dw) + _square(weight, dv, dv)),
         strain=scale * _quadratic(weight, elastic, v, w),
         piezoelectric=scale * _square(weight * electric, bending, bending),
     )
@@ -48,7 +48,7 @@ def _square(weight: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("m,hmt,hmt->t", weight, a, b), dtype=np.float64)
 
 
-def _quadratic(weight: FloatArray, k: RingStiffness, v: FloatArray, w: FloatArray) -> FloatArray:
+def _quadratic(weight: FloatArray, k: WallStiffness, v: FloatArray, w: FloatArray) -> FloatArray:
     return _square(weight * k.vv, v, v) + 2.0 * _square(weight * k.vw, v, w) + _square(weight * k.ww, w, w)
 
 

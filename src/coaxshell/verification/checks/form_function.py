@@ -18,7 +18,7 @@ from coaxshell.verification.bench import Bench
 from coaxshell.verification.independent.walls import Wall
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, within
-from coaxshell.verification.systems import evacuated, ring
+from coaxshell.verification.systems import evacuated, thin_shell
 
 ORDERS = all_orders(60)
 M = ORDERS[:, None]
@@ -34,7 +34,7 @@ def form_function(bench: Bench) -> Iterator[Finding]:
     """
     ka = np.linspace(0.1, 20.0, bench.choose(200, 800))
     rigid, shell = _ours(ka)
-    classical = {"rigid cylinder": _series(ka, None), "evacuated steel shell, h/R = 0.01": _series(ka, Wall.of(ring()))}
+    classical = {"rigid cylinder": _series(ka, None), "evacuated steel shell, h/R = 0.01": _series(ka, Wall.of(thin_shell()))}
     panels = []
     for (name, expected), found in zip(classical.items(), (rigid, shell), strict=True):
         error = float((np.abs(found - expected) / np.maximum(expected, 0.1)).max())

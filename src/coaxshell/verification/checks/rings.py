@@ -15,7 +15,7 @@ from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Finding, close
-from coaxshell.verification.systems import STEEL, WATER, ring
+from coaxshell.verification.systems import STEEL, WATER, thin_shell
 
 RADIUS, THIN = 0.6, 1e-4
 PLATE = STEEL.youngs_modulus / (1 - STEEL.poisson_ratio**2)
@@ -26,7 +26,7 @@ SHOCK = PlaneShock(peak_pressure=1.0, decay_time=1.314e-4)
 @check("ring-frequencies", "Natural frequencies of a ring in vacuo")
 def ring_frequencies(bench: Bench) -> Iterator[Finding]:
     """Compare the zeros of a thin shell's dynamic stiffness with the ring's flexural, breathing and membrane frequencies."""
-    problem = dimensionless(System(shells=[ring(RADIUS, THIN)], fluids=[VACUUM, WATER], source=SHOCK))
+    problem = dimensionless(System(shells=[thin_shell(RADIUS, THIN)], fluids=[VACUUM, WATER], source=SHOCK))
     per_second = 1 / problem.scales.time
     bending = float(np.sqrt(PLATE * THIN**2 / 12 / STEEL.density)) / RADIUS**2
     for m in (2, 3, 5, 9):
@@ -39,7 +39,7 @@ def ring_frequencies(bench: Bench) -> Iterator[Finding]:
         name = "breathing" if m == 0 else "membrane"
         yield close(f"{name}, m = {m}", "closed form (1 + m²) Q/(ρR²)", expected, found, 1e-5, unit="rad/s")
     light = Fluid(density=1e-2, sound_speed=1400)
-    system = System(shells=[ring()], fluids=[VACUUM, light], source=SHOCK)
+    system = System(shells=[thin_shell()], fluids=[VACUUM, light], source=SHOCK)
     response = bench.simulate(system, duration=60.0, time_step=1e-2, modes=1)
     expected = float(np.sqrt(PLATE / STEEL.density)) / 1400
     yield close(

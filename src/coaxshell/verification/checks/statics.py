@@ -16,7 +16,7 @@ from coaxshell.verification.bench import Bench
 from coaxshell.verification.independent.walls import Wall
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Finding, close
-from coaxshell.verification.systems import PLANE_STEP, STEP, WATER, evacuated, ring
+from coaxshell.verification.systems import PLANE_STEP, STEP, WATER, evacuated, thin_shell
 
 SLOW = np.array([1e-6 + 0j])
 
@@ -24,7 +24,7 @@ SLOW = np.array([1e-6 + 0j])
 @check("statics", "Static compliance")
 def statics(bench: Bench) -> Iterator[Finding]:
     """Compare the modal compliance at s -> 0 with closed forms: hoop stiffness a22/R^2, bending d22 (m^2 - 1)^2/R^4, bulk of the fluids."""
-    wall = Wall.of(ring())
+    wall = Wall.of(thin_shell())
     system = evacuated()
     hoop = wall.radius**2 / wall.a22
     yield close("evacuated shell, order 0: W per pressure", "closed form R²/a22", hoop, _compliance(system, 0)[0], 1e-6, unit="m/Pa")
@@ -36,7 +36,7 @@ def statics(bench: Bench) -> Iterator[Finding]:
         exact = 1 / (k[1, 1] - k[0, 1] ** 2 / k[0, 0])
         yield close(f"evacuated shell, order {m}, stretching included", "theory 2; 2 by 2 by hand", exact, found, 1e-6, unit="m/Pa")
     bulk = WATER.density * WATER.sound_speed**2
-    filled = System(shells=[ring()], fluids=[WATER, WATER], source=PLANE_STEP)
+    filled = System(shells=[thin_shell()], fluids=[WATER, WATER], source=PLANE_STEP)
     expected = 1 / (1 / hoop + 2 * bulk / wall.radius)
     yield close("filled shell, order 0", "closed form 1/(a22/R² + 2ρc²/R)", expected, _compliance(filled, 0)[0], 1e-6, unit="m/Pa")
     yield from _double()

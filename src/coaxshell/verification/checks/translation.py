@@ -18,7 +18,7 @@ from coaxshell.solver.spectral import linear_spectra
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, close, value, within
-from coaxshell.verification.systems import PLANE_STEP, STEP, WATER, evacuated, ring
+from coaxshell.verification.systems import PLANE_STEP, STEP, WATER, evacuated, thin_shell
 
 ANGLES = [0, 30, 90, 180]
 SHELL_MASS = 2 * 7800 * 1e-2 / 1000
@@ -39,11 +39,11 @@ def translation(bench: Bench) -> Iterator[Finding]:
     late = float(history[-1])
     yield close(f"evacuated shell: velocity at t = {grid.time[-1]:g}", "theory 10; closed form", limit, late, 2e-4)
     longer = LaplaceGrid(0.05, bench.choose(2000, 4000))
-    filled = System(shells=[ring()], fluids=[WATER, WATER], source=PLANE_STEP)
+    filled = System(shells=[thin_shell()], fluids=[WATER, WATER], source=PLANE_STEP)
     inside = _velocity(filled, longer)
     mean = float(inside[-1000:].mean())  # sloshing inside rings on slowly
     yield close("water-filled shell: mean late velocity", "theory 10; closed form", 2 / (2 + SHELL_MASS), mean, 3e-3)
-    double = System(shells=[ring(0.5), ring()], fluids=[VACUUM, WATER, WATER], source=PLANE_STEP)
+    double = System(shells=[thin_shell(0.5), thin_shell()], fluids=[VACUUM, WATER, WATER], source=PLANE_STEP)
     rough = float(_velocity(double, longer)[-1000:].mean())
     yield close(
         "double shell, inner one evacuated: mean late velocity", "closed form, gap's added mass after Fritz 1972", _double(), rough, 3e-3

@@ -16,7 +16,7 @@ from coaxshell.solver.spectral import linear_spectra
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
 from coaxshell.verification.rows import Finding, close, distance, within
-from coaxshell.verification.systems import WATER, ring
+from coaxshell.verification.systems import WATER, thin_shell
 
 GRID = LaplaceGrid(0.02, 250)
 M = np.arange(41.0)[:, None]
@@ -52,7 +52,7 @@ def transparency(bench: Bench) -> Iterator[Finding]:
 
 def _through(source: Source) -> ComplexArray:
     """Return W of both shells over the pulse's transform, (shells, orders, nodes)."""
-    ghosts = [ring(radius, 1e-3, density=1e-9, youngs_modulus=1e-3) for radius in SHELLS.values()]
+    ghosts = [thin_shell(radius, 1e-3, density=1e-9, youngs_modulus=1e-3) for radius in SHELLS.values()]
     problem = dimensionless(System(shells=ghosts, fluids=[WATER] * 3, source=source))
     pulse = PEAK / problem.scales.pressure / (S + problem.scales.time / DECAY)
     result: ComplexArray = linear_spectra(problem, GRID, 40).normal[:, 0] / pulse

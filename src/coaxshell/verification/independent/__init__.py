@@ -1,6 +1,6 @@
 """The same physics by other means: spectral elements in r, implicit Gauss integration in t; no Laplace transform, no Bessel function.
 
-Only the description of a system is taken from the package; section integrals, ring stiffness, feedback, scaling and incident waves
+Only the description of a system is taken from the package; section integrals, modal stiffness, feedback, scaling and incident waves
 are written out again from the theory.
 """
 

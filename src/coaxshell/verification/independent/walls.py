@@ -1,4 +1,4 @@
-"""A shell's wall by hand: section integrals, ring stiffness on (V, W), sensor and actuator, straight from the theory."""
+"""A shell's wall by hand: section integrals, modal stiffness on (V, W), sensor and actuator, straight from the theory."""
 
 from __future__ import annotations
 

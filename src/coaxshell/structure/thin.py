@@ -1,4 +1,4 @@
-"""Modal stiffness of a layered ring on the amplitudes (V, W) of sin(m theta) and cos(m theta), and its piezoelectric parts."""
+"""Modal stiffness of a thin layered wall on the amplitudes (V, W) of sin(m theta) and cos(m theta), and its piezoelectric parts."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.structure.section import PiezoelectricLayer, Section
 
 
-class RingStiffness(NamedTuple):
-    """Entries of the symmetric modal stiffness of one ring on (V, W), N/m^3, each of the shape of m."""
+class WallStiffness(NamedTuple):
+    """Entries of the symmetric modal stiffness of one wall on (V, W), N/m^3, each of the shape of m."""
 
     vv: FloatArray
     vw: FloatArray
@@ -34,8 +34,8 @@ def open_circuit_stiffness(layer: PiezoelectricLayer, m: FloatArray, radius: flo
     return layer.coupling**2 / (layer.zeta33 + m**2 * layer.zeta22 / radius**2)
 
 
-def ring_stiffness(section: Section, m: npt.ArrayLike) -> RingStiffness:
-    """Return K = a22 e e' + b22 (e k' + k e') + (d22 + sum_j kappa_j) k k', the modal stiffness of a ring.
+def wall_stiffness(section: Section, m: npt.ArrayLike) -> WallStiffness:
+    """Return K = a22 e e' + b22 (e k' + k e') + (d22 + sum_j kappa_j) k k', the modal stiffness of a thin circular wall.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def ring_stiffness(section: Section, m: npt.ArrayLike) -> RingStiffness:
 
     Returns
     -------
-    RingStiffness
+    WallStiffness
         N/m^3, so that I d2(v, w)/dtau2 + K (v, w) is the load per unit area.
     """
     m = np.asarray(m, dtype=np.float64)
@@ -54,7 +54,7 @@ def ring_stiffness(section: Section, m: npt.ArrayLike) -> RingStiffness:
     kv, kw = bending_strain(m, section.radius)
     a, b = section.membrane, section.cross
     d = section.bending + sum(open_circuit_stiffness(layer, m, section.radius) for layer in section.piezoelectric)
-    return RingStiffness(
+    return WallStiffness(
         vv=a * ev * ev + 2 * b * ev * kv + d * kv * kv,
         vw=a * ev * ew + b * (ev * kw + kv * ew) + d * kv * kw,
         ww=a * ew * ew + 2 * b * ew * kw + d * kw * kw,

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.structure.ring import bending_strain, membrane_strain, open_circuit_stiffness, potential_gain, ring_stiffness
 from coaxshell.structure.section import Section, section
+from coaxshell.structure.thin import bending_strain, membrane_strain, open_circuit_stiffness, potential_gain, wall_stiffness
 
 ORDERS = np.arange(0.0, 13.0)
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=200e9, poisson_ratio=0.3)
@@ -20,49 +20,49 @@ def thin(thickness: float) -> Section:
     return section(cx.Shell(radius=0.7, layers=[cx.Layer(STEEL, thickness)]))
 
 
-def frequencies(ring: Section) -> np.ndarray:
+def frequencies(wall: Section) -> np.ndarray:
     """Return the squared natural frequencies in vacuo, shape (orders, 2), ascending."""
-    k = ring_stiffness(ring, ORDERS)
-    matrices = np.array([[k.vv, k.vw], [k.vw, k.ww]]).transpose(2, 0, 1) / ring.mass
+    k = wall_stiffness(wall, ORDERS)
+    matrices = np.array([[k.vv, k.vw], [k.vw, k.ww]]).transpose(2, 0, 1) / wall.mass
     return np.linalg.eigvalsh(matrices)
 
 
 def test_flexural_frequencies_of_a_thin_ring() -> None:
     # D/(rho h R^4) m^2 (m^2 - 1)^2/(m^2 + 1), up to the stretching, (h/R)^2 times m^2.
-    ring = thin(7e-5)
+    wall = thin(7e-5)
     m2 = ORDERS[2:] ** 2
-    expected = ring.bending / (ring.mass * 0.7**4) * m2 * (m2 - 1) ** 2 / (m2 + 1)
-    np.testing.assert_allclose(frequencies(ring)[2:, 0], expected, rtol=5e-8)
+    expected = wall.bending / (wall.mass * 0.7**4) * m2 * (m2 - 1) ** 2 / (m2 + 1)
+    np.testing.assert_allclose(frequencies(wall)[2:, 0], expected, rtol=5e-8)
 
 
 def test_breathing_and_membrane_frequencies() -> None:
-    ring = thin(7e-5)
-    membrane = ring.membrane / (ring.mass * 0.7**2) * (ORDERS**2 + 1)
-    np.testing.assert_allclose(frequencies(ring)[:, 1], membrane, rtol=3e-8)
+    wall = thin(7e-5)
+    membrane = wall.membrane / (wall.mass * 0.7**2) * (ORDERS**2 + 1)
+    np.testing.assert_allclose(frequencies(wall)[:, 1], membrane, rtol=3e-8)
 
 
 @pytest.mark.parametrize("name", ["bare", "iakovlev-evacuated"])
 def test_rigid_translation_is_free(name: str) -> None:
     for shell in cx.presets.load(name).shells:
-        ring = section(shell)
-        k = ring_stiffness(ring, 1.0)
+        wall = section(shell)
+        k = wall_stiffness(wall, 1.0)
         scale = abs(k.vv)
         np.testing.assert_allclose([k.vv + k.vw, k.vw + k.ww], 0.0, rtol=0, atol=1e-12 * scale)
         for parts in (membrane_strain(np.array([1.0]), 0.5), bending_strain(np.array([1.0]), 0.5)):
             assert parts[0] + parts[1] == 0.0
-        for layer in ring.piezoelectric:
-            gain_v, gain_w = potential_gain(layer, 1.0, ring.radius)
+        for layer in wall.piezoelectric:
+            gain_v, gain_w = potential_gain(layer, 1.0, wall.radius)
             assert gain_v != 0.0
             assert gain_v + gain_w == 0.0
 
 
 def test_static_compliance_of_a_ring_under_uniform_pressure() -> None:
     # Hoop force p R, strain p R/a22, inward displacement p R^2/a22.
-    ring = thin(5e-3)
-    np.testing.assert_allclose(1 / ring_stiffness(ring, 0.0).ww, 0.7**2 / ring.membrane, rtol=1e-13)
+    wall = thin(5e-3)
+    np.testing.assert_allclose(1 / wall_stiffness(wall, 0.0).ww, 0.7**2 / wall.membrane, rtol=1e-13)
 
 
-def bent_energy(ring: Section, m: int, v: float, w: float) -> float:
+def bent_energy(wall: Section, m: int, v: float, w: float) -> float:
     """Return the strain energy over V, W squared by quadrature over the angle and through the layers, from the geometry of a normal.
 
     A normal at a mid-surface point that moves by (-w cos m theta) outward and (v sin m theta) along turns by
@@ -71,10 +71,10 @@ def bent_energy(ring: Section, m: int, v: float, w: float) -> float:
     theta = np.arange(64) * (2 * math.pi / 64)
     x, weights = np.polynomial.legendre.leggauss(8)
     energy = 0.0
-    for bottom, top, modulus in ring.layers:
+    for bottom, top, modulus in wall.layers:
         for z, weight in zip((top + bottom + x * (top - bottom)) / 2, weights * (top - bottom) / 2, strict=True):
-            along = m * v + z / ring.radius * (m * v - m * m * w)  # derivative of the amplitude of sin m theta
-            strain = (along - w) / ring.radius * np.cos(m * theta)
+            along = m * v + z / wall.radius * (m * v - m * m * w)  # derivative of the amplitude of sin m theta
+            strain = (along - w) / wall.radius * np.cos(m * theta)
             energy += modulus * weight * np.sum(strain**2) / 64
     return energy * (1 if m == 0 else 2)
 
@@ -84,18 +84,18 @@ def bent_energy(ring: Section, m: int, v: float, w: float) -> float:
 def test_energy_of_an_unsymmetric_layup(m: int, v: float, w: float) -> None:
     # The sign of z decides here: the layup is far from symmetric, b22 matters.
     soft = STEEL.replace(youngs_modulus=2e9)
-    ring = section(cx.Shell(radius=0.3, layers=[cx.Layer(soft, 2e-2), cx.Layer(STEEL, 1e-2)]))
-    k = ring_stiffness(ring, float(m))
+    wall = section(cx.Shell(radius=0.3, layers=[cx.Layer(soft, 2e-2), cx.Layer(STEEL, 1e-2)]))
+    k = wall_stiffness(wall, float(m))
     energy = k.vv * v * v + 2 * k.vw * v * w + k.ww * w * w
-    np.testing.assert_allclose(energy, bent_energy(ring, m, v, w), rtol=1e-11, atol=1e-9 * ring.membrane)
+    np.testing.assert_allclose(energy, bent_energy(wall, m, v, w), rtol=1e-11, atol=1e-9 * wall.membrane)
 
 
 def test_open_circuit_layers_stiffen_bending_alone() -> None:
-    ring = section(cx.presets.load("bare").shells[0])
-    with_layers, without = ring_stiffness(ring, ORDERS), ring_stiffness(dataclasses.replace(ring, piezoelectric=()), ORDERS)
-    kappa = sum(open_circuit_stiffness(layer, ORDERS, ring.radius) for layer in ring.piezoelectric)
+    wall = section(cx.presets.load("bare").shells[0])
+    with_layers, without = wall_stiffness(wall, ORDERS), wall_stiffness(dataclasses.replace(wall, piezoelectric=()), ORDERS)
+    kappa = sum(open_circuit_stiffness(layer, ORDERS, wall.radius) for layer in wall.piezoelectric)
     assert (kappa > 0).all()
-    curvature_v, curvature_w = bending_strain(ORDERS, ring.radius)
+    curvature_v, curvature_w = bending_strain(ORDERS, wall.radius)
     np.testing.assert_allclose(with_layers.vv - without.vv, kappa * curvature_v**2, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(with_layers.ww - without.ww, kappa * curvature_w**2, rtol=1e-8, atol=1e-8)
     assert (with_layers.ww - without.ww)[:1] == 0.0  # breathing does not bend
