@@ -9,14 +9,14 @@ import statistics
 import time
 
 import coaxshell as cx
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Batch, Case, batches, evaluate
 from coaxshell.studies.executors import process_pool
 from coaxshell.studies.metrics import metrics_of
 from coaxshell.studies.paths import varied
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import run_cases
 
-RESOLUTION = Resolution(duration=5.0, time_step=4e-3, modes=60)
+RESOLUTION = Settings(duration=5.0, time_step=4e-3, modes=60)
 ASKED = ["inner.peak_stress", "inner.rms_stress", "absorbers.mass"]
 CASES = 32
 TURNS = 3

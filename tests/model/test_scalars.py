@@ -13,7 +13,6 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.numerics.scalars import plain
 from coaxshell.solver.settings import Settings
-from coaxshell.studies import Resolution
 
 EIGHT = [np.int64(8), np.uint8(8), np.array(8), np.float64(8.0), np.float32(8), np.float16(8), Fraction(8), Decimal(8), np.longdouble(8)]
 
@@ -32,7 +31,7 @@ def test_numbers_of_a_description(eight: Any) -> None:
 @pytest.mark.parametrize("eight", [np.int64(8), np.uint8(8), np.array(8), Fraction(8), Decimal(8)], ids=lambda value: type(value).__name__)
 def test_settings_and_arguments(eight: Any) -> None:
     assert Settings(duration=eight, time_step=np.float32(0.5), modes=eight, refinement=eight) == Settings(8, 0.5, 8, refinement=8)
-    assert Resolution(duration=eight, modes=eight) == Resolution(duration=8.0, modes=8)
+    assert Settings(duration=eight, modes=eight) == Settings(duration=8.0, modes=8)
 
 
 def test_a_run_and_its_answers() -> None:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.paper import Resolution, Runs, figure_recipe
+from coaxshell.paper import Runs, figure_recipe
 from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.store import Store
+from coaxshell.solver.settings import Settings
 
-TINY = Resolution(duration=2.5, time_step=1e-2, modes=16)
-SMALL = Resolution(duration=2.5, time_step=1e-2, modes=16)
+TINY = Settings(duration=2.5, time_step=1e-2, modes=16)
+SMALL = Settings(duration=2.5, time_step=1e-2, modes=16)
 """For the claims, whose numbers need some time and some orders."""
 
 PER_UNIT = {"stress": 1e-6, "displacement": 1e6}

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from coaxshell.errors import InputError
-from coaxshell.paper import Resolution
 from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
 from coaxshell.paper.known_runs import CORRECTED, Runs, packed, unpacked
 from coaxshell.paper.store import Store
+from coaxshell.solver.settings import Settings
 
-SMALL = Resolution(duration=2.5, time_step=1e-2, modes=16)
+SMALL = Settings(duration=2.5, time_step=1e-2, modes=16)
 BY_NAME = {claim.name: claim for claim in claims()}
 
 
@@ -93,7 +93,7 @@ def test_a_late_start_turns_the_claim_about_arrival(runs, changed):
 
 
 def test_runs_are_solved_once_and_read_back_alike(tmp_path):
-    from coaxshell.paper.runs import solve_each
+    from coaxshell.studies import solve_each
 
     solved = []
 

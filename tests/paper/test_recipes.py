@@ -85,9 +85,9 @@ def test_structures_are_prepared_once(monkeypatch, tiny):
 
 
 def test_the_direct_engine_solves_a_study_too():
-    from coaxshell.paper import Resolution
+    from coaxshell.solver.settings import Settings
 
-    resolution = Resolution(duration=0.5, time_step=4e-3, modes=6, engine="direct")
+    resolution = Settings(duration=0.5, time_step=4e-3, modes=6, engine="direct")
     bare = cx.presets.load("bare")
     ((_, response),) = solve_each({"bare": bare}, resolution)
     assert response.engine == "direct"

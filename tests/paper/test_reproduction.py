@@ -13,7 +13,7 @@ import pytest
 from coaxshell.cli import main
 from coaxshell.errors import InputError
 from coaxshell.numerics import memory
-from coaxshell.paper import FIGURES, Resolution, StudyRecipe
+from coaxshell.paper import FIGURES, StudyRecipe
 from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
 from coaxshell.paper.known_runs import CORRECTED
@@ -23,8 +23,9 @@ from coaxshell.paper.reproduction import work as working
 from coaxshell.paper.reproduction.cost import part_cost
 from coaxshell.paper.reproduction.plan import Part, groups, parts
 from coaxshell.paper.slips import SLIPS
+from coaxshell.solver.settings import Settings
 
-TINY = Resolution(duration=0.6, time_step=2e-2, modes=6)
+TINY = Settings(duration=0.6, time_step=2e-2, modes=6)
 ONLY = frozenset({"figures"})
 
 
@@ -102,7 +103,7 @@ def test_the_film_the_slips_and_the_estimate(tmp_path, monkeypatch):
     monkeypatch.setitem(working.FILM, "frames", 4)
     monkeypatch.setitem(working.FILM, "pixels", 60)
     monkeypatch.setattr(working, "DIRECT_SAMPLE", (2,))
-    small = Resolution(duration=0.6, time_step=2e-2, modes=6)
+    small = Settings(duration=0.6, time_step=2e-2, modes=6)
     found = reproduce(tmp_path, small, only=frozenset({"film", "slips", "estimate"}), film_suffix=".webp", workers=1)
     film, suffix = found.film
     assert film[8:12] == b"WEBP"
@@ -163,6 +164,6 @@ def test_what_does_not_fit_side_by_side_is_refused_and_the_time_is_told(tmp_path
     reproduce(tmp_path, TINY, only=frozenset({"estimate"}), workers=1, tell=told.append)
     assert told[0].seconds > 0.1
     assert told[1].seconds == 0.0  # all is there
-    fine = Resolution()
+    fine = Settings()
     costs = {part.kind: part_cost(part, fine) for part in parts(fine)}
     assert costs["direct"].seconds > costs["fields"].seconds > 10.0

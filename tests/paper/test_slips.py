@@ -12,7 +12,6 @@ import coaxshell as cx
 from coaxshell.acoustics.incident import SphericalGeometry
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.paper import Resolution
 from coaxshell.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
 from coaxshell.paper.slips.switches import slipped
 from coaxshell.paper.slips.waves import PrintedPotential
@@ -20,9 +19,10 @@ from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.settings import Settings
 from coaxshell.solver.spectral import linear_spectra
 
-TINY = Resolution(duration=2.5, time_step=1e-2, modes=16)
+TINY = Settings(duration=2.5, time_step=1e-2, modes=16)
 BARE = cx.presets.load("bare")
 ANGLES = [0.0, 40.0, 90.0, 180.0, 250.0]
 CUBIC = {"mass": 10.0, "linear_stiffness": 1e9, "cubic_stiffness": 1e20}
@@ -108,7 +108,7 @@ def test_an_absorber_without_projection_is_one_whose_force_is_larger():
 @pytest.mark.parametrize("slips", [{"missing-projection"}, {"outside-sum"}, {"radius-factor", "missing-projection"}])
 def test_exact_and_marched_rings_agree(slips):
     # A negligible cubic stiffness sends the ring through the interface march; without it the Laplace domain solves it exactly.
-    resolution = Resolution(duration=1.2, time_step=2e-3, modes=16)
+    resolution = Settings(duration=1.2, time_step=2e-3, modes=16)
     law = {"mass": 10.0, "damping": 1e5, "linear_stiffness": 1e9}
     exact, marched = (
         simulate(BARE.replace(absorbers=cx.absorber_ring(5, **law, cubic_stiffness=cubic)), resolution, frozenset(slips))
@@ -269,7 +269,7 @@ def test_effects_are_those_of_the_runs():
 
 def test_with_the_radius_factor_the_inner_tail_follows_the_papers_text():
     # Extrema at t = 1.2, 1.7 and 3.1, and the inner shell stressed over twice as much as the outer; neither without it.
-    resolution = Resolution(duration=3.5, time_step=4e-3, modes=48)
+    resolution = Settings(duration=3.5, time_step=4e-3, modes=48)
     ratios, instants = [], []
     for slips in (frozenset(), frozenset({"radius-factor"})):
         response = simulate(BARE, resolution, slips)

@@ -6,10 +6,10 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Outcome, failure
 from coaxshell.studies.optimisation import optimising
 from coaxshell.studies.reading import DesignReading
-from coaxshell.studies.resolution import Resolution
 
 QUICK = {"duration": 1.0, "time_step": 0.02, "modes": 6}
 
@@ -22,7 +22,7 @@ def quick():
 
 @pytest.fixture(scope="session")
 def resolution():
-    return Resolution(**QUICK)
+    return Settings(**QUICK)
 
 
 @pytest.fixture(scope="session")

@@ -71,8 +71,8 @@ def test_a_sweep(client, tmp_path, system, points):
     base, design, metrics, resolution = read_study(path, SweepStudy).parts(tmp_path)
     asked = study_routes.asked("sweep", body).arguments
     assert (base, design, metrics) == (asked[0], asked[2], asked[3])
-    assert resolution.modes == limits.PREVIEW["modes"]
-    assert resolution.time_step == limits.PREVIEW["time_step"]
+    assert resolution.modes == limits.PREVIEW.modes
+    assert resolution.time_step == limits.PREVIEW.time_step
 
 
 def test_other_kinds_have_none(client):

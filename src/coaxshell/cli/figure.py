@@ -78,12 +78,12 @@ def _draw_study(
 ) -> tuple[str, ...]:
     """Solve, draw and save a figure of many runs, and return their warnings."""
     from coaxshell.cli.scenario import load_system
-    from coaxshell.paper import Resolution, Runs
+    from coaxshell.paper import Runs
     from coaxshell.plotting import save_figure
     from coaxshell.studies.executors import worker_count
 
     systems = [load_system(name, changes or (), "--preset") for name in sources]
     with named_as_options(), progress(quiet) as report:
-        drawn = recipe.draw(systems, Runs(Resolution(**request.settings(systems[0])), workers=worker_count(None)), report)
+        drawn = recipe.draw(systems, Runs(request.settings(systems[0]), workers=worker_count(None)), report)
     save_figure(drawn.figure, target)
     return drawn.warnings

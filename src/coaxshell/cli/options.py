@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+DURATION, TIME_STEP, MODES = "5", "1e-3", "150"
+"""The paper's resolution, as the help shows it."""
+
 SetOption = Annotated[
     list[str] | None,
     typer.Option(

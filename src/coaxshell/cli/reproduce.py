@@ -12,12 +12,13 @@ import typer
 from coaxshell.cli import options, values
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.progress import progress, tell_time
+from coaxshell.cli.solving import settings_of
 from coaxshell.cli.streams import echo
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
-    from coaxshell.paper import Resolution
     from coaxshell.paper.reproduction import Results
+    from coaxshell.solver.settings import Settings
 
 FOLDER = Path("reproduction")
 
@@ -31,9 +32,9 @@ def reproduce(
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="A coarse trial of everything: a minute instead of several.")] = False,
     film: Annotated[bool, typer.Option("--film/--no-film", help="Make a film of bare against hybrid.")] = True,
-    duration: options.DurationOption = "5",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: Annotated[str, typer.Option("--modes", metavar="N", help="Highest circumferential order.")] = "150",
+    duration: options.DurationOption = options.DURATION,
+    time_step: options.TimeStepOption = options.TIME_STEP,
+    modes: Annotated[str, typer.Option("--modes", metavar="N", help="Highest circumferential order.")] = options.MODES,
     workers: options.WorkersOption = None,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -63,22 +64,16 @@ def reproduce(
     echo("wrote " + ", ".join(str(path) for path in paths))
 
 
-def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Resolution:
-    from coaxshell.paper import Resolution
+def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Settings:
+    from coaxshell.model import presets
     from coaxshell.paper.reproduction import QUICK
-    from coaxshell.solver.settings import Settings
 
-    chosen = Resolution(duration=values.number("--duration", duration), time_step=values.number("--time-step", time_step))
-    order = values.modes(modes)
-    if order == "auto":
+    chosen = settings_of(presets.load("bare"), {"duration": duration, "time_step": time_step, "modes": modes})
+    if chosen.modes == "auto":
         raise InputError("--modes", "'auto' is not allowed here", "give a whole number of 1 or more")
-    with values.named_as_options():
-        Settings(chosen.duration, chosen.time_step, order, "spectral", chosen.tolerance, 1)
     if chosen.duration < LEAST:
         raise InputError("--duration", f"{chosen.duration:g} is too short for the claims", f"give at least {LEAST:g} transits")
-    if quick:
-        return QUICK
-    return Resolution(duration=chosen.duration, time_step=chosen.time_step, modes=order)
+    return QUICK if quick else chosen
 
 
 LEAST = 4.0

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, fields
 from functools import wraps
 from inspect import Parameter, signature
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any
 
 from coaxshell.cli import options, values
 from coaxshell.cli.progress import progress, tell_time
@@ -14,26 +14,19 @@ from coaxshell.cli.progress import progress, tell_time
 if TYPE_CHECKING:
     from coaxshell.model import System
     from coaxshell.response import Response
-
-
-class Settings(TypedDict):
-    """Resolution of a run as numbers."""
-
-    duration: float
-    time_step: float
-    tolerance: float
-    modes: int | Literal["auto"]
-    engine: str
-    refinement: int
+    from coaxshell.solver.settings import Settings
 
 
 @dataclass(frozen=True)
 class Request:
-    """The resolution options of a command, as typed; their names, help and defaults are those of every command that solves."""
+    """The resolution options of a command, as typed; their names, help and defaults are those of every command that solves.
 
-    duration: options.DurationOption = "5"
-    time_step: options.TimeStepOption = "1e-3"
-    modes: options.ModesOption = "150"
+    The defaults are the texts of :class:`coaxshell.solver.settings.Settings`', which takes too long to import for a page of help.
+    """
+
+    duration: options.DurationOption = options.DURATION
+    time_step: options.TimeStepOption = options.TIME_STEP
+    modes: options.ModesOption = options.MODES
     tolerance: options.ToleranceOption = "1e-3"
     engine: options.EngineOption = "spectral"
     refinement: options.RefinementOption = "1"
@@ -42,26 +35,24 @@ class Request:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
         from coaxshell.response import simulate
         from coaxshell.solver.cost import run_cost
-        from coaxshell.solver.settings import Settings as Checked
 
         settings = self.settings(system)
         with values.named_as_options(), progress(quiet) as report:
-            if settings["modes"] != "auto":
-                tell_time(run_cost(system, Checked(**settings)), "the run", quiet)
-            return simulate(system, progress=report, **settings)
+            if settings.modes != "auto":
+                tell_time(run_cost(system, settings), "the run", quiet)
+            return simulate(system, progress=report, **settings.arguments())
 
     def settings(self, system: System) -> Settings:
-        """Return the settings of a run of a system as numbers; InputError names the option that is wrong."""
-        from coaxshell.model.durations import transits
+        """Return the settings of a run of a system; InputError names the option that is wrong."""
+        return settings_of(system, asdict(self))
 
-        return {
-            "duration": transits(self.duration, system, "--duration"),
-            "time_step": transits(self.time_step, system, "--time-step"),
-            "tolerance": values.number("--tolerance", self.tolerance),
-            "modes": values.modes(self.modes),
-            "engine": self.engine,
-            "refinement": values.whole("--refinement", self.refinement),
-        }
+
+def settings_of(system: System, given: Mapping[str, str]) -> Settings:
+    """Return the settings that the texts of some options describe; InputError names the option that is wrong."""
+    from coaxshell.solver.settings import Settings
+
+    with values.named_as_options():
+        return Settings.of(system, given)
 
 
 RESOLUTION = tuple(field.name for field in fields(Request))

@@ -14,7 +14,8 @@ from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
     from coaxshell.model import System
-    from coaxshell.studies import How, Resolution
+    from coaxshell.solver.settings import Settings
+    from coaxshell.studies import How
 
 
 @contextmanager
@@ -39,7 +40,7 @@ def study_options(store: Path, resume: bool, workers: str | None, dask: str | No
         yield How(executor, number, store, resume, stack.enter_context(progress(quiet, left=True)))
 
 
-def tell_study_time(systems: Sequence[System | InputError], resolution: Resolution, count: int, how: How, *, quiet: bool) -> None:
+def tell_study_time(systems: Sequence[System | InputError], resolution: Settings, count: int, how: How, *, quiet: bool) -> None:
     """Say how long a study of so many runs will take, from some of its systems."""
     from coaxshell.studies.cost import case_cost
     from coaxshell.studies.executors import capacity

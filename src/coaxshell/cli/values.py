@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Literal
+from typing import Any
 
 from coaxshell.errors import InputError
 
@@ -26,16 +26,6 @@ def whole(option: str, text: str) -> int:
         return int(text)
     except ValueError:
         raise InputError(option, f"{text!r} is not a whole number", "give one such as 1 or 4") from None
-
-
-def modes(text: str, option: str = "--modes") -> int | Literal["auto"]:
-    """Return the highest circumferential order, a whole number or "auto"."""
-    if text.strip().lower() == "auto":
-        return "auto"
-    try:
-        return int(text)
-    except ValueError:
-        raise InputError(option, f"{text!r} is not allowed", 'give a whole number of 1 or more, or "auto"') from None
 
 
 def overrides(texts: Sequence[str], option: str = "--set") -> dict[str, Any]:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options, values
+from coaxshell.cli.solving import settings_of
 from coaxshell.cli.streams import echo
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
+    from coaxshell.model import System
     from coaxshell.verification import Report
 
 FOLDER = Path("verification-report")
@@ -38,8 +40,8 @@ def verify(
         str,
         typer.Option("--tolerance", metavar="ERROR", help="With --against: largest relative error that passes; inf judges nothing."),
     ] = "0.05",
-    time_step: options.TimeStepOption = "1e-3",
-    modes: Annotated[str, typer.Option("--modes", metavar="N", help="With --against, --template: highest order.")] = "150",
+    time_step: options.TimeStepOption = options.TIME_STEP,
+    modes: Annotated[str, typer.Option("--modes", metavar="N", help="With --against, --template: highest order.")] = options.MODES,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -55,13 +57,20 @@ def verify(
         if case is not None:
             raise InputError("--case", "is for --against or --template", "give one of them, or leave --case out")
         return _suite(only, quick, output, force, quiet)
+
+    from coaxshell.cli.scenario import load_system
+
     if case is None:
         raise InputError("--case", "is missing", "name the preset or .toml file that the other code solved")
-    resolution = values.number("--time-step", time_step), _modes(modes)
+    system = load_system(case, where="--case")
+    resolution = settings_of(system, {"time_step": time_step, "modes": modes})
+    if resolution.modes == "auto":
+        raise InputError("--modes", "'auto' is not allowed here", "give a whole number of 1 or more")
     if template is not None:
-        _template(case, template, resolution[1], force)
+        _template(system, template, resolution.modes, force)
     if against is not None:
-        _against(against, case, _folder(output, force), values.number("--tolerance", tolerance), resolution, quiet)
+        limit = values.number("--tolerance", tolerance)
+        _against(against, system, _folder(output, force), limit, (resolution.time_step, resolution.modes), quiet)
     return None
 
 
@@ -86,23 +95,19 @@ def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet
     _tell(found, output)
 
 
-def _against(path: Path, case: str, output: Path, limit: float, resolution: tuple[float, int], quiet: bool) -> None:
+def _against(path: Path, system: System, output: Path, limit: float, resolution: tuple[float, int], quiet: bool) -> None:
     from coaxshell.cli.progress import progress
-    from coaxshell.cli.scenario import load_system
     from coaxshell.verification.against import against
 
-    system = load_system(case, where="--case")
     with values.named_as_options(), progress(quiet) as report:
         found = against(path, system, time_step=resolution[0], modes=resolution[1], tolerance=limit, progress=report)
     _tell(found, output)
 
 
-def _template(case: str, path: Path, modes: int, force: bool) -> None:
+def _template(system: System, path: Path, modes: int, force: bool) -> None:
     from coaxshell.cli.files import Outputs
-    from coaxshell.cli.scenario import load_system
     from coaxshell.verification.against import template
 
-    system = load_system(case, where="--case")
     Outputs(force).file(path, "--template", (".csv",))
     template(system, path, modes=modes)
     echo(f"wrote {path}")
@@ -117,13 +122,6 @@ def _folder(output: Path, force: bool) -> Path:
     for name in NAMES if output.is_dir() else ():
         outputs.file(output / name, "--output", (".md", ".html"))
     return output
-
-
-def _modes(text: str) -> int:
-    number = values.modes(text)
-    if number == "auto":
-        raise InputError("--modes", "'auto' is not allowed here", "give a whole number of 1 or more")
-    return number
 
 
 def _tell(found: Report, output: Path) -> None:

@@ -14,21 +14,22 @@ if TYPE_CHECKING:
 _WORDS = ("transits", "transit")
 
 
-def transits(value: float | str, system: System, where: str = "duration") -> float:
+def transits(value: float | str, system: System | None, where: str = "duration") -> float:
     """Return a time in transits of the outermost radius in the fluid outside.
 
     Parameters
     ----------
     value : float or str
         Transits, or text: "3 ms" is a time, "5" and "5 transits" are transits.
-    system : System
+    system : System or None
+        Without one, only transits have a meaning.
     where : str
         The argument that an error names.
 
     Raises
     ------
     InputError
-        If a text is not a time.
+        If a text is not a time, or is one though there is no system.
     """
     if not isinstance(value, str):
         return value
@@ -41,7 +42,10 @@ def transits(value: float | str, system: System, where: str = "duration") -> flo
     except ValueError:
         pass
     try:
-        return to_si(text, "time") / system.transit_time
+        seconds = to_si(text, "time")
     except InputError as error:
         remedy = 'give transits a/c_e as a number, or a time as text such as "3 ms"'
         raise InputError(where, error.problem, remedy) from None
+    if system is None:
+        raise InputError(where, f"{value!r} has no meaning without a system", "give transits, or make them by Settings.of(system, ...)")
+    return seconds / system.transit_time

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
+from coaxshell.numerics.renamed import renamed
 from coaxshell.paper.figures import FIGURES, figure_recipe
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import Drawn, FigureRecipe, StudyRecipe
-from coaxshell.paper.runs import Resolution, solve_each
+from coaxshell.studies.structures import solve_each
 
-__all__ = ["FIGURES", "Drawn", "FigureRecipe", "Resolution", "Runs", "StudyRecipe", "figure_recipe", "solve_each"]
+__all__ = ["FIGURES", "Drawn", "FigureRecipe", "Runs", "StudyRecipe", "figure_recipe", "solve_each"]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        return renamed(__name__, name, Resolution="coaxshell.solver.settings.Settings")

@@ -11,9 +11,10 @@ import numpy as np
 from coaxshell.numerics.progress import Progress
 from coaxshell.paper.fields import Fields, fields_of
 from coaxshell.paper.observed import Observed
-from coaxshell.paper.runs import Resolution, Solver, solve_each
-from coaxshell.paper.shared_runs import FEWEST, Share, in_turn, shared_out
+from coaxshell.paper.shared_runs import FEWEST, Share, Solver, in_turn, shared_out
 from coaxshell.paper.store import Store, key_of
+from coaxshell.solver.settings import Settings
+from coaxshell.studies.structures import solve_each
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -30,7 +31,7 @@ class Runs:
 
     Parameters
     ----------
-    resolution : Resolution
+    resolution : Settings
         Of every run that is not asked for at another one.
     solver : callable
         From systems by name, a resolution and a report of progress to pairs of (name, response).
@@ -46,7 +47,7 @@ class Runs:
 
     def __init__(
         self,
-        resolution: Resolution | None = None,
+        resolution: Settings | None = None,
         *,
         solver: Solver = solve_each,
         variant: str = CORRECTED,
@@ -54,7 +55,7 @@ class Runs:
         has_fields: bool = True,
         workers: int = 1,
     ) -> None:
-        self.resolution = resolution or Resolution()
+        self.resolution = resolution or Settings()
         self.variant = variant
         self._solver = solver
         self._has_fields = has_fields
@@ -63,7 +64,7 @@ class Runs:
         self._known: dict[str, Observed] = {}
         self._fields: dict[str, Fields] = {}
 
-    def __call__(self, system: System, resolution: Resolution | None = None) -> Observed:
+    def __call__(self, system: System, resolution: Settings | None = None) -> Observed:
         """Return the run of one system."""
         return next(observed for _, observed in self.each({system.name or "run": system}, resolution=resolution))
 
@@ -72,7 +73,7 @@ class Runs:
         systems: Mapping[str, System],
         progress: Progress | None = None,
         *,
-        resolution: Resolution | None = None,
+        resolution: Settings | None = None,
         peaks_only: bool = False,
     ) -> Iterator[tuple[str, Observed]]:
         """Yield (name, run) of each system in turn; those not known yet are solved.
@@ -82,7 +83,7 @@ class Runs:
         systems : mapping of str to System
         progress : callable, optional
             Called with the fraction done and "solving".
-        resolution : Resolution, optional
+        resolution : Settings, optional
         peaks_only : bool
             Whether runs without histories will do.
         """
@@ -110,7 +111,7 @@ class Runs:
         """
         if not self._has_fields:
             raise NoFieldsError(self.variant)
-        key = key_of("fields", self.variant, system.canonical(), asdict(self.resolution))
+        key = key_of("fields", self.variant, system.canonical(), self.resolution.arguments())
         if key not in self._fields:
             piece = self._store.get(key) if self._store else None
             if piece is None:
@@ -121,8 +122,8 @@ class Runs:
             self._fields[key] = piece[0]
         return self._fields[key]
 
-    def _key(self, system: System, resolution: Resolution) -> str:
-        return key_of("run", self.variant, system.canonical(), asdict(resolution))
+    def _key(self, system: System, resolution: Settings) -> str:
+        return key_of("run", self.variant, system.canonical(), resolution.arguments())
 
     def _find(self, key: str, peaks_only: bool) -> Observed | None:
         found = self._known.get(key) or (self._load(key) if self._store else None)

@@ -14,10 +14,10 @@ from coaxshell.paper.histories import named_warnings
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.observed import Observed
 from coaxshell.paper.recipes import Drawn
-from coaxshell.paper.runs import Resolution
 from coaxshell.plotting.curve_sheets import SheetCurve, SheetPanel, figure_curve_sheet
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.settings import Settings
 
 THICKNESSES = {5e-3: "sky", 1e-2: "blue", 2e-2: "green", 4e-2: "orange"}
 """Of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
@@ -54,7 +54,7 @@ def limiting_systems(systems: list[System]) -> dict[str, System]:
     return {"evacuated": evacuated, **filled_ones, "double": double}
 
 
-def rigid_pressure(system: System, resolution: Resolution, modes: int, angles: list[float]) -> tuple[FloatArray, FloatArray]:
+def rigid_pressure(system: System, resolution: Settings, modes: int, angles: list[float]) -> tuple[FloatArray, FloatArray]:
     """Return times (T,) and incident plus diffracted pressure on the outermost surface held still, over the peak pressure, (T, A).
 
     The sums over orders and frequencies are smoothed by Lanczos's factors, as the fronts at the surface are jumps.
@@ -63,7 +63,7 @@ def rigid_pressure(system: System, resolution: Resolution, modes: int, angles: l
     ----------
     system : System
         Its first source, a shock, and its exterior fluid are taken.
-    resolution : Resolution
+    resolution : Settings
         Its duration and time step.
     modes : int
         Highest order.
@@ -89,7 +89,7 @@ def rigid_pressure(system: System, resolution: Resolution, modes: int, angles: l
     return grid.time, np.asarray((basis @ modal).T, dtype=np.float64)
 
 
-def _pressures(system: System, run: Observed, resolution: Resolution) -> list[SheetCurve]:
+def _pressures(system: System, run: Observed, resolution: Settings) -> list[SheetCurve]:
     time, values = rigid_pressure(system, resolution, run.modes, list(_ANGLES))
     return [SheetCurve(f"{angle:g}°", time, values[:, k], colour) for k, (angle, colour) in enumerate(_ANGLES.items())]
 

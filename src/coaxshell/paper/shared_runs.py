@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from coaxshell.errors import PhysicsWarning
 from coaxshell.numerics.progress import Progress
 from coaxshell.paper.observed import Observed, observe
-from coaxshell.paper.runs import Resolution, Solver
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.executors import completed
 from coaxshell.studies.threads import one_blas_thread
 
 if TYPE_CHECKING:
     from coaxshell.model import System
+    from coaxshell.response import Response
+
+Solver = Callable[["Mapping[str, System]", Settings, "Progress | None"], "Iterator[tuple[str, Response]]"]
+"""Solves systems in turn; :func:`coaxshell.studies.structures.solve_each` or one with slips turned on."""
 
 FEWEST = 12
 """Below it the start of the processes costs more than it saves."""
@@ -30,7 +34,7 @@ class Share:
 
     solver: Solver
     systems: Mapping[str, System]
-    resolution: Resolution
+    resolution: Settings
     peaks_only: bool
 
 

@@ -7,7 +7,6 @@ from typing import Literal
 
 from coaxshell import solver
 from coaxshell.model.absorbers import Absorber, AbsorberRing
-from coaxshell.model.durations import transits
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
@@ -56,8 +55,10 @@ def simulate(
         If a setting is not allowed, or there is no such preset or file.
     """
     system = as_system(system)
-    times = (transits(duration, system), transits(time_step, system, "time_step"))
-    settings = Settings(*times, modes, engine, tolerance, refinement)
+    settings = Settings.of(
+        system,
+        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
+    )
     return Response(solver.solve(system, settings=settings, progress=progress))
 
 
@@ -142,6 +143,7 @@ def prepare(
         If a setting is not allowed or the feedback is unstable.
     """
     system = as_system(system)
-    times = (transits(duration, system), transits(time_step, system, "time_step"))
-    settings = Settings(*times, modes, "spectral", tolerance, refinement)
+    settings = Settings.of(
+        system, {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "refinement": refinement}
+    )
     return PreparedSystem(solver.Prepared(system, settings, progress, shared=shared_parts() if retunable else None))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
+from coaxshell.numerics.renamed import renamed
 from coaxshell.studies.cluster import dask_executor
 from coaxshell.studies.optimisation.optimising import optimise, optimise_problem
 from coaxshell.studies.optimisation.optimum import OPTIMUM_PARTS, Optimum
 from coaxshell.studies.optimisation.study import OptimisationStudy
 from coaxshell.studies.optimisation.targets import Objective
 from coaxshell.studies.optimisation.variables import Choice, Integer, Range
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import How
 from coaxshell.studies.structures import solve_each
 from coaxshell.studies.study_file import SweepStudy, read_study
@@ -28,7 +30,6 @@ __all__ = [
     "OptimisationStudy",
     "Optimum",
     "Range",
-    "Resolution",
     "SensitivityStudy",
     "SweepStudy",
     "Uniform",
@@ -43,3 +44,8 @@ __all__ = [
     "sweep_design",
     "uncertainty_of",
 ]
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        return renamed(__name__, name, Resolution="coaxshell.solver.settings.Settings")

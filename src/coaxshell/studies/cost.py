@@ -10,17 +10,16 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.memory import available
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
-from coaxshell.studies.resolution import Resolution
 
 _LOOKED_AT = 12
 """Cases of which the cost is estimated; they are spread over the study."""
 
 
-def case_cost(systems: Sequence[System | InputError], resolution: Resolution) -> Cost:
+def case_cost(systems: Sequence[System | InputError], resolution: Settings) -> Cost:
     """Return the cost of the largest of some cases spread over a study, and the mean of their times."""
     possible = [system for system in systems if isinstance(system, System)]
     step = max(1, (len(possible) - 1) // (_LOOKED_AT - 1))
-    costs = [run_cost(system, Settings(**resolution.arguments())) for system in possible[::step]]
+    costs = [run_cost(system, resolution) for system in possible[::step]]
     return Cost(max((cost.memory for cost in costs), default=0.0), sum(cost.seconds for cost in costs) / max(1, len(costs)))
 
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.response import Response
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.reading import MetricSource
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.structures import Structures, structure_of
 from coaxshell.studies.threads import one_blas_thread
 
@@ -36,7 +36,7 @@ class Batch:
 
     cases: tuple[Case, ...]
     metrics: tuple[Metric, ...]
-    resolution: Resolution
+    resolution: Settings
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ def evaluated(system: System, metrics: tuple[Metric, ...], solved: Callable[[Sys
     return Outcome(values, warnings=response.warnings, seconds=time.perf_counter() - start)
 
 
-def batches(cases: Iterable[Case], metrics: tuple[Metric, ...], resolution: Resolution, workers: int) -> list[Batch]:
+def batches(cases: Iterable[Case], metrics: tuple[Metric, ...], resolution: Settings, workers: int) -> list[Batch]:
     """Return the cases in batches, each of one structure and small enough that all workers stay busy to the end.
 
     Cases that share a structure stay together whatever their order, so that its kernels are prepared once a worker.

@@ -12,18 +12,18 @@ import numpy as np
 from coaxshell._version import __version__
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.paths import Field
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import numerics
 
 CASE = "case"
 FAILURE, WARNINGS = "failure", "physics_warnings"
 
 
-def labelled(system: System, design: Design, metrics: Sequence[Metric], resolution: Resolution, outcomes: Sequence[Outcome]) -> xr.Dataset:
+def labelled(system: System, design: Design, metrics: Sequence[Metric], resolution: Settings, outcomes: Sequence[Outcome]) -> xr.Dataset:
     """Return one variable a metric, one coordinate a varied field, both with units; failed cases are NaN, ``failure`` says why.
 
     The dimensions are the paths for a grid, else ``case``; a field spread by its logarithm says ``scale = "log"``. The dataset holds

@@ -12,11 +12,11 @@ from coaxshell.errors import InputError
 from coaxshell.model.paths import within
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
 from coaxshell.studies.executors import capacity, completed
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import Store
 from coaxshell.studies.user_functions import OtherCodeError
 
@@ -53,7 +53,7 @@ class How:
 def run_study(
     systems: Sequence[System | InputError],
     metrics: tuple[Metric, ...],
-    resolution: Resolution,
+    resolution: Settings,
     how: How,
     parts: Mapping[str, Any],
     where: str = "",
@@ -70,7 +70,7 @@ def run_study(
 def run_cases(
     systems: Sequence[System | InputError],
     metrics: tuple[Metric, ...],
-    resolution: Resolution,
+    resolution: Settings,
     *,
     executor: Executor | None = None,
     workers: int | None = None,
@@ -84,7 +84,7 @@ def run_cases(
     ----------
     systems : sequence of System, or of the InputError for which there is none
     metrics : tuple of Metric
-    resolution : Resolution
+    resolution : Settings
     executor : concurrent.futures.Executor, optional
     workers : int, optional
         Processes of a pool of our own, one a core by default; 1 works in this process.

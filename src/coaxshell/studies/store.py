@@ -10,7 +10,6 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +19,9 @@ from coaxshell.model.system import System
 from coaxshell.numerics.files import reason, write_text
 from coaxshell.numerics.identity import libraries, package_digest
 from coaxshell.numerics.scratch import reclaim, scratch
-from coaxshell.solver.settings import NUMERICS_VERSION
+from coaxshell.solver.settings import NUMERICS_VERSION, Settings
 from coaxshell.studies.evaluation import Outcome, failure
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.resolution import Resolution
 
 MANIFEST = "study.json"
 FORMAT_VERSION = 1
@@ -45,10 +43,10 @@ def digest(data: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def case_key(system: System, metrics: Sequence[Metric], resolution: Resolution) -> str:
+def case_key(system: System, metrics: Sequence[Metric], resolution: Settings) -> str:
     """Return the name under which a case is kept: the hash of its physics, metrics, resolution and the code of all of them."""
     asked = {metric.name: metric.identity for metric in metrics}
-    return digest({"system": system.canonical(), "metrics": asked, "resolution": asdict(resolution), "numerics": origin()})
+    return digest({"system": system.canonical(), "metrics": asked, "resolution": resolution.arguments(), "numerics": origin()})
 
 
 class Store:
@@ -114,7 +112,7 @@ class Store:
         if differ:
             raise InputError("store", f"{name!r} holds another study: its {' and '.join(differ)} differ", another)
 
-    def key(self, system: System, resolution: Resolution) -> str:
+    def key(self, system: System, resolution: Settings) -> str:
         """Return the name of a case."""
         return case_key(system, self.metrics, resolution)
 

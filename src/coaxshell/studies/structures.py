@@ -8,7 +8,7 @@ from typing import Any
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import PreparedSystem, Response, prepare, simulate
-from coaxshell.studies.resolution import Resolution
+from coaxshell.solver.settings import Settings
 
 
 def structure_of(system: System) -> System:
@@ -24,14 +24,14 @@ class Structures:
 
     Parameters
     ----------
-    resolution : Resolution
+    resolution : Settings
     prepared : PreparedSystem, optional
         A structure that is at hand already, at this resolution.
     progress : callable, optional
         Called with the fraction of each run done and the name of its stage.
     """
 
-    def __init__(self, resolution: Resolution, prepared: PreparedSystem | None = None, progress: Progress | None = None) -> None:
+    def __init__(self, resolution: Settings, prepared: PreparedSystem | None = None, progress: Progress | None = None) -> None:
         self.resolution = resolution
         self._prepared = prepared
         self._structure = None if prepared is None else structure_of(prepared.system)
@@ -57,13 +57,13 @@ class Structures:
         return prepare(structure, progress=self._progress, **settings)
 
 
-def solve_each(systems: Mapping[str, System], resolution: Resolution, progress: Progress | None = None) -> Iterator[tuple[str, Response]]:
+def solve_each(systems: Mapping[str, System], resolution: Settings, progress: Progress | None = None) -> Iterator[tuple[str, Response]]:
     """Yield (name, response) of each system in turn. Neighbours that differ only in their absorbers share one prepared structure.
 
     Parameters
     ----------
     systems : mapping of str to System
-    resolution : Resolution
+    resolution : Settings
     progress : callable, optional
         Called with the fraction done and the name of the stage.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from copy import deepcopy
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BeforeValidator, Field
 
@@ -16,42 +16,16 @@ from coaxshell.model.naming import suggestion
 from coaxshell.model.paths import joined, within
 from coaxshell.model.system import System
 from coaxshell.model.toml_text import parsed
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, design_of
 from coaxshell.studies.metrics import Metric, metrics_of
 from coaxshell.studies.paths import varied
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.user_functions import UserCode
 
 MetricTexts = list[str] | dict[str, str]
-SweepParts = tuple[System, Design, tuple[Metric, ...], Resolution]
+SweepParts = tuple[System, Design, tuple[Metric, ...], Settings]
 Tell = Callable[[list[str]], None]
 P = TypeVar("P")
-
-
-class ResolutionEntry(Described):
-    """Describe the resolution of every run of a study; entries as the options of ``coaxshell run``."""
-
-    called = "a resolution"
-
-    duration: float | str = 5.0
-    """How long, in transits a/c_e, or as text such as "3 ms" (of the base system)."""
-    time_step: float | str = 1e-3
-    """Time step, likewise."""
-    modes: int | Literal["auto"] = 150
-    """Highest circumferential order."""
-    tolerance: float = 1e-3
-    """Relative error that "auto" aims at."""
-    engine: str = "spectral"
-    """"spectral" or "direct"."""
-    refinement: int = 1
-    """Each run is made at time_step/refinement."""
-
-    def checked(self, system: System) -> Resolution:
-        """Return it as the resolution of runs of a base system; InputError if no run accepts it."""
-        try:
-            return Resolution.of(system, **self.model_dump())
-        except InputError as error:
-            raise within("resolution", error) from None
 
 
 def _scenario(given: Any) -> Any:
@@ -67,8 +41,8 @@ class Study(Described):
     """A preset, a .toml file beside the study, or the description itself as a table."""
     changes: dict[str, Any] = Field(default_factory=dict, alias="set")
     """Changes of the scenario by dotted path."""
-    resolution: ResolutionEntry = ResolutionEntry()
-    """Of every run."""
+    resolution: dict[str, Any] = Field(default_factory=dict)
+    """Of every run: entries as the options of ``coaxshell run``."""
 
     def system(self, folder: Path) -> System:
         """Return the base system; InputError if there is none, or a change is not allowed. Files are relative to *folder*."""
@@ -91,6 +65,10 @@ class Study(Described):
             return varied(base, flat(self.changes))
         except InputError as error:
             raise within("set", error) from None
+
+    def settings(self, system: System) -> Settings:
+        """Return the resolution of runs of a base system; InputError if no run accepts it."""
+        return Settings.of(system, self.resolution, where="resolution")
 
     def twice(
         self,
@@ -144,7 +122,7 @@ class SweepStudy(Study):
     def parts(self, folder: Path, *, allow_code: bool = False, tell: Tell | None = None) -> SweepParts:
         """Return system, design, metrics and resolution, all checked; InputError names what is wrong. Arguments as of :meth:`twice`."""
         system = self.system(folder)
-        resolution = self.resolution.checked(system)
+        resolution = self.settings(system)
         design = design_of(system, flat(self.over), self.points, self.samples, self.seed)
 
         def make(code: UserCode) -> SweepParts:

@@ -13,11 +13,11 @@ from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, Points, design_of
 from coaxshell.studies.labelled import failures_text, labelled
 from coaxshell.studies.metrics import Metric, Metrics, metrics_of
 from coaxshell.studies.paths import varied
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import How, run_study
 
 
@@ -82,12 +82,15 @@ def sweep(
         Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``, ``Store``.
     """
     system = as_system(system)
-    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
+    resolution = Settings.of(
+        system,
+        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
+    )
     design = design_of(system, over, points, samples, seed)
     return sweep_design(system, design, metrics_of(metrics, system), resolution, How(executor, workers, store, resume, progress))
 
 
-def sweep_design(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Resolution, how: How) -> xr.Dataset:
+def sweep_design(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Settings, how: How) -> xr.Dataset:
     """Return the dataset of a sweep whose parts have been checked; see :func:`sweep`."""
     systems = [_case(system, changes) for changes in design.cases]
     outcomes = run_study(systems, metrics, resolution, how, study_parts(system, design, metrics, resolution), where="over")
@@ -97,7 +100,7 @@ def sweep_design(system: System, design: Design, metrics: tuple[Metric, ...], re
     return labelled(system, design, metrics, resolution, outcomes)
 
 
-def study_parts(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Resolution) -> dict[str, Any]:
+def study_parts(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Settings) -> dict[str, Any]:
     """Return what tells one sweep from another, as plain data by part."""
     over = {field.path: [repr(value) for value in values] for field, values in zip(design.fields, design.values, strict=True)}
     return {

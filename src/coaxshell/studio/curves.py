@@ -17,6 +17,7 @@ from coaxshell.response.peaks import Peak
 from coaxshell.response.summary import Summary
 from coaxshell.response.voltages import actuator_values
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.studio import limits
 from coaxshell.studio.arrays import Item, Packed, packed
 
 QUANTITIES = {
@@ -55,11 +56,10 @@ def curves(response: Response, seconds: float) -> Packed:
     system, count = response.system, len(response.system.shells)
     summary = response.summary()
     absorbers = _absorbers(response)
-    settings = response.settings
-    limits = {shell.name: shell.actuator_limit for shell in summary.shells}
+    highest = {shell.name: shell.actuator_limit for shell in summary.shells}
     header = {
         "ok": True,
-        "resolution": {name: getattr(settings, name) for name in ("duration", "time_step", "modes", "refinement")},
+        "resolution": limits.table_of(response.settings),
         "seconds": seconds,
         "transit_time_seconds": summary.transit_time,
         "name": system.name,
@@ -69,7 +69,7 @@ def curves(response: Response, seconds: float) -> Packed:
                 "name": shell_name(index, count),
                 "radius": shell.radius,
                 "rigid": isinstance(shell, RigidShell),
-                "actuator_limit": limits.get(shell_name(index, count)),
+                "actuator_limit": highest.get(shell_name(index, count)),
             }
             for index, shell in enumerate(system.shells)
         ],

@@ -18,7 +18,7 @@ from coaxshell.limits import (
 )
 from coaxshell.model import AbsorberRing, Sampled, Shell, System
 from coaxshell.model.base import shown
-from coaxshell.model.durations import transits
+from coaxshell.model.naming import suggestion
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.memory import words_of
 from coaxshell.solver.cost import run_cost
@@ -27,8 +27,9 @@ from coaxshell.solver.settings import Settings
 BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUDIO_NESTING.value
 SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABSORBERS.value
 SOURCES, SAMPLES = STUDIO_SOURCES.value, STUDIO_SAMPLES.value
-PREVIEW = {"duration": 5.0, "time_step": 4e-3, "modes": 60, "refinement": 1}
-FULL = {"duration": 5.0, "time_step": 1e-3, "modes": 150, "refinement": 1}
+PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
+ENTRIES = ("duration", "time_step", "modes", "refinement")
+"""Of a resolution, that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
 MODES, STEPS, REFINEMENT = 300, 20_000, 8
 MODE_STEPS = 3_000_000
@@ -153,28 +154,15 @@ def settings_of(given: object, *, live: bool, system: System | None = None) -> S
     """
     if given in ("preview", "full"):
         given = PREVIEW if given == "preview" else FULL
-    if not isinstance(given, dict):
-        raise InputError("resolution", f"{given!r:.60} is not allowed", "must be 'preview', 'full' or a table")
-    for name in given:
-        if name not in PREVIEW:
-            raise InputError(f"resolution.{name}", "is not an entry of the resolution", f"allowed: {', '.join(PREVIEW)}")
-    wanted = {**PREVIEW, **given}
-    for name in ("duration", "time_step"):
-        if isinstance(wanted[name], str) and system is not None:
-            wanted[name] = transits(wanted[name], system, f"resolution.{name}")
-        if isinstance(wanted[name], int) and not isinstance(wanted[name], bool) and abs(wanted[name]) < 1e15:
-            wanted[name] = float(wanted[name])
-        if not isinstance(wanted[name], float):
-            raise InputError(
-                f"resolution.{name}", f"{wanted[name]!r:.60} is not allowed", "give a finite number greater than 0 (transits a/c_e)"
-            )
-    if wanted["modes"] == "auto":
+    elif not isinstance(given, dict):
+        raise InputError("resolution", f"{shown(given)} is not allowed", "must be 'preview', 'full' or a table")
+    for name in given if isinstance(given, dict) else ():
+        if name not in ENTRIES:
+            raise InputError(f"resolution.{name}", "is not an entry of a resolution", suggestion(name, ENTRIES))
+    settings = Settings.of(system, given, base=PREVIEW, where="resolution")
+    modes, steps = settings.modes, settings.steps * settings.refinement
+    if modes == "auto":
         raise InputError("resolution.modes", "'auto' is not allowed", f"give a whole number from 1 to {MODES}")
-    try:
-        settings = Settings(**wanted)
-    except InputError as error:
-        raise InputError(f"resolution.{error.where}", error.problem, error.remedy) from None
-    modes, steps = int(wanted["modes"]), settings.steps * settings.refinement
     most_modes, most_steps = (PREVIEW_MODES, PREVIEW_STEPS) if live else (MODES, STEPS)
     if modes > most_modes:
         raise _above("resolution.modes", modes, most_modes, "orders")
@@ -189,13 +177,18 @@ def settings_of(given: object, *, live: bool, system: System | None = None) -> S
     return settings
 
 
+def table_of(settings: Settings) -> dict[str, Any]:
+    """Return of the settings what a page may choose, by name."""
+    return {name: getattr(settings, name) for name in ENTRIES}
+
+
 def wrong_with(given: object, system: System | None) -> list[InputError]:
     """Return all that is wrong with a resolution at which a run may be asked for; nothing with none."""
     found: list[InputError] = []
     left = dict(given) if isinstance(given, dict) else given
     if system is None and isinstance(left, dict):  # what a text is in transits cannot be told yet
         left = {name: value for name, value in left.items() if not isinstance(value, str)}
-    while left is not None and len(found) <= len(PREVIEW):
+    while left is not None and len(found) <= len(ENTRIES):
         try:
             settings_of(left, live=False, system=system)
             break

@@ -20,7 +20,6 @@ from coaxshell.studies.optimisation.optimum import Optimum
 from coaxshell.studies.optimisation.search import Candidate
 from coaxshell.studies.optimisation.targets import Objective, Target, Targets
 from coaxshell.studies.optimisation.variables import space_of
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import Store
 from coaxshell.studies.structures import Structures
 from coaxshell.studio import descriptions, limits, worker
@@ -55,7 +54,7 @@ def planned(system: System, settings: Settings, data: dict[str, Any]) -> Problem
     if not isinstance(method, str):
         raise InputError("method", f"{shown(method)} is not allowed", "give the name of a method, or auto")
     search_by = (method, evaluations, population, "auto", _whole(data, "seed", 0, 2**31, 0))
-    return problem_of(system, variables, objectives, constraints, worker.resolution_of(settings), (None, 0), search_by, None)
+    return problem_of(system, variables, objectives, constraints, settings, (None, 0), search_by, None)
 
 
 def _variables(system: System, variables: Any) -> dict[str, Any]:
@@ -138,7 +137,7 @@ class Hand:
         self._count, self._done, self._stage = 1 + problem.evaluations, 0, "baseline"
         self.warnings: dict[System, tuple[str, ...]] = {}
 
-    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Resolution, store: Store | None) -> list[Outcome]:
+    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Settings, store: Store | None) -> list[Outcome]:
         """Return the outcome of each system, in order."""
         return [self._outcome(system, targets) for system in systems]
 

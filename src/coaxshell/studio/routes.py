@@ -77,7 +77,7 @@ def _described(data: dict[str, Any]) -> dict[str, Any]:
         limits.check_cost(system, settings, live=False)
     return {
         **descriptions.told(system),
-        "resolution": {name: getattr(settings, name) for name in limits.PREVIEW if not isinstance(given, dict) or name in given},
+        "resolution": {name: value for name, value in limits.table_of(settings).items() if not isinstance(given, dict) or name in given},
     }
 
 
@@ -202,7 +202,7 @@ async def upload(request: Request) -> Response:
         return JSONResponse(refusals.told(error))
     finally:
         path.unlink(missing_ok=True)
-    resolution = {name: value for name in limits.PREVIEW if isinstance(value := settings.get(name), int | float) and math.isfinite(value)}
+    resolution = {name: value for name in limits.ENTRIES if isinstance(value := settings.get(name), int | float) and math.isfinite(value)}
     return await conversation({"toml": text}, resolution=resolution)
 
 

@@ -36,7 +36,7 @@ def schema() -> dict[str, Any]:
         "explosives": list(EXPLOSIVES),
         "metric_units": _metric_units(),
         "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in QUANTITIES.items()],
-        "resolutions": {"preview": limits.PREVIEW, "full": limits.FULL},
+        "resolutions": {"preview": limits.table_of(limits.PREVIEW), "full": limits.table_of(limits.FULL)},
         "films": ["mp4", "webp"] if find_spec("imageio_ffmpeg") else ["webp"],
         "limits": limits.table(),
     }

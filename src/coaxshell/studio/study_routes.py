@@ -11,7 +11,7 @@ from starlette.routing import BaseRoute, Route
 
 from coaxshell.errors import InputError
 from coaxshell.studies.design import POINTS
-from coaxshell.studio import bodies, refusals
+from coaxshell.studio import bodies, limits, refusals
 from coaxshell.studio.routes import studio_of, wanted
 
 if TYPE_CHECKING:
@@ -37,8 +37,7 @@ class Asked(NamedTuple):
 
         name, varied = self.table
         command = "sweep" if name == "over" else "optimise"
-        resolution = {key: getattr(self.settings, key) for key in ("duration", "time_step", "modes", "refinement")}
-        return study_text(command, self.system, self.entries, {name: varied, "resolution": resolution})
+        return study_text(command, self.system, self.entries, {name: varied, "resolution": limits.table_of(self.settings)})
 
 
 def asked(kind: str, data: dict[str, Any]) -> Asked:

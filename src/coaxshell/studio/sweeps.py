@@ -67,8 +67,7 @@ def sweep(system: System, settings: Settings, design: Design, metrics: tuple[Met
     for number, changes in enumerate(cases):
         with worker.part(number, len(cases), f"case {number + 1} of {len(cases)}"):
             outcomes.append(_case(system, settings, changes, metrics))
-    resolution = worker.resolution_of(settings)
-    dataset = labelled(system, design, metrics, resolution, outcomes)
+    dataset = labelled(system, design, metrics, settings, outcomes)
     write_netcdf(dataset, path)
     return told(dataset, metrics)
 

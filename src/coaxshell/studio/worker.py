@@ -20,7 +20,6 @@ from coaxshell.model import System
 from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
 from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studio import limits, memory
 
 STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
@@ -134,11 +133,6 @@ def answer_key(system: System, settings: Settings) -> str:
     return hashlib.blake2b(f"{system.model_dump_json()}{settings}".encode(), digest_size=16).hexdigest()
 
 
-def resolution_of(settings: Settings) -> Resolution:
-    """Return the settings as the resolution of a study."""
-    return Resolution(settings.duration, settings.time_step, settings.modes, refinement=settings.refinement)
-
-
 def answer(system: System, settings: Settings) -> Response:
     """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``."""
     key = answer_key(system, settings)
@@ -171,15 +165,7 @@ def _structure(system: System, settings: Settings) -> PreparedSystem:
     kin = _Here.structures.latest(lambda kept: kept.settings == settings) if live else None
     if kin is not None:
         return kin.retuned(system)
-    return prepare(
-        system,
-        duration=settings.duration,
-        time_step=settings.time_step,
-        modes=settings.modes,
-        refinement=settings.refinement,
-        retunable=live,
-        progress=report,
-    )
+    return prepare(system, retunable=live, progress=report, **limits.table_of(settings))
 
 
 def solve(system: System, settings: Settings) -> Any:

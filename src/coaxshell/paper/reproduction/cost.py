@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
@@ -12,7 +12,6 @@ from coaxshell.paper.claims import systems
 from coaxshell.paper.figures import FIGURES
 from coaxshell.paper.recipes import FigureRecipe
 from coaxshell.paper.reproduction.plan import DIRECT_SAMPLE, Part, groups
-from coaxshell.paper.runs import Resolution
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
 
@@ -24,7 +23,7 @@ _READ = 0.1
 """Seconds to read the peaks of a run and to keep it."""
 
 
-def part_cost(part: Part, resolution: Resolution) -> Cost:
+def part_cost(part: Part, resolution: Settings) -> Cost:
     """Return what one part costs; seconds of one processor, within a factor of 3."""
     if part.kind == "runs":
         group = groups(resolution)[part.about]
@@ -44,7 +43,7 @@ def part_cost(part: Part, resolution: Resolution) -> Cost:
     return _runs([systems.preset(name) for name in presets], resolution).then(_FIELDS)
 
 
-def require_room(parts: Sequence[Part], resolution: Resolution, workers: int) -> Cost:
+def require_room(parts: Sequence[Part], resolution: Settings, workers: int) -> Cost:
     """Return the cost of some parts, so many at a time: the memory of the largest of them side by side.
 
     Raises
@@ -64,9 +63,8 @@ def require_room(parts: Sequence[Part], resolution: Resolution, workers: int) ->
     return together
 
 
-def _runs(solved: Iterable[System], resolution: Resolution, engine: str = "spectral") -> Cost:
-    settings = Settings(**{**asdict(resolution), "engine": engine})
+def _runs(solved: Iterable[System], resolution: Settings, engine: str = "spectral") -> Cost:
     total = Cost(0.0)
     for system in solved:
-        total = total.then(run_cost(system, settings)).then(Cost(0.0, _READ))
+        total = total.then(run_cost(system, replace(resolution, engine=engine))).then(Cost(0.0, _READ))
     return total

@@ -12,7 +12,7 @@ from coaxshell.paper.absorbers import SHOWN
 from coaxshell.paper.claims import systems
 from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.limiting_cases import limiting_systems
-from coaxshell.paper.runs import Resolution
+from coaxshell.solver.settings import Settings
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -30,7 +30,7 @@ VARIANTS: Mapping[str, frozenset[str]] = MappingProxyType(
 WITH_FIELDS = (CORRECTED, "radius factor")
 """Variants whose fields are computed."""
 
-QUICK = Resolution(duration=5.0, time_step=1e-2, modes=24)
+QUICK = Settings(duration=5.0, time_step=1e-2, modes=24)
 """The coarse resolution of a trial."""
 
 LIMITS = "of limiting cases"
@@ -71,11 +71,11 @@ class Group:
     """Runs that are solved together."""
 
     systems: Mapping[str, System]
-    resolution: Resolution
+    resolution: Settings
     peaks_only: bool = False
 
 
-def groups(resolution: Resolution) -> dict[str, Group]:
+def groups(resolution: Settings) -> dict[str, Group]:
     """Return all runs that figures and claims ask for, in groups that take comparable times."""
     bare = systems.preset("bare")
     coarse = resolution.modes if isinstance(resolution.modes, int) else 150
@@ -110,12 +110,12 @@ def _limits() -> dict[str, System]:
     return {system.name: system for system in (*printed, *made)} | drawn
 
 
-def parts(resolution: Resolution, *, only: frozenset[str] = frozenset(), film: bool = True) -> Iterator[Part]:
+def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: bool = True) -> Iterator[Part]:
     """Yield the parts in the order in which they are begun, long ones first.
 
     Parameters
     ----------
-    resolution : Resolution
+    resolution : Settings
     only : frozenset of str
         Of "figures", "claims", "slips", "film" and "estimate"; all if empty.
     film : bool

@@ -15,8 +15,8 @@ from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.recipes import FigureRecipe
 from coaxshell.paper.reproduction.plan import VARIANTS, Part
 from coaxshell.paper.reproduction.work import picture, runs_of
-from coaxshell.paper.runs import Resolution
 from coaxshell.paper.store import Store
+from coaxshell.solver.settings import Settings
 
 if TYPE_CHECKING:
     from coaxshell.paper.recipes import StudyRecipe
@@ -60,7 +60,7 @@ class Results:
 
     Attributes
     ----------
-    resolution : Resolution
+    resolution : Settings
     figures : tuple of DrawnFigure
     judged : tuple of Judged
     effects : list of dict
@@ -76,7 +76,7 @@ class Results:
     workers : int
     """
 
-    resolution: Resolution
+    resolution: Settings
     figures: tuple[DrawnFigure, ...] = ()
     judged: tuple[Judged, ...] = ()
     effects: list[dict[str, Any]] = field(default_factory=list)
@@ -94,7 +94,7 @@ class Results:
 
 
 def drawn_figures(
-    resolution: Resolution, store: Store, pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]
+    resolution: Settings, store: Store, pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]
 ) -> tuple[DrawnFigure, ...]:
     """Return all figures: those of a few responses from their parts, those of many runs drawn from the runs in the store."""
     runs = runs_of(CORRECTED, resolution, store)
@@ -109,7 +109,7 @@ def drawn_figures(
     return tuple(found)
 
 
-def judged_claims(resolution: Resolution, store: Store) -> tuple[Judged, ...]:
+def judged_claims(resolution: Settings, store: Store) -> tuple[Judged, ...]:
     """Return every claim with its findings in all variants, from the runs in the store."""
     variants = {name: runs_of(name, resolution, store) for name in VARIANTS}
     return tuple(judge(claim, variants) for claim in claims())

@@ -13,8 +13,8 @@ from coaxshell.paper.reproduction.cost import require_room
 from coaxshell.paper.reproduction.plan import Part, parts
 from coaxshell.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims
 from coaxshell.paper.reproduction.work import Job, carry_out
-from coaxshell.paper.runs import Resolution
 from coaxshell.paper.store import Store
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.executors import completed, worker_count
 
 FINISHED = "parts"
@@ -25,7 +25,7 @@ TOPICS = ("figures", "claims", "slips", "film", "estimate")
 
 def reproduce(
     folder: Path,
-    resolution: Resolution | None = None,
+    resolution: Settings | None = None,
     *,
     only: frozenset[str] = frozenset(),
     film_suffix: str | None = ".mp4",
@@ -39,7 +39,7 @@ def reproduce(
     ----------
     folder : Path
         Of the report; finished parts are kept in it.
-    resolution : Resolution, optional
+    resolution : Settings, optional
         The paper's unless given.
     only : frozenset of str
         Of TOPICS; all of them if empty.
@@ -58,7 +58,7 @@ def reproduce(
         A part or an option is not allowed, or so many parts side by side do not fit into memory.
     """
     start = time.perf_counter()
-    resolution = resolution or Resolution()
+    resolution = resolution or Settings()
     store = Store(folder / FINISHED)
     jobs = [Job(part, resolution, store.folder, film_suffix or "") for part in parts(resolution, only=only, film=film_suffix is not None)]
     waiting = [job for job in jobs if job.key not in store]

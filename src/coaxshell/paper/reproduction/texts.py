@@ -10,8 +10,8 @@ from coaxshell.paper.claims import Judged
 from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.reproduction.plan import VARIANTS
 from coaxshell.paper.reproduction.results import VERDICTS, DrawnFigure, Estimate, Results
-from coaxshell.paper.runs import Resolution
 from coaxshell.paper.slips import SLIPS
+from coaxshell.solver.settings import Settings
 
 TITLE = "coaxshell: the paper, computed again"
 ABOUT = (
@@ -37,19 +37,19 @@ EFFECT_HEADINGS = (
 TIME_HEADINGS = ("part", "seconds", "processor seconds")
 
 
-def settings_text(resolution: Resolution) -> str:
+def settings_text(resolution: Settings) -> str:
     """Return the resolution in words."""
     return f"M = {resolution.modes}, time step {resolution.time_step:g}, duration {resolution.duration:g} transits"
 
 
-def options_of(resolution: Resolution) -> str:
+def options_of(resolution: Settings) -> str:
     """Return the options of a command that give a resolution, "" if it is the paper's."""
-    plain = asdict(Resolution())
+    plain = asdict(Settings())
     texts = {"duration": "--duration", "time_step": "--time-step", "modes": "--modes"}
     return "".join(f" {option} {getattr(resolution, name):g}" for name, option in texts.items() if getattr(resolution, name) != plain[name])
 
 
-def figure_command(figure: DrawnFigure, resolution: Resolution) -> str:
+def figure_command(figure: DrawnFigure, resolution: Settings) -> str:
     """Return the command that draws a figure again."""
     return f"coaxshell figure {figure.recipe.number}{options_of(resolution)}"
 

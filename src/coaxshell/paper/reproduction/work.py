@@ -19,8 +19,8 @@ from coaxshell.paper.figures import FIGURES
 from coaxshell.paper.known_runs import Runs
 from coaxshell.paper.recipes import FigureRecipe
 from coaxshell.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups
-from coaxshell.paper.runs import Resolution
 from coaxshell.paper.store import Store, key_of
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.threads import one_blas_thread
 
 Piece = tuple[dict[str, Any], dict[str, Any]]
@@ -32,21 +32,21 @@ class Job:
     """A part, its resolution and the folder of the store, as sent to a worker."""
 
     part: Part
-    resolution: Resolution
+    resolution: Settings
     folder: Path
     film_suffix: str = ".mp4"
 
     @property
     def key(self) -> str:
         """Name of the finished part in the store."""
-        return key_of("part", asdict(self.part), asdict(self.resolution), self.film_suffix if self.part.kind == "film" else "")
+        return key_of("part", asdict(self.part), self.resolution.arguments(), self.film_suffix if self.part.kind == "film" else "")
 
 
-def runs_of(variant: str, resolution: Resolution, store: Store | None) -> Runs:
+def runs_of(variant: str, resolution: Settings, store: Store | None) -> Runs:
     """Return the runs of a variant of the model."""
     from coaxshell.paper import slips
 
-    def solver(wanted: Any, settings: Resolution, progress: Any) -> Iterator[tuple[str, Any]]:
+    def solver(wanted: Any, settings: Settings, progress: Any) -> Iterator[tuple[str, Any]]:
         return slips.solve_each(wanted, settings, VARIANTS[variant], progress)
 
     return Runs(resolution, solver=solver, variant=variant, store=store, has_fields=variant in WITH_FIELDS)
@@ -79,7 +79,7 @@ def _fields(job: Job, store: Store) -> Piece:
 def _responses(job: Job, names: tuple[str, ...]) -> list[Any]:
     from coaxshell.response import simulate
 
-    return [simulate(systems.preset(name), **asdict(job.resolution)) for name in names]
+    return [simulate(systems.preset(name), **job.resolution.arguments()) for name in names]
 
 
 def _figure(job: Job, store: Store) -> Piece:
@@ -125,7 +125,7 @@ def _direct(job: Job, store: Store) -> Piece:
     from coaxshell.response import simulate
 
     seconds: dict[str, list[float]] = {"direct": [], "spectral": []}
-    settings = {**asdict(job.resolution), "refinement": 1}
+    settings = {**job.resolution.arguments(), "refinement": 1}
     for system in cases.count(systems.preset("bare"), DIRECT_SAMPLE).values():
         for engine, taken in seconds.items():
             start = time.process_time()

@@ -14,10 +14,10 @@ from coaxshell.model import Absorber, System, absorber_ring, presets
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.paper import cases
-from coaxshell.paper.runs import Resolution
 from coaxshell.paper.slips.growth import Growth, growth
 from coaxshell.paper.slips.solving import solve_each
 from coaxshell.paper.slips.switches import with_permittivity
+from coaxshell.solver.settings import Settings
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -111,7 +111,7 @@ STUDIES: Sequence[tuple[tuple[str, ...], tuple[str, ...]]] = (
 
 
 def effects(
-    resolution: Resolution | None = None,
+    resolution: Settings | None = None,
     studies: Sequence[tuple[tuple[str, ...], tuple[str, ...]]] = STUDIES,
     progress: Progress | None = None,
 ) -> Iterator[Effect]:
@@ -119,14 +119,14 @@ def effects(
 
     Parameters
     ----------
-    resolution : Resolution, optional
+    resolution : Settings, optional
         The paper's unless given.
     studies : sequence of (keys, names)
         Slips that are on together and the configurations, of :data:`CASES`, on which they are.
     progress : callable, optional
         Called with the fraction done and the name of the slips in work.
     """
-    resolution = resolution or Resolution()
+    resolution = resolution or Settings()
     wanted = {name: CASES[name]() for name in CASES if any(name in names for _, names in studies)}
     plain = {name: _measured(response) for name, response in solve_each(wanted, resolution)}
     for number, (keys, names) in enumerate(studies):
@@ -138,7 +138,7 @@ def effects(
 
 
 def _effects(
-    keys: tuple[str, ...], systems: dict[str, System], plain: dict[str, tuple[Stresses, FloatArray]], resolution: Resolution
+    keys: tuple[str, ...], systems: dict[str, System], plain: dict[str, tuple[Stresses, FloatArray]], resolution: Settings
 ) -> Iterator[Effect]:
     try:
         for name, response in solve_each(systems, resolution, frozenset(keys)):

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.progress import Progress
-from coaxshell.paper.runs import Resolution
-from coaxshell.paper.runs import solve_each as solve_each_corrected
 from coaxshell.paper.slips.growth import growth
 from coaxshell.paper.slips.switches import slipped
+from coaxshell.solver.settings import Settings
+from coaxshell.studies.structures import solve_each as solve_each_corrected
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -24,7 +23,7 @@ SELF_EXCITED = frozenset({"interior-derivative", "interior-function", "radiation
 """Slips under which a fluid need not be passive, so that growth is looked for; feedback is checked by the solver itself."""
 
 
-def simulate(system: System, resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Progress | None = None) -> Response:
+def simulate(system: System, resolution: Settings, slips: frozenset[str] = CORRECTED, progress: Progress | None = None) -> Response:
     """Return the response of a system with some slips turned on; without any, exactly :func:`coaxshell.simulate`'s.
 
     Raises
@@ -38,7 +37,7 @@ def simulate(system: System, resolution: Resolution, slips: frozenset[str] = COR
 
 
 def solve_each(
-    systems: Mapping[str, System], resolution: Resolution, slips: frozenset[str] = CORRECTED, progress: Progress | None = None
+    systems: Mapping[str, System], resolution: Settings, slips: frozenset[str] = CORRECTED, progress: Progress | None = None
 ) -> Iterator[tuple[str, Response]]:
     """Yield (name, response) of each system in turn, with some slips turned on.
 
@@ -64,18 +63,16 @@ def solve_each(
         progress(1.0, "solving")
 
 
-def _prepared(system: System, resolution: Resolution, slips: frozenset[str]) -> PreparedSystem:
+def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> PreparedSystem:
     from coaxshell.response import PreparedSystem
     from coaxshell.solver import Prepared
-    from coaxshell.solver.settings import Settings
 
-    settings = Settings(**asdict(resolution))
-    if settings.engine != "spectral":
-        raise InputError("engine", f"{settings.engine!r} knows no slips", 'use engine="spectral"')
-    prepared = Prepared(slipped(system, slips), settings)
+    if resolution.engine != "spectral":
+        raise InputError("engine", f"{resolution.engine!r} knows no slips", 'use engine="spectral"')
+    prepared = Prepared(slipped(system, slips), resolution)
     if slips & SELF_EXCITED:
         assert isinstance(prepared.settings.modes, int)
-        fastest = growth(system, slips, prepared.settings.modes, 1.0 / settings.duration)
+        fastest = growth(system, slips, prepared.settings.modes, 1.0 / resolution.duration)
         if fastest is not None:
             raise InputError(
                 "slips",

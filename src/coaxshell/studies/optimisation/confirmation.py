@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from coaxshell.errors import InputError
-from coaxshell.model.paths import within
 from coaxshell.model.system import System
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.optimisation.search import Runner
 from coaxshell.studies.optimisation.targets import Targets
-from coaxshell.studies.resolution import Resolution
 
 Scenarios = Callable[[System], Any]
 
@@ -22,7 +20,7 @@ Scenarios = Callable[[System], Any]
 class Confirmation:
     """Targets of two systems at one resolution, by name; empty for a system whose run was refused there."""
 
-    resolution: Resolution
+    resolution: Settings
     baseline: dict[str, float]
     best: dict[str, float]
 
@@ -31,7 +29,7 @@ class Confirmation:
         return {"resolution": self.resolution.arguments(), "baseline": self.baseline, "best": self.best}
 
 
-def finer(system: System, resolution: Resolution, confirm: Mapping[str, Any] | None) -> tuple[Resolution, ...]:
+def finer(system: System, resolution: Settings, confirm: Mapping[str, Any] | None) -> tuple[Settings, ...]:
     """Return the resolutions of a confirmation: that of the search with some settings changed, and the same at half the time step.
 
     Raises
@@ -41,19 +39,12 @@ def finer(system: System, resolution: Resolution, confirm: Mapping[str, Any] | N
     """
     if not confirm:
         return ()
-    allowed = resolution.arguments()
-    for name in confirm:
-        if name not in allowed:
-            raise InputError(f"confirm.{name}", "is not a setting of a run", f"allowed: {', '.join(allowed)}")
-    try:
-        fine = Resolution.of(system, **{**allowed, **confirm})
-    except InputError as error:
-        raise within("confirm", error) from None
+    fine = Settings.of(system, confirm, base=resolution, where="confirm")
     return fine, replace(fine, time_step=fine.time_step / 2)
 
 
 def confirmed(
-    baseline: System, best: System, resolutions: tuple[Resolution, ...], targets: Targets, scenarios: Scenarios, crew: Runner
+    baseline: System, best: System, resolutions: tuple[Settings, ...], targets: Targets, scenarios: Scenarios, crew: Runner
 ) -> tuple[Confirmation, ...]:
     """Return both systems' targets at each resolution."""
     found = []

@@ -14,6 +14,7 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
+from coaxshell.solver.settings import NAMES, Settings
 from coaxshell.studies.metrics import ANYWHERE
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
@@ -22,7 +23,6 @@ from coaxshell.studies.optimisation.optimum import Optimum
 from coaxshell.studies.optimisation.search import Candidate, Crew, EnoughError, Evaluations, Runner, non_dominated
 from coaxshell.studies.optimisation.targets import Targets, targets_of
 from coaxshell.studies.optimisation.variables import Space, VariableLike, space_of
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import How
 from coaxshell.studies.store import Store
 from coaxshell.studies.uncertainty.distributions import Uncertain, uncertain_of
@@ -43,18 +43,18 @@ class Problem:
         Not "auto" any more.
     setting : Setting
     evaluations : int
-    finer : tuple of Resolution
+    finer : tuple of Settings
         Where baseline and best are confirmed.
     """
 
     space: Space
     targets: Targets
-    resolution: Resolution
+    resolution: Settings
     uncertain: Uncertain
     method: str
     setting: Setting
     evaluations: int
-    finer: tuple[Resolution, ...]
+    finer: tuple[Settings, ...]
 
     def parts(self) -> dict[str, Any]:
         """Return what tells one study from another, as plain data by part; a larger budget goes on with the same study."""
@@ -144,7 +144,7 @@ def optimise(
         Anything wrong with the study, before its first run.
     """
     system = as_system(system)
-    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
+    resolution = Settings.of(system, dict(zip(NAMES, (duration, time_step, modes, engine, tolerance, refinement), strict=True)))
     chance = (uncertain, samples)
     search_by = (method, evaluations, population, start, seed)
     problem = problem_of(system, variables, objectives, constraints, resolution, chance, search_by, confirm)
@@ -156,7 +156,7 @@ def problem_of(
     variables: Mapping[str, VariableLike],
     objectives: Any,
     constraints: Any,
-    resolution: Resolution,
+    resolution: Settings,
     chance: tuple[Mapping[str, Any] | None, int],
     search_by: tuple[str, int, int | None, str, int],
     confirm: Mapping[str, Any] | None,

@@ -17,11 +17,11 @@ from coaxshell.model.system import System
 from coaxshell.numerics.files import replacing_folder
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.optimisation.confirmation import Confirmation
 from coaxshell.studies.optimisation.search import Candidate, non_dominated
 from coaxshell.studies.optimisation.targets import Targets
 from coaxshell.studies.optimisation.variables import Space
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.store import numerics
 
 OPTIMUM_PARTS = ("best.toml", "optimum.json", "history.csv", "front")
@@ -48,7 +48,7 @@ class Optimum:
 
     space: Space
     targets: Targets
-    resolution: Resolution
+    resolution: Settings
     method: str
     seed: int
     history: tuple[Candidate, ...]

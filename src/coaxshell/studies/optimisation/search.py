@@ -13,12 +13,12 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Outcome, forget
 from coaxshell.studies.executors import process_pool, worker_count
 from coaxshell.studies.optimisation.targets import FAILED, UNSOLVED, Targets
 from coaxshell.studies.optimisation.variables import Space
 from coaxshell.studies.reading import DesignReading
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import run_cases
 from coaxshell.studies.store import Store
 
@@ -73,7 +73,7 @@ class Candidate:
 class Runner(Protocol):
     """Whoever runs the systems of a generation: a :class:`Crew`, or a program with workers of its own."""
 
-    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Resolution, store: Store | None) -> list[Outcome]:
+    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Settings, store: Store | None) -> list[Outcome]:
         """Return the outcome of each system, in order."""
         ...
 
@@ -100,7 +100,7 @@ class Crew:
         self._stack.close()
         forget()
 
-    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Resolution, store: Store | None) -> list[Outcome]:
+    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Settings, store: Store | None) -> list[Outcome]:
         """Return the outcome of each system, in order."""
         if self._given is None and self._pool is None and self._workers > 1:
             self._pool = self._stack.enter_context(process_pool(self._workers))
@@ -135,7 +135,7 @@ class Evaluations:
         space: Space,
         targets: Targets,
         scenarios: Scenarios,
-        resolution: Resolution,
+        resolution: Settings,
         crew: Runner,
         budget: int,
         store: Store | None,

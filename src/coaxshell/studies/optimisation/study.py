@@ -57,7 +57,7 @@ class OptimisationStudy(Study):
             flat(self.variables, _ENTRIES),
             self.objectives,
             self.constraints,
-            self.resolution.checked(base),
+            self.settings(base),
             (flat(self.uncertain, LAWS), self.samples),
             (self.method, self.evaluations, self.population, self.start, self.seed),
             self.confirm,

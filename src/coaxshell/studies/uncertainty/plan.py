@@ -11,9 +11,9 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.scalars import plain
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.uncertainty.distributions import Uncertain, coordinates_of, unit_points
 from coaxshell.studies.uncertainty.indices import blocks
 
@@ -32,7 +32,7 @@ class Plan:
     uncertain : Uncertain
         The properties, and the point of every run.
     metrics : tuple of Metric
-    resolution : Resolution
+    resolution : Settings
     samples, seed : int
     confidence : float
         Of the intervals.
@@ -43,7 +43,7 @@ class Plan:
     system: System
     uncertain: Uncertain
     metrics: tuple[Metric, ...]
-    resolution: Resolution
+    resolution: Settings
     samples: int
     seed: int
     confidence: float
@@ -87,7 +87,7 @@ def plan_of(
     system: System,
     uncertain: Mapping[str, Any],
     metrics: tuple[Metric, ...],
-    resolution: Resolution,
+    resolution: Settings,
     sampling: tuple[int, int, float],
     *,
     indices: bool,

@@ -16,10 +16,10 @@ from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.labelled import CASE, failures_text, labelled
 from coaxshell.studies.metrics import Metrics, metrics_of
-from coaxshell.studies.resolution import Resolution
 from coaxshell.studies.running import How, run_study
 from coaxshell.studies.uncertainty.indices import indices_with_intervals
 from coaxshell.studies.uncertainty.plan import Plan, plan_of
@@ -89,7 +89,10 @@ def sensitivity(
         Anything wrong with the study, before its first run; see :func:`coaxshell.studies.uncertainty.plan.plan_of`.
     """
     system = as_system(system)
-    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
+    resolution = Settings.of(
+        system,
+        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
+    )
     plan = plan_of(system, over, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=True, where="over")
     return uncertainty_of(plan, How(executor, workers, store, resume, progress))
 
@@ -141,7 +144,10 @@ def robustness(
         Anything wrong with the study, before its first run.
     """
     system = as_system(system)
-    resolution = Resolution.of(system, duration, time_step, modes, tolerance, engine, refinement)
+    resolution = Settings.of(
+        system,
+        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
+    )
     plan = plan_of(system, uncertain, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=False)
     return uncertainty_of(plan, How(executor, workers, store, resume, progress))
 

@@ -33,7 +33,7 @@ class SensitivityStudy(Study):
     def plan(self, folder: Path, *, allow_code: bool = False, tell: Tell | None = None) -> Plan:
         """Return it with all parts checked; InputError names what is wrong. Arguments as of :meth:`Study.twice`."""
         system = self.system(folder)
-        resolution = self.resolution.checked(system)
+        resolution = self.settings(system)
         sampling = (self.samples, self.seed, self.confidence)
 
         def make(code: UserCode) -> Plan:
