@@ -50,7 +50,7 @@ def export_mat(response: Response, path: str | Path) -> Path:
     """Write histories and modal amplitudes as a MATLAB (version 5) file.
 
     Variables: ``time`` (a/c), ``time_seconds``, ``head_angle`` (degrees), ``scenario`` (TOML), ``version``, ``shells``: a struct array
-    with radius (m), stress, displacement and voltages at [head, tail] (T x 2), and ``modal_normal``, ``modal_tangential`` (m, halves x
+    with radius (m), stress, displacement and voltages at [head, tail] (T x 2), and ``modal_normal``, ``modal_tangential`` (m, parities x
     orders x T); ``absorber_displacement`` (m, absorbers x T) where there are any.
 
     Raises

@@ -1,6 +1,6 @@
 """Sums of circumferential orders over the whole circle by FFT, and the largest of them.
 
-A modal array has the shape (parities, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
+A modal array has the shape (parities, M + 1, T): parity 0 multiplies cos(m theta), parity 1 (absent when it vanishes) sin(m theta).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class CirclePeak(NamedTuple):
 def circle_angles(orders: int, parities: int, *, finer: int = 1) -> FloatArray:
     """Return the angles in degrees of :func:`on_circle`: steps of 1 degree or a whole fraction of it, four to the shortest wave at least.
 
-    0 to 180 for one half (the rest is its mirror image), 0 to below 360 for two.
+    0 to 180 for one parity (the rest is its mirror image), 0 to below 360 for two.
 
     Parameters
     ----------

@@ -87,9 +87,9 @@ def save_film(
     check_film(target, frames, fps)
     view = view or FieldView()
     times = _times(responses, frames, until)
-    halves = max(response.solution.normal.shape[1] for response in responses)
+    parities = max(response.solution.normal.shape[1] for response in responses)
     kept = sum(4.0 * response.solution.normal.nbytes for response in responses)
-    require_room(film_cost(len(responses), frames, view, halves=halves, kept=kept, memory=memory), frames, view)
+    require_room(film_cost(len(responses), frames, view, parities=parities, kept=kept, memory=memory), frames, view)
     scales = _film_scales(responses, times, view, pressure_limit, stress_limit)
     canvas = Canvas(responses, headings(responses, names), view, scales, units)
     pictures = _pictures(canvas, responses, times, view, _for_blocks(memory) / len(responses), progress)
@@ -107,7 +107,7 @@ def check_film(path: Path, frames: int, fps: float) -> None:
     film_writer(path)
 
 
-def film_cost(systems: int, frames: int, view: FieldView, *, halves: int = 1, kept: float = 0.0, memory: float = BLOCK_MEMORY) -> Cost:
+def film_cost(systems: int, frames: int, view: FieldView, *, parities: int = 1, kept: float = 0.0, memory: float = BLOCK_MEMORY) -> Cost:
     """Return what a film costs beside its runs; the seconds were measured, and hold within a factor of 3.
 
     Parameters
@@ -123,7 +123,7 @@ def film_cost(systems: int, frames: int, view: FieldView, *, halves: int = 1, ke
     memory : float
         As of :func:`save_film`.
     """
-    rows = -(-view.pixels // 2) if halves == 1 else view.pixels
+    rows = -(-view.pixels // 2) if parities == 1 else view.pixels
     frame = 8.0 * rows * view.pixels
     block = max(1.0, min(frames, _for_blocks(memory) / systems // frame))
     held = frame * (1.5 * block + 0.5 * min(block, frames - block))  # in double and in single precision, and the block before

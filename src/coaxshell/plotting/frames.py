@@ -176,7 +176,7 @@ def _pressure(response: Response, times: FloatArray, view: FieldView, progress: 
 
 
 def _rows(response: Response, view: FieldView) -> FloatArray:
-    """Return the y of the rows that are computed: the upper half where the field has no sine half, so that the lower mirrors it."""
+    """Return the y of the rows that are computed: the upper half where the field has no sines, so that the lower mirrors it."""
     y = view.centres
     return y[view.pixels // 2 :] if response.solution.normal.shape[1] == 1 else y
 

@@ -1,6 +1,6 @@
 """Modal amplitudes of a quantity on a shell: a linear combination of V and W of the same order, in SI.
 
-Every quantity here has a cosine in half 0 and a sine in half 1, like w and dv/dtheta.
+Every quantity here has a cosine in parity 0 and a sine in parity 1, like w and dv/dtheta.
 """
 
 from __future__ import annotations

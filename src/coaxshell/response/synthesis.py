@@ -1,6 +1,6 @@
 """Sums of circumferential orders at given angles, by a cosine matrix, and their mean squares.
 
-A modal array has the shape (parities, M + 1, T): half 0 multiplies cos(m theta), half 1 (absent when it vanishes) sin(m theta).
+A modal array has the shape (parities, M + 1, T): parity 0 multiplies cos(m theta), parity 1 (absent when it vanishes) sin(m theta).
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 The rigid translation (X, Y) that fits the motion of the mid-surface best (least squares over the circumference) is the displacement of
 the section's centre of mass: with u_x = -w cos(theta) - v sin(theta), u_y = -w sin(theta) + v cos(theta),
 
-    X = (1/(2 pi)) oint u_x dtheta = -(W_1 + V_1)/2 of the cosine half,      Y likewise of the sine half.
+    X = (1/(2 pi)) oint u_x dtheta = -(W_1 + V_1)/2 of the cosines,      Y the same of the sines.
 
 Less it, the displacement is what deforms the shell: breathing, the orders from 2 on, and of order 1 only
 W_1 - (W_1 + V_1)/2 = (W_1 - V_1)/2. Nothing holds a section in an infinite fluid, so X goes on for as long as the water behind the front
@@ -28,7 +28,7 @@ STEADY = 0.01
 
 
 def section_translation(solution: ModalSolution, shell: int) -> FloatArray:
-    """Return (V_1 + W_1)/2 of both halves, dimensionless, shape (parities, T): minus the translation (X, Y) in units of a."""
+    """Return (V_1 + W_1)/2 of both parities, dimensionless, shape (parities, T): minus the translation (X, Y) in units of a."""
     total: FloatArray = solution.normal[shell, :, 1] + solution.tangential[shell, :, 1]
     return 0.5 * total
 

@@ -15,7 +15,7 @@ from coaxshell.model.pulses import Sampled
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linear_ring import is_ring
 from coaxshell.solver.sampled_orders import crossing_order
@@ -48,7 +48,7 @@ class Size:
         Where absorbers touch shells, two each; mirror images are carried once where all is symmetric.
     nonlinear, ring : bool
         Whether absorbers have cubic springs, and whether linear ones are an even ring.
-    source_halves, parities : int
+    source_parities, parities : int
         Of the Fourier series that the sources excite, and the absorbers.
     orders, nodes, instants : int
         M + 1; of the Laplace contour; of the march, refinement included.
@@ -66,7 +66,7 @@ class Size:
     points: int
     nonlinear: bool
     ring: bool
-    source_halves: int
+    source_parities: int
     parities: int
     orders: int
     nodes: int
@@ -100,8 +100,8 @@ def size_of(problem: Problem, settings: Settings) -> Size:
     """Return the numbers of a run; "auto" counts as 300 orders."""
     system, steps = problem.system, settings.steps * settings.refinement
     grid = LaplaceGrid(settings.time_step / settings.refinement, steps)
-    source_halves = 2 if needs_sine_half(system.sources) else 1
-    links = absorber_set(problem, system.absorber_list, source_halves)
+    excited = source_parities(system.sources)
+    links = absorber_set(problem, system.absorber_list, excited)
     orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
     feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
     saturates = system.control is not None and system.control.saturation
@@ -112,8 +112,8 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         points=2 * links.count,
         nonlinear=not links.is_linear,
         ring=links.count > 0 and is_ring(links),
-        source_halves=source_halves,
-        parities=links.parities if links.count else source_halves,
+        source_parities=excited,
+        parities=links.parities if links.count else excited,
         orders=orders,
         nodes=grid.samples // 2 + 1,
         instants=steps + 1,
@@ -210,7 +210,7 @@ def _sampled_bytes(size: Size, top: float) -> float:
 def _spectral_bytes(size: Size) -> float:
     """Return the largest of the stages of the spectral engine."""
     n, plane = size.shells, size.plane
-    linear = 2.0 * n * size.source_halves * plane
+    linear = 2.0 * n * size.source_parities * plane
     structure = linear + ((n * n + n) * plane if size.linked else 0.0)
     solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes)
     tabulated = structure + size.tabulated * (9.0 * plane + 35.0 * size.orders * size.nodes)
@@ -222,7 +222,7 @@ def _spectral_bytes(size: Size) -> float:
         working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
         stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.parities * plane]
         held += left + forces + forced
-    amplitudes = n * max(size.parities, size.source_halves)
+    amplitudes = n * max(size.parities, size.source_parities)
     rates = 2.0 * amplitudes * size.history if size.feedback else 0.0
     stages += [held + _sampled_bytes(size, size.sampled_top)]
     stages += [held + amplitudes * (2.0 * size.history + 2.5 * plane) + rates + (amplitudes * plane if size.feedback else 0.0)]
@@ -239,7 +239,7 @@ def _marched_bytes(size: Size) -> tuple[float, float]:
         length *= 2
     longest = length * 2 ** int(math.log2(max(1, size.instants // length)))
     kernels = pairs * size.history
-    left = kernels + 2.0 * n * size.source_halves * size.history + 3.0 * pairs * _COMPLEX * size.orders * longest
+    left = kernels + 2.0 * n * size.source_parities * size.history + 3.0 * pairs * _COMPLEX * size.orders * longest
     state = (n + outputs + n) * size.parities * size.history + 2.0 * size.controlled * size.parities * size.history
     matrices = _REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))
     circle = 128.0 * (size.parities * size.orders) ** 2 if size.controlled else 0.0
@@ -261,7 +261,7 @@ def _exact_bytes(size: Size) -> tuple[float, float]:
 
 def _direct_bytes(size: Size) -> float:
     """Return what the direct engine works with: weights, accelerations and motion at all instants, and their transforms."""
-    n, parities = size.shells, max(size.parities, size.source_halves)
+    n, parities = size.shells, max(size.parities, size.source_parities)
     motion = (4.0 if size.feedback else 2.0) * n * parities * size.history
     marching = (2.0 * n * n + n * parities + parities) * size.history + motion
     estimating = motion + 2.5 * n * parities * size.plane + _sampled_bytes(size, size.sampled_top)
@@ -276,7 +276,7 @@ def _shared_seconds(size: Size) -> float:
 
 def _spectral_seconds(size: Size) -> float:
     """Return the time of the spectral engine."""
-    pairs, parities = float(size.orders * size.nodes), max(size.parities, size.source_halves)
+    pairs, parities = float(size.orders * size.nodes), max(size.parities, size.source_parities)
     seconds = _shared_seconds(size) + 0.6e-6 * size.shells * pairs + 0.1e-6 * size.shells * parities * pairs
     if not size.linked:
         return seconds
@@ -292,5 +292,5 @@ def _spectral_seconds(size: Size) -> float:
 
 def _direct_seconds(size: Size) -> float:
     """Return the time of the direct engine, which grows with the square of the number of steps."""
-    parities, pairs = max(size.parities, size.source_halves), size.shells**2
+    parities, pairs = max(size.parities, size.source_parities), size.shells**2
     return _shared_seconds(size) + 0.6e-9 * float(size.instants) ** 2 * size.orders * pairs * parities + 4e-4 * size.instants

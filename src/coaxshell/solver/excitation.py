@@ -30,9 +30,9 @@ def source_spectrum(problem: Problem, source: Source, s: ComplexArray) -> Comple
     return spectrum * np.exp(-s * (source.delay / scales.time)) if source.delay else spectrum
 
 
-def needs_sine_half(sources: Iterable[Source]) -> bool:
-    """Return whether any source lies off the axis theta = 0, 180 degrees."""
-    return any(source.angle % 180.0 != 0.0 for source in sources)
+def source_parities(sources: Iterable[Source]) -> int:
+    """Return how many parities the sources excite: 1, cosines alone, where all lie on the axis theta = 0, 180 degrees; else 2."""
+    return 2 if any(source.angle % 180.0 != 0.0 for source in sources) else 1
 
 
 class UnitLoad:
@@ -75,7 +75,7 @@ class SurfaceLoads:
     """
 
     def __init__(self, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> None:
-        self.parities = 2 if needs_sine_half(problem.system.sources) else 1
+        self.parities = source_parities(problem.system.sources)
         self._problem, self._orders = problem, orders
         self._groups = [
             (UnitLoad(wave, grid, orders, shared), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
@@ -83,7 +83,7 @@ class SurfaceLoads:
         ]
 
     def __call__(self, surface: RadialFunctions, nodes: slice) -> list[ComplexArray]:
-        """Return the load of the cosine half, and of the sine half if any source needs it, at a slice of the grid's nodes."""
+        """Return the load of the cosines, and of the sines if any source needs them, at a slice of the grid's nodes."""
         units = ((unit(surface, nodes), [(source, x[nodes]) for source, x in sources]) for unit, sources in self._groups)
         return _superposed(self._problem, self._orders, units)
 
@@ -113,23 +113,23 @@ def _geometries(problem: Problem) -> dict[IncidentWave, list[Source]]:
 def _superposed(
     problem: Problem, orders: FloatArray, units: Iterable[tuple[ComplexArray, list[tuple[Source, ComplexArray]]]]
 ) -> list[ComplexArray]:
-    """Return the cosine half, and the sine half if any source needs it, of what all make.
+    """Return the cosines, and the sines if any source needs them, of what all make.
 
     *units* are what a unit pulse of each geometry makes, and the sources of that geometry with the transforms of their pulses.
     """
-    totals: list[ComplexArray | float] = [0.0] * (2 if needs_sine_half(problem.system.sources) else 1)
+    totals: list[ComplexArray | float] = [0.0] * source_parities(problem.system.sources)
     for unit, sources in units:
-        for half, total in enumerate(totals):
-            weights = sum(projection(orders, source.angle, half) * spectrum for source, spectrum in sources)
-            totals[half] = total + unit * weights
+        for parity, total in enumerate(totals):
+            weights = sum(projection(orders, source.angle, parity) * spectrum for source, spectrum in sources)
+            totals[parity] = total + unit * weights
     return [np.asarray(total, dtype=np.complex128) for total in totals]
 
 
-def projection(orders: FloatArray, angle: float, half: int) -> FloatArray:
+def projection(orders: FloatArray, angle: float, parity: int) -> FloatArray:
     """Return cos(m angle) or sin(m angle) as a column, exact at multiples of 90 degrees: symmetric systems stay symmetric."""
     turns = np.mod(orders * angle, 360.0)[:, None]
     exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
-    value = np.cos(np.radians(turns)) if half == 0 else np.sin(np.radians(turns))
+    value = np.cos(np.radians(turns)) if parity == 0 else np.sin(np.radians(turns))
     for multiple, pair in exact.items():
-        value = np.where(turns == multiple, pair[half], value)
+        value = np.where(turns == multiple, pair[parity], value)
     return value

@@ -41,7 +41,7 @@ def source_geometry(problem: Problem, source: Source) -> IncidentWave:
 
 
 def point_force_shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
-    """Return cos(m theta_n)/(beta pi) (sine half alike), for an absorber that stands for two twice as much: (parities, N, M + 1)."""
+    """Return cos(m theta_n)/(beta pi), sin for the sines, for an absorber that stands for two twice as much: (parities, N, M + 1)."""
     beta_pi = np.pi * np.where(all_orders(max_order) == 0, 2.0, 1.0)
     shares: FloatArray = absorbers.shapes(max_order) * absorbers.multiplicity[:, None] / beta_pi
     return shares

@@ -14,7 +14,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.estimates import ORDERS_FACTOR
-from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
 from coaxshell.solver.scaling import Problem
@@ -34,7 +34,7 @@ def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, shared: 
     orders = np.unique(np.concatenate([np.arange(0, 33), np.geomspace(36, 2 * MAX_MODES, 48).round()]))
     sampled = SampledOrders.of(problem, grid, orders, shared)
     system = problem.system
-    links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
+    links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
     squares = sampled.excited
     if links.count:
         links, motion, force = _free_forces(sampled, links, grid)

@@ -14,7 +14,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.actuation import pressure_given
-from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
 from coaxshell.solver.interface.linked import AbsorberSolution, modal_pressure_of, solve_linked
@@ -61,7 +61,7 @@ def spectra_of(solution: ModalSolution) -> SolvedSpectra:
     problem = solution.problem
     grid = LaplaceGrid(solution.settings.time_step / refinement, (solution.time.size - 1) * refinement)
     structure = StructureSpectra(problem, grid, modes)
-    links = absorber_set(problem, problem.system.absorber_list, 2 if needs_sine_half(problem.system.sources) else 1)
+    links = absorber_set(problem, problem.system.absorber_list, source_parities(problem.system.sources))
     linked = _linked(structure, links, solution)
     if linked is None:
         return SolvedSpectra(problem, grid, modes, structure.linear.normal, structure.linear.tangential, refinement=refinement)

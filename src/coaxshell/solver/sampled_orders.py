@@ -58,7 +58,7 @@ class SampledOrders:
         The orders, and how many each stands for.
     nodes : ndarray, shape (nodes,)
     excited : ndarray, shape (shells, orders, nodes)
-        |W|^2 under the sources, both halves together.
+        |W|^2 under the sources, both parities together.
     strain : ndarray, shape (shells, orders, nodes)
         |m V/W - 1|^2: the strain's share of |W|^2.
     modal : ModalSystem
@@ -99,7 +99,7 @@ class SampledOrders:
         Parameters
         ----------
         squares : ndarray, shape (shells, orders, nodes)
-            |W|^2, both halves together.
+            |W|^2, both parities together.
 
         Returns
         -------

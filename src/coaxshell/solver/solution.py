@@ -74,7 +74,7 @@ class ModalSolution:
     time : ndarray, shape (T,)
         Times from 0 in steps of the time step.
     normal : ndarray, shape (shells, parities, M + 1, T)
-        W: w = sum_m W[.,0,m] cos(m theta) + W[.,1,m] sin(m theta), positive inward. ``parities`` is 1 when the sine half vanishes.
+        W: w = sum_m W[.,0,m] cos(m theta) + W[.,1,m] sin(m theta), positive inward. ``parities`` is 1 when the sines vanish.
     tangential : ndarray, same shape
         V: v = sum_m V[.,0,m] sin(m theta) - V[.,1,m] cos(m theta), so that dv/dtheta = sum m (V0 cos + V1 sin).
     estimates : Estimates

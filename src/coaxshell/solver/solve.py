@@ -17,7 +17,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
-from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linked import AbsorberSolution, interface_of, solve_linked
@@ -170,7 +170,7 @@ class Prepared:
             passive = structure.open_loop if saturate else structure
             passive.compliance  # noqa: B018 - one pass for response and compliance together
             stopwatch.lap("modal system at all Laplace nodes")
-            links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
+            links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
             linked = solve_linked(structure, links, progress, saturate=saturate)
             normal, tangential = linked.normal, linked.tangential
             stopwatch.lap("absorbers and saturation")

@@ -86,10 +86,10 @@ def linear_spectra(
 
     def work(block: slice) -> None:
         modal = ModalSystem(problem, grid.nodes[block], orders, shared=shared)
-        for half, load in enumerate(loads(modal.surface, block)):
+        for parity, load in enumerate(loads(modal.surface, block)):
             normal = modal.solve(count - 1, load)
             for shell, (w, v) in enumerate(zip(normal, modal.tangential(normal), strict=True)):
-                spectra.normal[shell, half, :, block], spectra.tangential[shell, half, :, block] = w, v
+                spectra.normal[shell, parity, :, block], spectra.tangential[shell, parity, :, block] = w, v
         if spectra.compliance is not None and spectra.ratio is not None:
             for j in range(count):
                 for i, w in enumerate(modal.solve(j, 1.0)):

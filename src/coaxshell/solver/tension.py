@@ -93,11 +93,11 @@ def spectra_of_motion(grid: LaplaceGrid, histories: FloatArray) -> ComplexArray:
     Parameters
     ----------
     grid : LaplaceGrid
-    histories : ndarray, shape (shells, halves, M + 1, T)
+    histories : ndarray, shape (shells, parities, M + 1, T)
 
     Returns
     -------
-    ndarray, shape (shells, halves, at most 61, nodes)
+    ndarray, shape (shells, parities, at most 61, nodes)
     """
     known = histories[:, :, : _MOST_ORDERS + 1]
     apart = max(1, min((known.shape[-1] - 1) // 2, round(_RESOLUTION / grid.time_step)))

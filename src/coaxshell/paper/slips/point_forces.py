@@ -34,7 +34,7 @@ def outside_sum(ingredients: Ingredients, which: int) -> Ingredients:
     def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
         own = absorbers.shapes(max_order)
         orders, angle = all_orders(max_order), float(absorbers.every_angle[which])
-        there = np.stack([projection(orders, angle, half)[:, 0] for half in range(absorbers.parities)])
+        there = np.stack([projection(orders, angle, parity)[:, 0] for parity in range(absorbers.parities)])
         beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
         found: FloatArray = np.broadcast_to(there[:, None, :], own.shape) * absorbers.multiplicity[:, None] / beta_pi
         return found

@@ -134,7 +134,7 @@ _WORK_BYTES = 200 * 1024 * 1024
 """Roughly what all threads together may use for the histories at their radii."""
 
 Field = Callable[[RadialFunctions], tuple[list[ComplexArray], list[ComplexArray]]]
-"""From the radial functions at a radius to the transforms of Pi and of dPi/dr, for every half of the Fourier series."""
+"""From the radial functions at a radius to the transforms of Pi and of dPi/dr, for every parity."""
 
 
 class FluidEnergy(NamedTuple):
@@ -200,7 +200,7 @@ def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: F
         per_wall = (disc_field(here, outer),) if amplitudes is None else annulus_field(here, inner, outer, amplitudes)
         parities = range(slopes[0].shape[0])
         return tuple(  # type: ignore[return-value]
-            [sum(getattr(one, part) * slope[half] for one, slope in zip(per_wall, slopes, strict=True)) for half in parities]
+            [sum(getattr(one, part) * slope[parity] for one, slope in zip(per_wall, slopes, strict=True)) for parity in parities]
             for part in ("pressure", "slope")
         )
 
@@ -214,11 +214,11 @@ def _circle_energy(motion: Motion, fluid: FluidRegion, blocks: list[_Block], sam
     for block in blocks:
         here = RadialFunctions(block.s, r, orders)
         impulse, slope = block.field(here)
-        for half in range(parities):
-            sampler.add(sums[0, half], slope[half], block.nodes)
-            sampler.add(sums[1, half], impulse[half], block.nodes)
-            impulse[half] *= block.s / fluid.slowness
-            sampler.add(sums[2, half], impulse[half], block.nodes)
+        for parity in range(parities):
+            sampler.add(sums[0, parity], slope[parity], block.nodes)
+            sampler.add(sums[1, parity], impulse[parity], block.nodes)
+            impulse[parity] *= block.s / fluid.slowness
+            sampler.add(sums[2, parity], impulse[parity], block.nodes)
     weights = motion.circle / (2.0 * fluid.density)
     energies = [
         np.einsum("m,hmt,hmt->t", weight, history, history)

@@ -28,7 +28,7 @@ from coaxshell.solver.recompute import SolvedSpectra
 
 
 class SurfacePressures(NamedTuple):
-    """Transforms of the modal pressures on the outermost surface; incident and scattered may lack a sine half that is zero.
+    """Transforms of the modal pressures on the outermost surface; incident and scattered may lack sines that are zero.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class SurfaceWork:
 
     def __init__(self, grid: LaplaceGrid, weight: FloatArray, velocity: ComplexArray) -> None:
         self._grid, self._weight = grid, weight
-        self._velocity = [self._damped(half) for half in velocity]
+        self._velocity = [self._damped(parity) for parity in velocity]
 
     def _damped(self, spectrum: ComplexArray) -> FloatArray:
         """Return e^{-sigma t} times the histories over the whole period, at half the time step."""
@@ -81,8 +81,8 @@ class SurfaceWork:
     def __call__(self, pressure: ComplexArray) -> FloatArray:
         """Return the work done since before the shock at the grid's times, shape (T,), of pressures (parities, M + 1, nodes)."""
         power = np.zeros(2 * self._grid.samples)
-        for half, velocity in zip(pressure, self._velocity, strict=False):  # a missing half is zero
-            power += np.einsum("m,mt,mt->t", self._weight, self._damped(half), velocity)
+        for parity, velocity in zip(pressure, self._velocity, strict=False):  # a missing parity is zero
+            power += np.einsum("m,mt,mt->t", self._weight, self._damped(parity), velocity)
         return self._integral(power)
 
     def _integral(self, damped: FloatArray) -> FloatArray:

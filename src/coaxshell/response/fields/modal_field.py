@@ -74,12 +74,12 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
             outer = radiated(region.index)
     if "diffracted" in parts and region.exterior:
         rigid = -incident_on_surface(problem, grid, radial(1.0, 1.0))[1]
-        inner = rigid if inner is None else _sum_of_halves(inner, rigid)
+        inner = rigid if inner is None else _sum_of_parities(inner, rigid)
     return WallSlopes(inner, outer)
 
 
-def _sum_of_halves(one: ComplexArray, other: ComplexArray) -> ComplexArray:
-    """Return the sum of two modal arrays of which either may lack the sine half."""
+def _sum_of_parities(one: ComplexArray, other: ComplexArray) -> ComplexArray:
+    """Return the sum of two modal arrays of which either may lack the sines."""
     large, small = (one, other) if one.shape[0] >= other.shape[0] else (other, one)
     result = large.copy()
     result[: small.shape[0]] += small

@@ -81,8 +81,8 @@ class _Accelerations:
         if n:
             for i, j in self._pairs:
                 recent = self._backward[i, j, :, steps - 1 - n : steps - 1]
-                for half in range(total.shape[1]):
-                    total[i, half] += np.einsum("mk,mk->m", recent, self._all[j, half, :, :n])
+                for parity in range(total.shape[1]):
+                    total[i, parity] += np.einsum("mk,mk->m", recent, self._all[j, parity, :, :n])
         return total
 
     def push(self, acceleration: FloatArray) -> None:

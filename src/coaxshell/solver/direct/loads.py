@@ -13,7 +13,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import signal
 from coaxshell.solver.direct.weights import scattering_weights
-from coaxshell.solver.excitation import incident_wave, needs_sine_half, projection, source_spectrum
+from coaxshell.solver.excitation import incident_wave, projection, source_parities, source_spectrum
 from coaxshell.solver.scaling import Problem
 
 _TIMES = 128
@@ -23,7 +23,7 @@ _TIMES = 128
 def surface_loads(problem: Problem, grid: LaplaceGrid, max_order: int) -> FloatArray:
     """Return the modal loads on the outermost shell, incident plus rigidly scattered, shape (parities, M + 1, T)."""
     orders = all_orders(max_order)
-    parities = 2 if needs_sine_half(problem.system.sources) else 1
+    parities = source_parities(problem.system.sources)
     loads = np.zeros((parities, orders.size, grid.time.size))
     scattering = scattering_weights(grid, orders)
     for source in problem.system.sources:
@@ -33,8 +33,8 @@ def surface_loads(problem: Problem, grid: LaplaceGrid, max_order: int) -> FloatA
             pressure, velocity = arc_integrals(problem, source, grid.time, orders)
             scattered = signal.fftconvolve(velocity, scattering, axes=1)[:, : grid.time.size]
             load = pressure + scattered
-        for half in range(parities):
-            loads[half] += projection(orders, source.angle, half) * load
+        for parity in range(parities):
+            loads[parity] += projection(orders, source.angle, parity) * load
     return loads
 
 

@@ -15,7 +15,7 @@ from coaxshell.solver.cost import require_room
 from coaxshell.solver.direct.engine import march_directly
 from coaxshell.solver.direct.result import DirectResult
 from coaxshell.solver.estimates import ORDERS_FACTOR
-from coaxshell.solver.excitation import needs_sine_half
+from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.finite import numerical_failures
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.mode_choice import resolve_modes
@@ -50,7 +50,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         require_room(problem, replace(settings, modes=order))
     require_stable(problem, order, settings.duration)
     stopwatch.lap("stability of the feedback")
-    links = absorber_set(problem, system.absorber_list, 2 if needs_sine_half(system.sources) else 1)
+    links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
     saturate = system.control is not None and system.control.saturation
     with numerical_failures(grid):
         result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)

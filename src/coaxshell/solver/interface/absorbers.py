@@ -4,7 +4,7 @@ Absorber n links shell i to shell i + 1 at theta_n. On side j (0 the inner, 1 th
 
     f = c dD/dt + k_l D + k_nl D^3,  D = q - w_j(theta_n);      m d2q/dt2 = -f_0 - f_1         (Eqs. 6, 7)
 
-and a line force f at radius R is the modal pressure f cos(m theta_n)/(beta pi R), beta = 2 for m = 0, else 1 (sine half alike).
+and a line force f at radius R is the modal pressure f cos(m theta_n)/(beta pi R), beta = 2 for m = 0, else 1 (sin of the sines).
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class AbsorberSet:
     every_angle : ndarray
         Degrees, of all absorbers of the description.
     parities : int
-        1 if only the cosine half of the Fourier series is excited, else 2.
+        1 if only the cosines of the Fourier series are excited, else 2.
     """
 
     angle: FloatArray
@@ -91,15 +91,15 @@ class AbsorberSet:
         return not np.any(self.cubic)
 
     def shapes(self, max_order: int) -> FloatArray:
-        """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (parities, N, M + 1)."""
+        """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
         orders = all_orders(max_order)
-        rows = [projection(orders, float(angle), half)[:, 0] for half in range(self.parities) for angle in self.angle]
+        rows = [projection(orders, float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
         return np.array(rows).reshape(self.parities, self.count, orders.size)
 
 
-def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], source_halves: int) -> AbsorberSet:
-    """Return the dimensionless absorbers; with symmetric sources and layout, one of each mirrored pair."""
-    symmetric = source_halves == 1 and _mirror_symmetric(absorbers)
+def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:
+    """Return the dimensionless absorbers; where the sources excite one parity and the layout is symmetric, one of each mirrored pair."""
+    symmetric = excited == 1 and _mirror_symmetric(absorbers)
     carried: list[Absorber] = []
     multiplicity: list[float] = []
     found: dict[tuple[object, ...], int] = {}

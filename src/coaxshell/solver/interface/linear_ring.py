@@ -57,7 +57,7 @@ def solve_ring(structure: StructureSpectra, absorbers: AbsorberSet) -> LinearAbs
         force += around * pull[:, None, :]
         displacement += around * mass * (amplitude[0] + amplitude[1])
     full = np.zeros((len(structure.problem.shells), absorbers.parities, structure.max_order + 1, nodes.size), np.complex128)
-    full[pair] = _halves(pressure, absorbers.parities)
+    full[pair] = _parities(pressure, absorbers.parities)
     return LinearAbsorberSpectra(force.reshape(2 * absorbers.count, -1), displacement, full)
 
 
@@ -78,7 +78,7 @@ def _signed(parities: ComplexArray) -> ComplexArray:
     return np.concatenate([negative[:, :0:-1], cosine[:, :1], positive[:, 1:]], axis=1)
 
 
-def _halves(signed: ComplexArray, count: int) -> ComplexArray:
+def _parities(signed: ComplexArray, count: int) -> ComplexArray:
     """Return amplitudes of cos, and of sin if ``count`` is 2, from those of e^{i m theta}."""
     order = signed.shape[1] // 2
     positive, negative = signed[:, order:], signed[:, order::-1]

@@ -27,9 +27,9 @@ _FEWEST_POINTS = 180
 
 
 def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
-    """Return the matrices from modal amplitudes (halves * modes) to the points of a circle, and back.
+    """Return the matrices from modal amplitudes (parities * modes) to the points of a circle, and back.
 
-    One half has its points on the half circle: it is even.
+    Cosines alone have their points on half the circle: they are even.
     """
     orders = all_orders(modes - 1)
     points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * parities

@@ -14,14 +14,14 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.verification.independent.assembly import Assembly
 
 
-def shape(half: int, m: int, angle: float) -> float:
+def shape(parity: int, m: int, angle: float) -> float:
     """Return cos(m angle) or sin(m angle), angle in radians."""
-    return float(np.cos(m * angle) if half == 0 else np.sin(m * angle))
+    return float(np.cos(m * angle) if parity == 0 else np.sin(m * angle))
 
 
 @dataclass(frozen=True)
 class Places:
-    """Where things stand in the vector of unknowns: (half, order) and start of each block, start of the absorbers' masses, size."""
+    """Where things stand in the vector of unknowns: (parity, order) and start of each block, start of the absorbers' masses, size."""
 
     blocks: Sequence[tuple[int, int]]
     starts: Sequence[int]
@@ -66,8 +66,8 @@ class Links:
             for i in (x.inner_shell, x.inner_shell + 1):
                 p, b = np.zeros(places.size), np.zeros(places.size)
                 p[places.masses + k], b[places.masses + k] = 1.0, -1.0
-                for start, (half, m) in zip(places.starts, places.blocks, strict=True):
-                    value = shape(half, m, np.radians(x.angle))
+                for start, (parity, m) in zip(places.starts, places.blocks, strict=True):
+                    value = shape(parity, m, np.radians(x.angle))
                     p[start + places.shells + i] = -value
                     b[start + places.shells + i] = value / (np.pi * (2 if m == 0 else 1))  # the row is multiplied by R, the load f/R
                 self._rows.append((p, b))
@@ -78,8 +78,8 @@ class Links:
             wall, inward = assembly.walls[i], assembly.inward(i)
             for angle in np.pi * (np.arange(angles) + 0.5) / angles:
                 p, b = np.zeros(places.size), np.zeros(places.size)
-                for start, (half, m) in zip(places.starts, places.blocks, strict=True):
-                    if half:
+                for start, (parity, m) in zip(places.starts, places.blocks, strict=True):
+                    if parity:
                         raise NotImplementedError("saturation is written for symmetric systems in the independent solver")
                     p[[start + i, start + places.shells + i]] = wall.sensor(m) * assembly.length * np.cos(m * angle)
                     b[start + places.shells + i] = inward * (1 if m == 0 else 2) / angles * np.cos(m * angle)

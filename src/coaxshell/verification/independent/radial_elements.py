@@ -79,8 +79,8 @@ class RadialElements:
             far = None if distance is None else distance / self.assembly.length
             late = np.asarray(time) - source.delay / self.assembly.transit
             waves = incident(source.pulse, far, range(self.modes + 1), late, self.assembly.transit, self.assembly.pressure)
-            for row, (half, m) in enumerate(self.blocks):
-                turn = shape(half, m, np.radians(source.angle))
+            for row, (parity, m) in enumerate(self.blocks):
+                turn = shape(parity, m, np.radians(source.angle))
                 for k, wave in enumerate(waves):
                     g[k, row] += turn * wave[m]
         return g.reshape(-1, len(time)), np.concatenate([self._starts + 2 * n - 1, self._starts + self._exterior])
@@ -123,7 +123,7 @@ class RadialElements:
         return result
 
     def _shapes(self, degrees: float) -> FloatArray:
-        return np.array([shape(half, m, np.radians(degrees)) for half, m in self.blocks])
+        return np.array([shape(parity, m, np.radians(degrees)) for parity, m in self.blocks])
 
 
 class _Interface:
