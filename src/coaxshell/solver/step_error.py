@@ -33,10 +33,10 @@ from coaxshell.solver.sampled_orders import standing_for
 Array = npt.NDArray[Any]
 
 WIDE_ROLL_OFF = 0.4
-SHARES = {8: (0.1, 3e-3), 4: (0.2, 0.3), 2: (1.0, np.inf)}
-"""By how many times the step is longer, the printed share of what that changes, and the error up to which it tells: beyond, the longer
-step may be to blame, and a shorter one is marched. At second order, which most interfaces show, that is 6 or 3 times the error; those
-that show less than first order at eight times the step still have their error printed."""
+SHARES = {8: (0.1, 3e-3), 4: (0.2, 0.06), 2: (1.0, np.inf)}
+"""By how many times the step is longer, the printed share of what that changes, and the error up to which it tells: beyond, answers of the
+longer step may have nothing to do with those of the run's, whatever its error, and a shorter one is marched. At second order, which most
+interfaces show, that is 6 or 3 times the error; those that show less than first order still have their error printed."""
 ROUNDING = float(np.finfo(np.float64).eps)
 _MANY = 4
 """Kernels between points, times those between shells, up to which points march alone."""
@@ -178,8 +178,7 @@ def march_error(structure: StructureSpectra, interface: Interface, whole: FloatA
     """
     found = unknown = np.where(whole > 0, 1.0, 0.0)
     for every, (share, telling) in SHARES.items():
-        most = found if np.isinf(telling) else unknown
-        found = np.minimum(share * _difference(structure, interface, whole, every), most)
+        found = np.minimum(share * _difference(structure, interface, whole, every), unknown)
         if np.all(found < telling):
             break
     return found
