@@ -89,3 +89,14 @@ def test_an_unknown_keyword_is_a_type_error(answer):
 def test_a_front_of_another_kind_is_refused(answer):
     with pytest.raises(cx.InputError, match="front: 'soft' is unknown; allowed: sharp, matched"):
         answer.pressure(**PLACE, front="soft")
+
+
+@pytest.mark.parametrize("unit", ["ns", "us"])
+def test_durations_are_real_time(answer, unit):
+    transit = float(answer.time_seconds[-1] / answer.time[-1])
+    late = np.array([0.1, 0.3]) * transit
+    durations = np.round(late / {"ns": 1e-9, "us": 1e-6}[unit]).astype(f"timedelta64[{unit}]")
+    wanted = answer.pressure(x=0.0, y=1.5, time=durations / np.timedelta64(1, "s") / transit)
+    np.testing.assert_allclose(answer.pressure(x=0.0, y=1.5, time=durations), wanted, rtol=1e-12)
+    with pytest.raises(cx.InputError, match="time: nan lies outside the run"):
+        answer.pressure(x=0.0, y=1.5, time=np.timedelta64("NaT"))

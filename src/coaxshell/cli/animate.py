@@ -58,7 +58,7 @@ def animate(
         require_room(cost, frames, view)
     tell_time(cost, "the film", quiet)
     responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
-    with values.named_as_options(), progress(quiet) as report:
+    with values.named_as_options(path="output"), progress(quiet) as report:
         save_film(
             *responses,
             path=target,

@@ -10,7 +10,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.streams import echo
@@ -50,7 +50,7 @@ def figure(
     Its runs are computed, or read from saved ones with --from.
     """
     from coaxshell.paper import StudyRecipe, figure_recipe
-    from coaxshell.plotting import FIGURE_SUFFIXES, save_figure
+    from coaxshell.plotting import FIGURE_SUFFIXES
 
     recipe = figure_recipe(number)
     target = Outputs(force).file(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
@@ -68,7 +68,7 @@ def figure(
         responses = answers(context, sources, changes, request, quiet=quiet, options=("--preset", "--preset"))
         with progress(quiet) as report:
             drawn = recipe.draw(responses, report)
-        save_figure(drawn, target)
+        write_figure(drawn, target, "--output")
         tell_all_warnings(responses)
     echo(f"wrote {target}: {recipe.title}")
 
@@ -79,11 +79,10 @@ def _draw_study(
     """Solve, draw and save a figure of many runs, and return their warnings."""
     from coaxshell.cli.scenario import load_system
     from coaxshell.paper import Runs
-    from coaxshell.plotting import save_figure
     from coaxshell.studies.executors import worker_count
 
     systems = [load_system(name, changes or (), "--preset") for name in sources]
     with named_as_options(), progress(quiet) as report:
         drawn = recipe.draw(systems, Runs(request.settings(systems[0]), workers=worker_count(None)), report)
-    save_figure(drawn.figure, target)
+    write_figure(drawn.figure, target, "--output")
     return drawn.warnings

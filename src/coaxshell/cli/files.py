@@ -5,9 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
 from coaxshell.numerics.files import free_file, free_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class Outputs:
@@ -48,3 +53,11 @@ class Outputs:
         other = self._claimed.setdefault(os.path.realpath(path), option)
         if other != option:
             raise InputError(option, f"{str(path)!r} is what {other} writes already", "give each its own name")
+
+
+def write_figure(figure: Figure, path: Path, option: str = "--figure") -> None:
+    """Save a figure; InputError names the option that told where to."""
+    from coaxshell.plotting.saving import save_figure
+
+    with named_as_options(path=option.removeprefix("--")):
+        save_figure(figure, path)

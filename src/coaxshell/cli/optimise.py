@@ -10,10 +10,11 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.interruption import Interrupted
 from coaxshell.cli.streams import echo
 from coaxshell.cli.studying import study_options, tell_code, tell_study_time
+from coaxshell.cli.values import named_as_options
 
 
 def optimise(
@@ -67,11 +68,12 @@ def optimise(
         runs = problem.evaluations * max(1, len(problem.uncertain.points))
         tell_study_time([problem.space.base], problem.resolution, runs, how, quiet=quiet)
         optimum = optimise_problem(problem, how)
-    optimum.save(target)
+    with named_as_options(folder="output", path="output"):
+        optimum.save(target)
     if figure is not None:
-        from coaxshell.plotting import figure_optimum, save_figure
+        from coaxshell.plotting import figure_optimum
 
-        save_figure(figure_optimum(optimum), figure)
+        write_figure(figure_optimum(optimum), figure)
     if as_json:
         print_document(optimum.to_dict())
     else:

@@ -9,7 +9,7 @@ import typer
 
 from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.streams import echo
 
@@ -47,7 +47,7 @@ def plot(
     figure.
     """
     from coaxshell.cli.comparison import labels
-    from coaxshell.plotting import FIGURE_SUFFIXES, QUANTITIES, figure_curves, save_figure
+    from coaxshell.plotting import FIGURE_SUFFIXES, QUANTITIES, figure_curves
     from coaxshell.response.arguments import one_of
 
     chosen = one_of("--quantity", quantity.replace("-", "_"), QUANTITIES)
@@ -58,6 +58,6 @@ def plot(
     names = labels(*(response.system for response in responses)) if compare else (responses[0].system.name or Path(source).stem,)
     with values.named_as_options(shells="shell", responses="compare"):
         drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)
-    save_figure(drawn, target)
+    write_figure(drawn, target, "--output")
     tell_all_warnings(responses)
     echo(f"wrote {target}")

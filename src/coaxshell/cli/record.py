@@ -10,7 +10,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -78,9 +78,8 @@ def record(
         _print(found, path, wanted)
     if figure is not None:
         from coaxshell.plotting.record import figure_record
-        from coaxshell.plotting.saving import save_figure
 
-        save_figure(figure_record(found, path.name), figure)
+        write_figure(figure_record(found, path.name), figure)
         typer.echo(f"wrote {figure}", err=as_json)
 
 

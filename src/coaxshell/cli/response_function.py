@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.streams import echo
 from coaxshell.cli.values import named_as_options, number
 from coaxshell.errors import InputError
@@ -64,9 +64,8 @@ def response_function(
         _write(target, orders, found)
     else:
         from coaxshell.plotting.response_functions import figure_response_functions
-        from coaxshell.plotting.saving import save_figure
 
-        save_figure(figure_response_functions(found, orders), target)
+        write_figure(figure_response_functions(found, orders), target, "--output")
     echo(f"wrote {target}: {region} response function, orders {', '.join(map(str, orders))}")
 
 

@@ -10,9 +10,10 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document, runs_document
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.streams import echo
+from coaxshell.cli.values import named_as_options
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -72,7 +73,8 @@ def run(
     names = labels(systems[0], systems[-1]) if compare is not None else (systems[0].name or scenario,)
     named = dict(zip(names, responses, strict=True))
     if output is not None:
-        responses[0].save(output)
+        with named_as_options(path="output"):
+            responses[0].save(output)
     _draw(named, figure, energy, quiet=quiet)
     if as_json:
         found = {name: response.summary() for name, response in named.items()}
@@ -91,13 +93,13 @@ def run(
 def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:
     """Draw the runs, and where the energy of the first goes."""
     if figure is not None:
-        from coaxshell.plotting import figure_comparison, save_figure
+        from coaxshell.plotting import figure_comparison
 
-        save_figure(figure_comparison(named), figure)
+        write_figure(figure_comparison(named), figure)
     if energy is not None:
         from coaxshell.cli.progress import progress
-        from coaxshell.plotting import figure_energy, save_figure
+        from coaxshell.plotting import figure_energy
 
         with progress(quiet) as report:
             balance = next(iter(named.values())).energy(progress=report)
-        save_figure(figure_energy(balance), energy)
+        write_figure(figure_energy(balance), energy, "--energy")

@@ -10,10 +10,11 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document, statistics_document
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.streams import echo
 from coaxshell.cli.studying import study_options, tell_code, tell_study_time
+from coaxshell.cli.values import named_as_options
 
 
 def sensitivity(
@@ -50,11 +51,12 @@ def sensitivity(
     with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as how:
         tell_study_time(plan.systems, plan.resolution, len(plan.systems), how, quiet=quiet)
         found = uncertainty_of(plan, how)
-    write_netcdf(found, target)
+    with named_as_options(path="output"):
+        write_netcdf(found, target)
     if figure is not None and told(found):
-        from coaxshell.plotting import figure_sensitivity, save_figure
+        from coaxshell.plotting import figure_sensitivity
 
-        save_figure(figure_sensitivity(found), figure)
+        write_figure(figure_sensitivity(found), figure)
     if store is None and told(found):
         shutil.rmtree(folder, ignore_errors=True)
     if as_json:

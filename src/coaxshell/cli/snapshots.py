@@ -9,7 +9,7 @@ import typer
 
 from coaxshell.cli import field_options, options, values
 from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.progress import progress
 from coaxshell.cli.solving import Request, with_resolution
 from coaxshell.cli.streams import echo
@@ -43,7 +43,7 @@ def snapshots(
 
     The hoop stress is drawn on the shells; with --compare, two systems side by side.
     """
-    from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots, save_figure
+    from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots
 
     target = Outputs(force).file(output, "--output", FIGURE_SUFFIXES)
     if not 1 <= columns <= 20:
@@ -66,6 +66,6 @@ def snapshots(
             columns=columns,
             progress=report,
         )
-    save_figure(figure, target)
+    write_figure(figure, target, "--output")
     tell_all_warnings(responses)
     echo(f"wrote {target}")

@@ -10,10 +10,11 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, cases_document, print_document
-from coaxshell.cli.files import Outputs
+from coaxshell.cli.files import Outputs, write_figure
 from coaxshell.cli.interruption import kept
 from coaxshell.cli.streams import echo
 from coaxshell.cli.studying import study_options, tell_code, tell_study_time
+from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -72,12 +73,14 @@ def sweep(
 def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | None) -> None:
     from coaxshell.numerics.netcdf import write_netcdf
 
-    write_netcdf(dataset, target)
+    with named_as_options(path="output"):
+        write_netcdf(dataset, target)
     if csv is not None:
         from coaxshell.studies.table import write_csv
 
-        write_csv(dataset, csv)
+        with named_as_options(path="csv"):
+            write_csv(dataset, csv)
     if figure is not None:
-        from coaxshell.plotting import figure_sweep, save_figure
+        from coaxshell.plotting import figure_sweep
 
-        save_figure(figure_sweep(dataset), figure)
+        write_figure(figure_sweep(dataset), figure)

@@ -23,6 +23,7 @@ _REMEDIES = {
     "ENOTDIR": "name a place inside a folder",
     "ENAMETOOLONG": "choose a shorter name",
 }
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO})
 _NOISE = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave in folders that were looked at."""
 
@@ -157,9 +158,26 @@ def told(path: str | Path, where: str = "path") -> Iterator[None]:
     """Tell failures of the system while *path* is written as one InputError."""
     try:
         yield
-    except OSError as error:
-        remedy = _REMEDIES.get(errno.errorcode.get(error.errno or 0, ""), "choose another place")
-        raise InputError(where, f"cannot write {str(path)!r}: {reason(error)}", remedy) from error
+    except InputError:
+        raise
+    except Exception as error:
+        failure = _of_the_system(error)
+        if failure is None:
+            raise
+        remedy = _REMEDIES.get(errno.errorcode.get(failure.errno or 0, ""), "choose another place")
+        raise InputError(where, f"cannot write {str(path)!r}: {reason(failure)}", remedy) from error
+
+
+def _of_the_system(error: BaseException) -> OSError | None:
+    """Return what the system said, where a library has made another error of a full disk (as zlib does for a PDF); None if nothing."""
+    if isinstance(error, OSError):
+        return error
+    before = error.__cause__ or error.__context__
+    while before is not None:
+        if isinstance(before, OSError) and before.errno in _FULL:
+            return before
+        before = before.__cause__ or before.__context__
+    return None
 
 
 def reason(error: OSError) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
@@ -82,6 +84,8 @@ def write_mp4(path: Path, size: tuple[int, int], count: int, fps: float, frames:
         if process.returncode:
             log.seek(0)
             text = log.read().decode(errors="replace").strip()
+            if os.strerror(errno.ENOSPC) in text:  # followed by its own consequences
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
             raise OSError(f"ffmpeg: {text.splitlines()[-1] if text else f'exit code {process.returncode}'}")
 
 

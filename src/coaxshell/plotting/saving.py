@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,8 +35,11 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     """
     target = Path(path)
     suffix = known_suffix(target, FIGURE_SUFFIXES)
-    with replacing(target) as partial, style():
-        figure.savefig(partial, metadata=_NO_DATE[suffix])
+    made = io.BytesIO()  # a disk that is full while a PDF is written leaves it open behind an error of zlib's
+    with style():
+        figure.savefig(made, format=suffix[1:], metadata=_NO_DATE[suffix])
+    with replacing(target) as partial:
+        partial.write_bytes(made.getbuffer())
     return target
 
 

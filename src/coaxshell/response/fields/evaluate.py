@@ -137,7 +137,7 @@ def pressure(
     radius, angle : array_like, optional
         Axes of a polar grid, in units of a and degrees, instead.
     time : float or array_like
-        Instants in transits within the run; any, not only steps of the run.
+        Instants in transits within the run, or as durations (timedelta64); any, not only steps of the run.
     part : str
         "total", "incident" (the sources alone, exact in space and time), "diffracted" (scattered by the outermost surface as if rigid),
         "radiated" (by the motion of the shells) or "scattered" (the latter two). Inside the outermost shell all is radiated.

@@ -66,10 +66,16 @@ def instants(time: object, last: float) -> FloatArray:
 
 
 def when_of(time: npt.ArrayLike | None, spectra: SolvedSpectra) -> FloatArray:
-    """Return the instants asked for, shape () or (T,); InputError if there are none or some lie outside the run."""
+    """Return the instants asked for, in transits, shape () or (T,); InputError if there are none or some lie outside the run.
+
+    NumPy's durations (timedelta64) are real time.
+    """
     last = float(spectra.grid.time[-1])
     if time is None:
         raise InputError("time", "is missing", f"give one time or a list of them, from 0 to {last:g} transits")
+    given = np.asarray(time)
+    if given.dtype.kind == "m":  # durations carry their unit
+        time = np.where(np.isnat(given), np.nan, given / np.timedelta64(1, "s")) / spectra.problem.scales.time
     return instants(time, last)
 
 
