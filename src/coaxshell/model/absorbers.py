@@ -54,9 +54,9 @@ class AbsorberRing(_Link):
     """Describe *count* equal absorbers at equal spacing: angle_k = offset + 360 k / count."""
 
     count: Count
-    """How many; 0 is an empty ring."""
+    """How many absorbers; 0 is an empty ring."""
     offset: Angle = 0.0
-    """Angle of the first one (degrees)."""
+    """Angle of the first absorber (degrees)."""
 
     @model_validator(mode="after")
     def _bounded(self) -> Self:
@@ -70,7 +70,7 @@ class AbsorberRing(_Link):
 
     @property
     def angles(self) -> tuple[float, ...]:
-        """Their angles (degrees), kept below 360."""
+        """Angles of the absorbers, offset + 360 k / count (degrees), kept below 360."""
         raw = (self.offset + 360.0 * k / self.count for k in range(self.count))
         return tuple(angle - 360.0 if angle >= 360.0 else angle for angle in raw)
 

@@ -20,7 +20,7 @@ from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 
 THICKNESSES = {5e-3: "sky", 1e-2: "blue", 2e-2: "green", 4e-2: "orange"}
-"""Of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
+"""Thicknesses of the filled shell, m, with their colours; the paper shows several and names none, these are ours."""
 
 _ANGLES = {0.0: "blue", 45.0: "sky", 90.0: "green", 135.0: "amber", 180.0: "orange"}
 _SIDES = {"head": "solid", "tail": (0, (4.0, 1.3))}

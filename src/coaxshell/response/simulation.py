@@ -96,7 +96,7 @@ class PreparedSystem:
         return Response(self._prepared.solve(absorbers, progress))
 
     def retuned(self, system: SystemLike) -> PreparedSystem:
-        """Return the same, at the same settings, for a changed system; everything that the change leaves alone is shared.
+        """Return a prepared system for a changed description, at the same settings; everything that the change leaves alone is shared.
 
         A change of absorbers shares all of it; of sources, the structure's answers to forces; of gains or layers, the fluids, the
         incident waves and, where the nodes of the contour stay, half of the stability check. The answers are those of a fresh

@@ -37,9 +37,11 @@ class ShellSummary:
     displacement_head, displacement_tail : Peak
         Normal displacement itself, m; *growing* while the section's translation still grows at the end of the window.
     sensor_voltage : Peak or None
-        Anywhere on the shell, as a mean over the segment, V, with what the lower half of the orders gives; None without a sensor.
+        Voltage of the sensor anywhere on the shell, as a mean over the segment, V, with what the lower half of the orders gives; None
+        without a sensor.
     actuator_voltage : Peak or None
-        What the control law asks for (before any saturation), likewise; None without control.
+        Voltage that the control law asks for (before any saturation), anywhere on the shell, as a mean over the segment, V; None without
+        control.
     segment : float or None
         Length of the wall over which voltages are means (:mod:`coaxshell.solver.electrodes`), m; 0 for points, None without a sensor.
     actuator_limit : float or None

@@ -210,7 +210,7 @@ def largest_sensor_voltage(solution: ModalSolution, shell: int, window: slice, l
 
 
 def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
-    """Return the largest voltage that the control law asks for, likewise."""
+    """Return the largest voltage asked for anywhere within a window, V, as a mean over a segment of a length (m; 0 a point)."""
     voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant
     share = mean_shares(solution, shell, length)[:, None]
     return _largest(solution, lambda block: voltage[:, :, block] * share, window)

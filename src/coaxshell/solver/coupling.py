@@ -194,12 +194,12 @@ class ModalSystem:
 
     @property
     def diagonal(self) -> list[ComplexArray]:
-        """Of the tridiagonal system, one entry a shell, each of shape (orders, nodes)."""
+        """Diagonal of the tridiagonal system of the shells: stiffness and own added mass, one entry a shell, each (orders, nodes)."""
         return self._diagonal
 
     @property
     def coupling(self) -> list[ComplexArray | float]:
-        """lower_i times upper_{i-1}: what neighbouring shells, i = 1 onwards, do to the determinant."""
+        """Products lower_i upper_{i-1} of the off-diagonals, i = 1 onwards: what neighbouring shells do to the determinant."""
         return [self._lower[i] * self._upper[i - 1] for i in range(1, len(self.shells))]
 
     def determinant(self) -> ComplexArray:

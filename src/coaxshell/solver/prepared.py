@@ -32,7 +32,7 @@ class UnitResponse:
     sensor_rates : ndarray or None
         Step weights of the rates of the controlled shells' sensors.
     open_loop : UnitResponse or None
-        Those of the structure without feedback.
+        What the structure without feedback shares.
     """
 
     compliance: ComplexArray | None = None
@@ -56,7 +56,7 @@ class StructureSpectra:
     shared : SharedParts, optional
         Where parts of other structures are found.
     forced : UnitResponse, optional
-        Those of a structure that differs at most in its sources.
+        What a structure that differs at most in its sources has made already.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class StructureSpectra:
 
     @property
     def compliance(self) -> ComplexArray:
-        """C_ij, shape (shells, shells, M + 1, nodes)."""
+        """Compliance C_ij, W of shell i per modal pressure on shell j, shape (shells, shells, M + 1, nodes)."""
         return self._responses()[0]
 
     @property

@@ -132,7 +132,10 @@ class SampledOrders:
         return np.asarray(np.einsum("ijmk,m->ijk", self.compliance, share) / radius[:, None])
 
     def motion(self, above: int = -1) -> FloatArray:
-        """Return the mean square of the motion of a point of every shell under the sources, shape (shells, nodes); alike."""
+        """Return the mean square of the motion of a point of every shell under the sources, shape (shells, nodes).
+
+        Of the orders above one alone if it is given.
+        """
         share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 1.0, 0.5)
         return np.asarray(np.einsum("imk,m->ik", self.excited, share))
 

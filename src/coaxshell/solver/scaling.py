@@ -115,7 +115,7 @@ class Problem:
 
     @property
     def open_loop(self) -> Problem:
-        """The same without feedback."""
+        """The problem without feedback."""
         return replace(self, shells=tuple(replace(shell, gains=None) for shell in self.shells))
 
     def stiffness(self, index: int, m: np.ndarray) -> WallStiffness:

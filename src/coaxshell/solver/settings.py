@@ -114,7 +114,7 @@ class Settings:
             raise within(where, error) from None
 
     def up_to(self, duration: float) -> Settings:
-        """Return the same, but no longer than *duration* transits."""
+        """Return the settings of a run that is no longer than *duration* transits."""
         return replace(self, duration=min(self.duration, duration))
 
     def arguments(self) -> dict[str, Any]:

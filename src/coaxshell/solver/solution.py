@@ -38,11 +38,11 @@ class Estimates:
 
     @property
     def combined(self) -> FloatArray:
-        """Their sum, shape (shells, 2)."""
+        """Sum of the errors by orders, time step and march, shape (shells, 2)."""
         return self.orders + self.time_step + self.march
 
     def by_cause(self) -> FloatArray:
-        """Return all of them, shape (shells, 2, causes)."""
+        """Return the errors by orders, time step and march, shape (shells, 2, causes)."""
         return np.stack([self.orders, self.time_step, self.march], axis=-1)
 
     @property

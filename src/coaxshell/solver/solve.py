@@ -112,7 +112,7 @@ class Prepared:
         return same and max_order == self.structure.max_order
 
     def retuned(self, system: System | Problem) -> Prepared:
-        """Return the same for a changed system, sharing what is unchanged; the first call makes what later ones share.
+        """Return what is prepared for a changed system, sharing what is unchanged; the first call makes what later ones share.
 
         Raises
         ------

@@ -110,7 +110,7 @@ class CoarserStructure(StructureSpectra):
 
     @cached_property
     def kernels_with_voltage(self) -> KernelTable:
-        """Those without feedback, with the voltages asked for as further outputs."""
+        """Step weights of the velocities without feedback, with the voltages asked for as further outputs."""
         fine, steps = self._fine, self.grid.time.size
         velocity = _summed(fine.open_loop.kernels.kernels, self._every, steps)
         rates = _summed(fine.sensor_rates, self._every, steps)
@@ -122,7 +122,7 @@ class CoarserStructure(StructureSpectra):
 
     @cached_property
     def open_loop(self) -> StructureSpectra:
-        """The same without feedback."""
+        """The coarser structure without feedback, all modes of it."""
         return CoarserStructure(self._fine.open_loop, self._every, True, self._absorbers)
 
     def _seen(self, histories: FloatArray) -> FloatArray:
@@ -137,12 +137,12 @@ class CoarserStructure(StructureSpectra):
 
     @cached_property
     def linear_velocity(self) -> FloatArray:
-        """dW/dt without absorbers there."""
+        """dW/dt without absorbers at the kept instants."""
         return self._seen(self._fine.linear_velocity)
 
     @cached_property
     def voltage_without_actuators(self) -> FloatArray:
-        """Voltages asked for while neither absorbers nor actuators act, there."""
+        """Voltages asked for while neither absorbers nor actuators act, at the kept instants."""
         return self._fine.voltage_without_actuators[..., self._kept]
 
 

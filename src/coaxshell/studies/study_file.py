@@ -42,7 +42,7 @@ class Study(Described):
     changes: dict[str, Any] = Field(default_factory=dict, alias="set")
     """Changes of the scenario by dotted path."""
     resolution: dict[str, Any] = Field(default_factory=dict)
-    """Of every run: entries as the options of ``coaxshell run``."""
+    """Resolution of every run: entries as the options of ``coaxshell run``."""
 
     def system(self, folder: Path) -> System:
         """Return the base system; InputError if there is none, or a change is not allowed. Files are relative to *folder*."""

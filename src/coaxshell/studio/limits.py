@@ -29,7 +29,7 @@ SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABS
 SOURCES, SAMPLES = STUDIO_SOURCES.value, STUDIO_SAMPLES.value
 PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
 ENTRIES = ("duration", "time_step", "modes", "refinement")
-"""Of a resolution, that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
+"""Entries of a resolution that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
 MODES, STEPS, REFINEMENT = 300, 20_000, 8
 MODE_STEPS = 3_000_000

@@ -32,7 +32,7 @@ class Asked(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Its study file."""
+        """Text of the study as a TOML file."""
         from coaxshell.studies.study_text import study_text
 
         name, varied = self.table

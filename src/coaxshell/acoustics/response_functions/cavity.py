@@ -1,16 +1,12 @@
-"""Response functions of closed fluid regions: resonances, their weights, and the sum over them.
+"""Response functions of closed fluid regions: the sum over their resonances, with what lies above it by contour.
 
-Undamped resonances of cavities with rigid walls: zeros of J_m'(x r1) and of J_m'(x ra) Y_m'(x rb) - Y_m'(x ra) J_m'(x rb).
-
+The undamped resonances of cavities with rigid walls are the zeros of J_m'(x r1) and of J_m'(x ra) Y_m'(x rb) - Y_m'(x ra) J_m'(x rb).
 With the phase phi of H_m' both are the points where phi(x rb) - phi(x ra) = k pi (phi(x ra) = pi/2 without a hole). The
 lowest has k = 0 for m >= 1; for m = 0 it would be the uniform state at x = 0, which is treated apart.
 
-Weights of the resonances: f(t) = sum_k g u_k(wall) u_k(r)/(N_k x_k) sin(x_k t), g = rb at the outer, -ra at the inner wall.
-
+Their weights: f(t) = sum_k g u_k(wall) u_k(r)/(N_k x_k) sin(x_k t), g = rb at the outer, -ra at the inner wall,
 N = int u^2 r dr = [(r^2 - m^2/x^2) u^2]/2 between the walls, where u' = 0. By the Wronskian the mode shape is 2/(pi x r |H_m'|) at
 either wall, with the sign (-1)^k between them; elsewhere it is J_m(xr) sin(phi) - Y_m(xr) cos(phi), phi the phase of H_m' at a wall.
-
-Response functions of closed fluid regions: the sum over resonances, with what lies above it by contour.
 """
 
 from __future__ import annotations

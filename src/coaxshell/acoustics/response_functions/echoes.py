@@ -1,12 +1,10 @@
-"""Echoes of a front in a cavity: as travelling waves, and when each arrives.
-
-Travelling waves in a cavity: every echo of a front as one term of a geometric series (the Debye series).
+"""Echoes of a front in a cavity, each one term of a geometric series (the Debye series): as travelling waves, and when each arrives.
 
 With s = ix on the right of the imaginary axis, H1_m(xr) is a wave that runs inward and H2_m(xr) one that runs outward. A
 response is (P_1 + P_2)/(1 - Q) = sum_n (P_1 + P_2) Q^n: P_1 the direct wave, P_2 the one after its first reflection, Q one
 round trip. Each is kept without its delay: P_j = p_j e^{-s offset_j}, Q = q e^{-s period}.
 
-When fronts arrive, and what they are: jumps, or logarithms after an odd number of passages through the centre.
+Fronts arrive as jumps, or as logarithms after an odd number of passages through the centre.
 """
 
 from __future__ import annotations
@@ -46,7 +44,7 @@ class CavityResponse(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Echoes:
-    """p_1, p_2 and q at complex wavenumbers."""
+    """Direct wave p_1, the one after its first reflection p_2, and a round trip q, at complex wavenumbers, without their delays."""
 
     direct: ComplexArray
     returned: ComplexArray

@@ -1,21 +1,17 @@
-"""Response functions of the fluid outside a wall: at the wall by tabulated exponentials, away from it by contour.
+"""Response functions of the fluid outside a wall: at the wall by sums of exponentials where they are tabulated, else by contour.
 
-The exterior response at the wall as a sum of exponentials: poles of a rational approximation (AAA) of K_m/K_m' + 1.
+At the wall: poles of a rational approximation (AAA) of K_m/K_m' + 1. On the imaginary axis K_m(s)/K_m'(s) + 1 is smooth, bounded and
+real in the sense F(conj s) = conj F(s); AAA on logarithmically spaced points meets it to 1e-12 with 15 to 35 poles, all in the left half
+plane. Then K_m/(s K_m') <-> -1 + sum_j w_j (e^{p_j t} - 1). The fits of the orders 0..300 are stored beside this file, because a fit
+takes a second and more.
 
-On the imaginary axis K_m(s)/K_m'(s) + 1 is smooth, bounded and real in the sense F(conj s) = conj F(s); AAA on logarithmically
-spaced points meets it to 1e-12 with 15 to 35 poles, all in the left half plane. Then K_m/(s K_m') <-> -1 + sum_j w_j (e^{p_j t} - 1).
-The fits of the orders 0..300 are stored beside this file, because a fit takes a second and more.
-
-The exterior response away from the wall: a contour up the imaginary axis, turned to the left above i kappa.
-
-With F(s) = K_m(rs)/(s K_m'(s)) and theta = t - (r - 1) the time since the front,
+Away from the wall: a contour up the imaginary axis, turned to the left above i kappa. With F(s) = K_m(rs)/(s K_m'(s)) and
+theta = t - (r - 1) the time since the front,
 
     f = (1/pi) Re int_0^kappa F(i w) e^{i w t} dw - (1/pi) Im int_0^inf F(i kappa - u) e^{(i kappa - u) t} du.
 
 On the imaginary axis F is smooth except for a logarithm at s = 0. A sum of exponentials, good at the wall, is not here: the wave
 of order m is delayed by up to 1 more than its front, which takes hundreds of poles.
-
-The exterior response at the wall: sums of exponentials where they are tabulated, the contour integral beyond.
 """
 
 from __future__ import annotations

@@ -1,16 +1,11 @@
-"""The public response functions: arguments checked, then of each kind of region in time, and at the walls.
-
-Checks of the arguments of the public functions.
-
-The response functions xi of the three kinds of fluid region, in dimensionless time t = c_e tau/a.
+"""The public response functions xi of the three kinds of fluid region, in dimensionless time t = c_e tau/a, and those at the walls.
 
 All are the pressure at a radius after a unit impulse of a wall's acceleration: with w positive inward, the pressure over
 rho_e c_e^2 is (rho/rho_e) times the convolution of w'' with the function (with its negative for the exterior one, as the paper defines it).
 
-The response functions at the walls, as the direct engine convolves them with the walls' accelerations.
-
-Each is the inverse Laplace transform of the entry of :mod:`coaxshell.acoustics.operators` of the same name, signs included:
-its convolution with the inward acceleration w'' of the wall, times rho/rho_e, is the dimensionless pressure at the wall.
+Those at the walls are what the direct engine convolves with the walls' accelerations. Each is the inverse Laplace transform of the entry
+of :mod:`coaxshell.acoustics.operators` of the same name, signs included: its convolution with the inward acceleration w'' of the wall,
+times rho/rho_e, is the dimensionless pressure at the wall.
 """
 
 from __future__ import annotations
@@ -241,7 +236,7 @@ def annulus_wall(max_order: int, times: FloatArray, inner: float, outer: float, 
 
 
 class WallFunctions(NamedTuple):
-    """Those of two shells: the fluid outside, in the gap and inside; None for a vacuum."""
+    """Wall functions of the three fluids of two shells, each of shape (M + 1, times): outside, in the gap, inside; None for a vacuum."""
 
     exterior: FloatArray
     gap: AnnulusWalls | None

@@ -1,14 +1,13 @@
-"""Hankel functions of real and complex argument at any order, with no loss for large ones.
+"""Hankel functions H_m of real and complex argument at any order from 0, with no loss for large ones.
 
-Debye's expansions of H_m and H_m' for |z| well above m, real or complex, at any order from 0 (DLMF 10.19(iii), 10.41.10).
-
-With w = sqrt(z^2 - m^2), c = m^2/w^2 and the phase xi = w - m arccos(m/z) - pi/4,
+Debye's expansions of H_m and H_m' for |z| well above m, real or complex (DLMF 10.19(iii), 10.41.10): with w = sqrt(z^2 - m^2),
+c = m^2/w^2 and the phase xi = w - m arccos(m/z) - pi/4,
 
     H1_m  = sqrt(2/(pi w)) e^{i xi} sum_k (-i/w)^k U_k(-c),      H1_m' = i sqrt(2 w/pi)/z e^{i xi} sum_k (-i/w)^k V_k(-c),
 
 U_k and V_k the polynomials of DLMF 10.41(ii) without their lowest power; H2 is the same with -i for i.
 
-Modulus and phase of H_m'(x): J_m' = N cos(phi), Y_m' = N sin(phi), the phase unwrapped (DLMF 10.18).
+Modulus and phase of H_m'(x) for real x: J_m' = N cos(phi), Y_m' = N sin(phi), the phase unwrapped (DLMF 10.18).
 """
 
 from __future__ import annotations

@@ -1,27 +1,21 @@
-"""Sums of undamped oscillations over the resonances, and what lies above the last one summed.
+"""Sums of undamped oscillations over the resonances at many times, and what lies above the last one summed.
 
-Matrix products cut into slices that BLAS computes in one thread.
+How far the resonances have to be summed before the contour can be turned, for each time: an echo of order m that went n times round
+arrives late or early by about a/x^2 at wavenumber x, a ~ n m^2 (1/ra - 1/rb). Above kappa the legs decay if a/kappa^2 is less than the
+distance delta from the front; and even at a front they never grow beyond e^{a/2 kappa}. So kappa = sqrt(a/delta), or a/G close to a
+front: a few times need many resonances, most need few.
 
-There are thousands of small products here. Shared out over threads, each waits for the slowest; on a busy machine that cost
-five times the whole computation.
-
-Sums of undamped oscillations at many times.
-
-How far the resonances have to be summed before the contour can be turned, for each time.
-
-An echo of order m that went n times round arrives late or early by about a/x^2 at wavenumber x, a ~ n m^2 (1/ra - 1/rb). Above
-kappa the legs decay if a/kappa^2 is less than the distance delta from the front; and even at a front they never grow beyond
-e^{a/2 kappa}. So kappa = sqrt(a/delta), or a/G close to a front: a few times need many resonances, most need few.
-
-What lies above the last resonance that is summed, exactly: integrals along two horizontal legs of the Laplace contour.
-
-Let D be the echoes whose fronts have passed at time t and R = F - D all later ones. Above s = i kappa the vertical contour
-is turned to the right for R and to the left for D; together with the residues below kappa,
+What lies above the last resonance that is summed, exactly: integrals along two horizontal legs of the Laplace contour. Let D be the
+echoes whose fronts have passed at time t and R = F - D all later ones. Above s = i kappa the vertical contour is turned to the right
+for R and to the left for D; together with the residues below kappa,
 
     f(t) = sum_{x_k < kappa} residues + (1/pi) Im int_{-inf}^{inf} R(i kappa + u) e^{(i kappa + u) t} du.
 
-Both halves decay like e^{-|u| delta}, delta the time since the last or until the next front. At a front the decay is algebraic,
+Both legs decay like e^{-|u| delta}, delta the time since the last or until the next front. At a front the decay is algebraic,
 and the nodes, geometrically spaced up to 1e16, still serve.
+
+The thousands of small matrix products are cut into slices that BLAS computes in one thread: shared out over threads, each waits for
+the slowest, which on a busy machine cost five times the whole computation.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from coaxshell.solver.interface.absorbers import properties
 
 
 class AbsorberEnergy(NamedTuple):
-    """Of all absorbers together, at the kept instants.
+    """Energies of all absorbers together, at the kept instants.
 
     ``defect`` is what the forces on the moving ends make of the dissipation, less ``dissipated``: an error of the time step.
     """

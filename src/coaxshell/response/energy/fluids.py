@@ -1,25 +1,20 @@
-"""Energy of the enclosed fluids, and how much of the spectrum and how many radii it needs.
-
-Every K-th instant of many modal histories from their transforms, without computing the instants between.
-
-A sum over the nodes at the times n K dt does not see multiples of the frequency 2 pi/(K dt): nodes that differ by one are added
-up first, and a short FFT does the rest. K need not divide the number of samples; its greatest common divisor with it does.
-
-How much of the spectrum and how many radii the energy of a fluid region needs.
-
-Waves of phase h across the region (frequency times slowness times width) make an energy density with 2 h/(2 pi) periods, which
-h/2 Gauss points integrate. Nearly all the energy lies far below the highest frequency, so the whole band would be a waste. The field is
-kept up to the frequency above which a part NEGLIGIBLE of the walls' kinetic energy lies, with a roll-off around it: what is left
-out meets what is kept only within the roll-off, so the energy loses a part of about that size. Full resolution is given to
-frequencies up to the one above which a part FAINT lies, half as much to the rest.
-
-Energy of the enclosed fluids, integrated from the field itself: pressure and particle velocity of every order at many radii.
+"""Energy of the enclosed fluids, integrated from the field itself: pressure and particle velocity of every order at many radii.
 
 In a fluid of density ratio rho and slowness alpha, with Pi = p/s the time integral of the pressure (rho v = -grad Pi),
 
     E = (1/(2 rho)) sum_m beta pi integral of [alpha^2 p_m^2 + (dPi_m/dr)^2 + (m Pi_m/r)^2] r dr,
 
 exact in theta by Parseval, by Gauss-Legendre points in r. Nothing here knows the work done at the walls.
+
+How much of the spectrum and how many radii it needs: waves of phase h across the region (frequency times slowness times width) make an
+energy density with 2 h/(2 pi) periods, which h/2 Gauss points integrate. Nearly all the energy lies far below the highest frequency, so
+the whole band would be a waste. The field is kept up to the frequency above which a part NEGLIGIBLE of the walls' kinetic energy lies,
+with a roll-off around it: what is left out meets what is kept only within the roll-off, so the energy loses a part of about that size.
+Full resolution is given to frequencies up to the one above which a part FAINT lies, half as much to the rest.
+
+Every K-th instant of the many modal histories comes from their transforms without the instants between: a sum over the nodes at the
+times n K dt does not see multiples of the frequency 2 pi/(K dt), so nodes that differ by one are added up first, and a short FFT does
+the rest. K need not divide the number of samples; its greatest common divisor with it does.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ class Motion:
 
     @cached_property
     def orders(self) -> FloatArray:
-        """0, 1, ..., M."""
+        """Orders 0, 1, ..., M."""
         return all_orders(self.spectra.max_order)
 
     @cached_property

@@ -14,7 +14,7 @@ from coaxshell.structure.thin import WallStiffness, bending_strain, open_circuit
 
 
 class ShellEnergy(NamedTuple):
-    """Energies of one shell, each of shape (kept instants,)."""
+    """Kinetic, strain and piezoelectric energy of one shell, each of shape (kept instants,), in rho_e c_e^2 a^2 per length."""
 
     kinetic: FloatArray
     strain: FloatArray

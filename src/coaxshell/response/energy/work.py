@@ -1,12 +1,8 @@
-"""Pressures on the outermost surface and the work they do.
+"""The pressure on the outermost surface, taken apart into incident, rigidly scattered and radiated, and the work that each of them does.
 
-The pressure on the outermost surface, taken apart: incident, rigidly scattered and radiated, at all orders and Laplace nodes.
-
-Work of a pressure on a moving surface, integrated over time exactly rather than by a quadrature of samples.
-
-Inverted from the grid's nodes, a modal history is e^{sigma t} times a trigonometric polynomial. The power of a pressure on a
-velocity is then e^{2 sigma t} times another one of twice the bandwidth, which is sampled without loss at half the time step and
-integrated term by term,
+Work is integrated over time exactly rather than by a quadrature of samples. Inverted from the grid's nodes, a modal history is
+e^{sigma t} times a trigonometric polynomial. The power of a pressure on a velocity is then e^{2 sigma t} times another one of twice the
+bandwidth, which is sampled without loss at half the time step and integrated term by term,
 
     P(t) = e^{2 sigma t} sum_j q_j e^{i omega_j t},    integral of P = e^{2 sigma t} sum_j q_j e^{i omega_j t}/(2 sigma + i omega_j).
 

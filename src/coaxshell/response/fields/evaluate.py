@@ -1,10 +1,6 @@
-"""Pressure, particle velocity and intensity on grids: the scattered part by the cheaper of two ways, the incident one as it is.
+"""Pressure, particle velocity and intensity on Cartesian and polar grids.
 
-A field at the points of a grid: the scattered part by the cheaper of two ways, the incident one as it is.
-
-Pressure on Cartesian and polar grids.
-
-Particle velocity and acoustic intensity on the same grids as the pressure.
+The scattered part is found by the cheaper of two ways, the incident one as it is.
 """
 
 from __future__ import annotations

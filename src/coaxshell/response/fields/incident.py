@@ -1,8 +1,6 @@
-"""The incident waves of a system at points of its own frame, their fronts as steep as the scattered ones.
+"""The incident waves of a system at points of its own frame, summed over its sources, their fronts as steep as the scattered ones.
 
-Pulses under the window of a band, so that incident fronts rise as the scattered ones do.
-
-The incident waves of a system at points of its own frame, summed over its sources.
+Pulses under the window of a band rise as the scattered waves do.
 """
 
 from __future__ import annotations

@@ -1,10 +1,7 @@
-"""From a field's transforms to histories at any instants.
+"""From a field's transforms, in the band of Laplace nodes that it needs and under a window over it, to histories at any instants.
 
-The band of Laplace nodes that a field needs, and the window over it.
-
-The inverse transform of a field to any instants: by direct sums for a few, by shifted FFTs for many on a common raster.
-
-x(t) = (1/P) Re sum_k c_k w_k X_k e^{s_k t}, c_0 = 1, else 2, is exact for every t in the run, not only at multiples of a time step.
+x(t) = (1/P) Re sum_k c_k w_k X_k e^{s_k t}, c_0 = 1, else 2, is exact for every t in the run, not only at multiples of a time step: by
+direct sums for a few instants, by shifted FFTs for many on a common raster.
 """
 
 from __future__ import annotations

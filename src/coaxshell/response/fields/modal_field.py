@@ -1,11 +1,8 @@
 """Modal histories of the field at radii of one region, from the motion of its walls.
 
-What drives the field of a region: the transforms of the modal slope dp/dr at its walls.
-
-A wall that moves inward by w makes (rho/rho_e) s^2 W; the rigidly scattered wave makes minus the slope of the incident one at the
-outermost shell. Everything else about a region is its transfer.
-
-From the walls of a region to radii inside it, order by order, for a block of radii at once.
+What drives a region is the transform of the modal slope dp/dr at its walls: a wall that moves inward by w makes (rho/rho_e) s^2 W, the
+rigidly scattered wave minus the slope of the incident one at the outermost shell. Everything else about a region is its transfer from
+the walls to radii inside it, order by order, for a block of radii at once.
 
 Every field here is p = J_m A_m + E_m B_m with J_m = I_m(kr)/I_m(k r_b), r_b the outer wall, and E_m = K_m(kr)/K_m(k r_a), r_a the
 inner wall; A and B hold the walls' slopes and do not depend on r. E_m follows from the recurrence of K_m, stable upward,
@@ -13,8 +10,6 @@ inner wall; A and B hold the walls' slopes and do not depend on r. E_m follows f
     E_{m+1} = (2m/(kr)) E_m/S_m(k r_a) + E_{m-1}/(S_m(k r_a) S_{m-1}(k r_a)),
 
 without a division or a Bessel function but those of order 0 and 1; J_m from ratios, as I_m is stable downward only.
-
-Modal histories of the field at radii of one region: the radial transfer of its walls, then the inverse transform to given instants.
 """
 
 from __future__ import annotations

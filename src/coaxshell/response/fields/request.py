@@ -1,11 +1,4 @@
-"""What a user asks of a field, checked: where, when, which part, how smooth, within how much memory; and the region it lies in.
-
-What a user asks of a field, checked: where, when, which part, how smooth, within how much memory.
-
-The fluid regions between the mid-surfaces, and which one a radius lies in.
-
-The domain of a mean: which region, up to which radius, at which instants, by which quadrature.
-"""
+"""What a user asks of a field, checked: where, when, which part, how smooth, within how much memory; and the region that it lies in."""
 
 from __future__ import annotations
 
@@ -106,7 +99,7 @@ def require_room(name: str, place: Sequence[object], when: FloatArray, quantitie
 
 
 class FieldOptions(TypedDict, total=False):
-    """Keyword arguments of a field beside its place; see :func:`coaxshell.response.fields.evaluate.pressure`."""
+    """Keyword arguments of any field beside x and y; see :func:`coaxshell.response.fields.evaluate.pressure`."""
 
     radius: npt.ArrayLike | None
     angle: npt.ArrayLike | None
@@ -118,13 +111,13 @@ class FieldOptions(TypedDict, total=False):
 
 
 class PartOptions(FieldOptions, total=False):
-    """The same, with the part of the field."""
+    """Keyword arguments of a particle velocity: those of any field, and which part of it."""
 
     part: str
 
 
 class PressureOptions(PartOptions, total=False):
-    """The same, with how sharp the incident front is."""
+    """Keyword arguments of a pressure: those of a velocity, and how sharp the incident front is."""
 
     front: str
 

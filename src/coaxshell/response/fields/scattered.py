@@ -1,14 +1,11 @@
-"""The scattered field at points: exactly, order by order, or by interpolation from a polar raster.
+"""The scattered field at points, by either of two ways.
 
-The scattered field at points, order by order at their own radii: exact but for the number of orders and the band of frequencies.
-
-Interpolation from a polar raster of one region to points: local, never across a wall.
+Order by order at the points' own radii: exact but for the number of orders and the band of frequencies. Or, for many points, once per
+radius of a polar raster of each region, once around it by FFT, then to the points by interpolation that is local and never crosses a wall.
 
 Along theta the field is a finite Fourier series and a Kaiser-Bessel kernel, undone beforehand in the coefficients, is exact to
 1e-6; along r eight-point polynomials are used on a raster that continues analytically a little beyond the walls (and through the
 centre, where (-r, theta) is (r, theta + 180 degrees)), so that every stencil is centred.
-
-The scattered field at many points: once per radius of a polar raster, once around it by FFT, then to the points by interpolation.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ class AbsorberSet:
 
     @property
     def count(self) -> int:
-        """N, absorbers carried."""
+        """Number N of the absorbers carried."""
         return int(self.angle.size)
 
     @cached_property
@@ -220,7 +220,7 @@ class InterfacePoints:
 
 
 class PointsAlone:
-    """The same points where kernels and motion are those of the points themselves: each a shell of its own that has one mode.
+    """Interface points whose kernels and motion are those of the points themselves: each is a shell of its own that has one mode.
 
     What needs the motion of the points alone is marched so, with :meth:`InterfacePoints.between` as kernels.
     """

@@ -44,7 +44,7 @@ class LinkConstants:
 
     @property
     def count(self) -> int:
-        """N."""
+        """Number N of the absorbers."""
         return int(self.inertia.size)
 
     @classmethod

@@ -43,15 +43,15 @@ class MarchResult:
     force : ndarray, shape (2N, T)
         Line forces at the interface points, positive inward.
     mass_displacement : ndarray, shape (N, T)
-        q.
+        Displacements q of the masses, positive inward.
     modal_pressure : ndarray, shape (shells, parities, M + 1, T)
-        Of links and saturating actuators together, on every shell.
+        Pressure of links and saturating actuators together on every shell.
     actuation : ndarray, same shape, or None
-        Of the actuators' share in it, where they saturate.
+        The actuators' share in that pressure, where they saturate.
     saturated : bool
         Whether any actuator reached its limit.
     iterations : int
-        Of all steps, each step's own.
+        Iterations of all steps together.
     """
 
     force: FloatArray
@@ -70,7 +70,7 @@ class BlockOutput(NamedTuple):
     force : ndarray, shape (steps, 2, N)
     mass_displacement : ndarray, shape (steps, N)
     volts : ndarray, shape (steps, amplitudes)
-        Given, in units of the limits.
+        Voltages given, in units of the limits.
     modal_pressure : ndarray, shape (shells, parities, M + 1, steps)
     """
 

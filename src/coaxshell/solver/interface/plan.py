@@ -85,7 +85,7 @@ class MotionWithout:
 
     @property
     def steps(self) -> int:
-        """T, or of a part its own steps."""
+        """Number of steps, T of the whole run."""
         return int(self.displacement.shape[0])
 
 
@@ -107,7 +107,7 @@ class MarchPlan:
     earlier : list of ndarray
         For every step of a block its part of ``rows``, from the inputs of the steps before it.
     force_of_input, mass_velocity_of_input : ndarray
-        Likewise the links' forces and the masses' velocities.
+        The links' forces and the masses' velocities at the steps of a block, per the same inputs.
     integral : ndarray, shape (length, length)
         The trapezoidal rule from velocities to displacements.
     law : InterfaceLaw
@@ -134,17 +134,17 @@ class MarchPlan:
 
     @property
     def count(self) -> int:
-        """N, absorbers."""
+        """Number N of the absorbers."""
         return self.links.count
 
     @property
     def unknowns(self) -> int:
-        """Of one step."""
+        """Number of unknowns of a step: 2 N stretches and the amplitudes of the voltages."""
         return 2 * self.count + self.actuators.amplitudes
 
     @property
     def time_step(self) -> float:
-        """Transits."""
+        """Step of the march, transits."""
         return 2.0 * self.links.half_step
 
 

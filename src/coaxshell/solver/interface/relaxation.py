@@ -16,7 +16,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.interface.laws import CubicSprings
 
 UNKNOWNS = 224
-"""Of the steps taken at once: above, the product with R costs more than the work a step that it saves."""
+"""Most unknowns of the steps taken at once: above, the product with R costs more than the work a step that it saves."""
 _MOST_ITERATIONS = 10
 _SLOWEST = 0.05
 """The change of an iteration over that of the one before it, at most."""

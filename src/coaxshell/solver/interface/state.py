@@ -15,7 +15,7 @@ from coaxshell.solver.interface.plan import MarchPlan
 
 @dataclass(frozen=True)
 class LinkState:
-    """Forces, forced displacement and velocity at the points (2, N), and displacement and velocity of the masses (N,)."""
+    """State of the links: forces, forced displacement and velocity at the points (2, N), displacement and velocity of the masses (N,)."""
 
     force: FloatArray
     displacement: FloatArray
@@ -36,7 +36,7 @@ class MarchState:
     Attributes
     ----------
     step : int
-        Of the next block's first step; 0 is at rest.
+        Number of the next block's first step; 0 is at rest.
     links : LinkState
     history : History
         Modal pressures so far.

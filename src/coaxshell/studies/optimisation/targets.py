@@ -52,7 +52,7 @@ class Target:
 
     @property
     def name(self) -> str:
-        """As the user wrote it."""
+        """Name of the metric, as the user wrote it, within its statistic."""
         return f"{self.statistic}({self.metric.name})" if self.statistic else self.metric.name
 
     def value(self, samples: FloatArray) -> float:

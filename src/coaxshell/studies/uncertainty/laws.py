@@ -86,7 +86,7 @@ ENTRIES: dict[str, tuple[type[Distribution], tuple[str, str]]] = {
     "normal": (Normal, ("mean", "deviation")),
     "lognormal": (LogNormal, ("median", "factor")),
 }
-"""Of each kind: its class, and the names of its two numbers in a table."""
+"""Kinds of distributions: class, and the names of the two numbers in a table."""
 LAWS = frozenset({"from", "to", "relative", *ENTRIES})
 """Entries by which a table is known as a distribution."""
 

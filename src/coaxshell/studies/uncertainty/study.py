@@ -28,7 +28,7 @@ class SensitivityStudy(Study):
     seed: int = 0
     """Makes points and intervals repeatable."""
     confidence: float = 0.95
-    """Of the intervals."""
+    """Confidence of the intervals, a share of 1."""
 
     def plan(self, folder: Path, *, allow_code: bool = False, tell: Tell | None = None) -> Plan:
         """Return it with all parts checked; InputError names what is wrong. Arguments as of :meth:`Study.twice`."""
