@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.studies.executors import completed
 
@@ -30,6 +31,27 @@ def test_a_program_without_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
     ):
         list(completed([1, 2], abs, workers=2))
     assert list(completed([-1], abs, workers=1)) == [(-1, 1)]
+
+
+def mine(response: cx.Response) -> float:
+    return float(abs(response.stress("inner")).max())
+
+
+def test_functions_of_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    main = sys.modules["__main__"]
+    monkeypatch.delattr(main, "__file__", raising=False)
+    monkeypatch.setattr(main, "__spec__", None, raising=False)
+    monkeypatch.setattr(main, "mine", mine, raising=False)
+    monkeypatch.setattr(mine, "__module__", "__main__")
+
+    def study(workers: int | None) -> float:
+        over = {"source.peak_pressure": [1e3, 2e3, 3e3]}
+        found = cx.sweep("bare", over, metrics={"m": mine}, workers=workers, duration=1.0, time_step=0.02, modes=6)
+        return float(found["m"].sum())
+
+    with pytest.raises(InputError, match=r"metrics.m: this function stands in a notebook .* write it to a \.py file .* or use workers=1"):
+        study(2)
+    assert study(1) == study(None) > 0.0
 
 
 @pytest.mark.slow

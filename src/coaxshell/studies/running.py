@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -87,7 +87,7 @@ def run_cases(
     resolution : Settings
     executor : concurrent.futures.Executor, optional
     workers : int, optional
-        Processes of a pool of our own, one a core by default; 1 works in this process.
+        Processes of a pool of our own; 1 works in this process. By default one a core, or 1 where a function stands in a notebook.
     store : Store, optional
         Where finished cases are kept, and looked for first.
     keep : bool
@@ -102,9 +102,11 @@ def run_cases(
     KeyboardInterrupt
         As it came; what was finished is in the store.
     """
+    if executor is None and workers is None and any(metric.function is not None and metric.function.only_here for metric in metrics):
+        workers = 1
     workers_at_once = capacity(executor, workers)
     if executor is not None or workers_at_once > 1:
-        _sendable(metrics)
+        _sendable(metrics, executor)
     keys = {n: store.key(one, resolution) for n, one in enumerate(systems) if store is not None and isinstance(one, System)}
     outcomes = {n: failure(metrics, str(one)) for n, one in enumerate(systems) if isinstance(one, InputError)}
     _look_up(keys, store, outcomes)
@@ -154,8 +156,14 @@ def _told(result: list[Outcome] | Exception, batch: Batch) -> list[Outcome]:
     return result
 
 
-def _sendable(metrics: Sequence[Metric]) -> None:
+def _sendable(metrics: Sequence[Metric], executor: Executor | None) -> None:
+    """Raise InputError for a function that other processes do not get; Dask sends those of a notebook by value."""
     for metric in metrics:
-        if metric.function is not None and not metric.function.pickles:
-            remedy = "define it at the top of a module, or use workers=1"
-            raise InputError(f"metrics.{metric.name}", "this function cannot be sent to another process", remedy)
+        if metric.function is None:
+            continue
+        where, remedy = f"metrics.{metric.name}", "define it at the top of a module, or use workers=1"
+        if not metric.function.pickles:
+            raise InputError(where, "this function cannot be sent to another process", remedy)
+        if (executor is None or isinstance(executor, ProcessPoolExecutor)) and metric.function.only_here:
+            problem = "this function stands in a notebook or an interactive session, which other processes cannot read"
+            raise InputError(where, problem, "write it to a .py file and import it, or use workers=1")
