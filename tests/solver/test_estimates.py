@@ -7,6 +7,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.response.synthesis import mean_square
+from coaxshell.solver import estimates, prepared
 
 STEP = {"duration": 3.0, "time_step": 2e-3}
 MANY = 600
@@ -211,3 +212,20 @@ def test_the_march_of_a_lightly_damped_shell_is_not_told_from_steps_that_have_lo
     printed = coarse.estimates.by_cause()[..., 1:].sum(axis=-1)
     within(printed, true_error(coarse, fine, 4), 0.8, 20)
     assert true_error(coarse, fine, 4).max() > 0.5
+
+
+@pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
+def test_weights_of_membranes_that_the_step_does_not_resolve_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are the same at all longer steps, and stiff dampers feel them: against a march with those of all other orders."""
+    ring = cx.absorber_ring(3, mass=10, damping=1e8, linear_stiffness=1e7, cubic_stiffness=1e17)
+    system = GAP.replace(fluids=["vacuum", "water-1400", "water-1400"], absorbers=ring)
+    settings = {"duration": 2.0, "time_step": 2e-2, "modes": 20}
+    told = []
+    membrane_error = estimates.membrane_error
+    monkeypatch.setattr(estimates, "membrane_error", lambda *given: told.append(membrane_error(*given)) or told[-1])
+    found = cx.simulate(system, **settings)
+    assert told[0].max() > 1e-4
+    monkeypatch.setattr(prepared, "unresolved_orders", lambda problem, grid, order: np.zeros(order + 1, bool))
+    without = cx.simulate(system, **settings)
+    within(told[0], true_error(without, found), 0.8, 1.3)
+    assert np.all(found.estimates.march > 1.9 * told[0])

@@ -19,7 +19,7 @@ from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import SampledOrders
 from coaxshell.solver.solution import Estimates
-from coaxshell.solver.step_error import band_limit, march_error
+from coaxshell.solver.step_error import band_limit, march_error, membrane_error
 
 ORDERS_FACTOR = 2.0
 STEP_FACTOR = 2.0
@@ -50,5 +50,6 @@ def estimated_errors(
     orders = ORDERS_FACTOR * left_out(structure, above, spectra, whole * grid.time_step, interface)
     march = np.zeros_like(orders)
     if interface is not None and interface.marched:
-        march = march_error(structure, interface, whole.sum(axis=-1))
+        total = whole.sum(axis=-1)
+        march = march_error(structure, interface, total) + STEP_FACTOR * membrane_error(structure, interface, total)
     return Estimates(orders, STEP_FACTOR * band_limit(grid, *spectra, whole), march)

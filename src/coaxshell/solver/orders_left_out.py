@@ -113,20 +113,32 @@ def forces_changed(structure: StructureSpectra, links: AbsorberSet, above: Sampl
 
     The phases of dw, known by their mean squares alone, are drawn at random, the same in every run.
     """
-    nodes, count = structure.grid.nodes[NODES], links.count
     soft = above.mobility()
     sides = np.stack([links.inner_shell, links.inner_shell + 1])
     moved = np.einsum("abnk,bnk->ank", soft[sides[:, None], sides[None, :]], force)
     phase = np.exp(2j * np.pi * np.random.default_rng(0).random(moved.shape))
     moved = moved + phase * np.sqrt(above.motion())[sides]
+    return forces_against(structure, links, moved, soft)
+
+
+def forces_against(
+    structure: StructureSpectra, links: AbsorberSet, moved: ComplexArray, soft: ComplexArray | None = None, which: slice = NODES
+) -> ComplexArray:
+    """Return what walls that would move by ``moved`` (2, N, nodes) more change in the forces, of the same shape, at some nodes.
+
+    -Y (1 + (G + dG) Y)^-1 moved, ``soft`` the mobility dG of the orders left out, shape (shells, shells, nodes).
+    """
+    nodes, count = structure.grid.nodes[which], links.count
     if 2 * count > _COUPLED_POINTS:
-        return each_alone(links, nodes, soft + _mean_mobility(structure), moved)
+        mobility = _mean_mobility(structure, which)
+        return each_alone(links, nodes, mobility if soft is None else soft + mobility, moved)
     points = InterfacePoints(structure.problem, links, structure.max_order)
-    receptance = np.ascontiguousarray(np.moveaxis(points.between(structure.compliance[..., NODES]), -1, 0))
-    index = np.arange(count)
+    receptance = np.ascontiguousarray(np.moveaxis(points.between(structure.compliance[..., which]), -1, 0))
+    sides, index = np.stack([links.inner_shell, links.inner_shell + 1]), np.arange(count)
     for a in (0, 1):
         for b in (0, 1):
-            receptance[:, a * count + index, b * count + index] += soft[sides[a], sides[b]].T
+            if soft is not None:
+                receptance[:, a * count + index, b * count + index] += soft[sides[a], sides[b]].T
     own, other, _ = admittance(links, nodes)
     law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
     for a in (0, 1):
@@ -136,11 +148,11 @@ def forces_changed(structure: StructureSpectra, links: AbsorberSet, above: Sampl
     return np.asarray(-(law @ wall)[:, :, 0].T.reshape(2, count, -1))
 
 
-def _mean_mobility(structure: StructureSpectra) -> ComplexArray:
+def _mean_mobility(structure: StructureSpectra, which: slice) -> ComplexArray:
     """Return the mobility of a point by the orders kept, shape (shells, shells, nodes)."""
     problem, share = structure.problem, np.where(np.arange(structure.max_order + 1) == 0, 0.5, 1.0)
     radius = np.pi * np.array([shell.radius for shell in problem.shells])
-    return np.asarray(np.einsum("ijmk,m->ijk", structure.compliance[..., NODES], share) / radius[:, None])
+    return np.asarray(np.einsum("ijmk,m->ijk", structure.compliance[..., which], share) / radius[:, None])
 
 
 def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArray) -> FloatArray:

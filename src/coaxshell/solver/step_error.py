@@ -25,9 +25,10 @@ from coaxshell.numerics.convolution import KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.interface.march import march
-from coaxshell.solver.kernels import voltage_weights
-from coaxshell.solver.orders_left_out import Interface, relative
+from coaxshell.solver.kernels import voltage_law, voltage_weights
+from coaxshell.solver.orders_left_out import Interface, forces_against, mean_tangent, relative
 from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.quadrature import unresolved_orders
 from coaxshell.solver.sampled_orders import standing_for
 
 Array = npt.NDArray[Any]
@@ -182,6 +183,39 @@ def march_error(structure: StructureSpectra, interface: Interface, whole: FloatA
         if np.all(found < telling):
             break
     return found
+
+
+def membrane_error(structure: StructureSpectra, interface: Interface, whole: FloatArray) -> FloatArray:
+    """Return the relative error by the march's weights for membranes that the step does not resolve, shape (shells, 2).
+
+    The trapezoidal rule moves their frequencies (:mod:`coaxshell.solver.quadrature`), at all longer steps alike. What those weights make
+    of the pressures of the run moves the ends of the links and the sensors, and so changes the forces. ``whole`` as in
+    :func:`march_error`; actuators are taken as free, which changes most.
+    """
+    grid, problem, links = structure.grid, structure.problem, interface.links
+    late = np.flatnonzero(unresolved_orders(problem, grid, structure.max_order))
+    if not late.size:
+        return np.zeros_like(whole)
+    points, compliance = InterfacePoints(problem, links, structure.max_order), structure.compliance
+    histories = points.project(interface.force, late)
+    if interface.actuation is not None:
+        histories = histories + interface.actuation[:, :, late]
+    pressure = grid.transform(histories)
+    marched = grid.transform(structure.kernels.kernels[:, :, late]) / (grid.time_step * grid.nodes)
+    moved = np.zeros((len(problem.shells), pressure.shape[1], structure.max_order + 1, grid.nodes.size), np.complex128)
+    moved[:, :, late] = np.einsum("ijmk,jhmk->ihmk", marched - compliance[:, :, late] * grid.hat, pressure)
+    orders = _some_orders(structure.max_order)
+    given = np.zeros((*moved.shape[:2], orders.size, grid.nodes.size), np.complex128)
+    if links.count:
+        ends = points.evaluate(moved).reshape(2, links.count, -1)
+        forces = forces_against(structure, mean_tangent(links, interface.stretch), ends, which=slice(None))
+        given += points.project(forces.reshape(2 * links.count, -1), orders)
+    for i in [] if interface.saturating is None else interface.saturating.controlled:
+        assert interface.saturating is not None
+        law = voltage_law(interface.saturating.problem, i, grid.nodes, structure.tangential_ratio[i])
+        given[i] += problem.actuator_pressure(i) * (law * moved[i])[:, orders]
+    normal = np.einsum("ijmk,jhmk->ihmk", compliance[:, :, orders], given)
+    return relative(_of_orders(normal, structure.tangential_ratio[:, None, orders] * normal, orders, grid.invert), whole)
 
 
 def _difference(structure: StructureSpectra, interface: Interface, whole: FloatArray, every: int) -> FloatArray:
