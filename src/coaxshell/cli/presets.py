@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from coaxshell.cli.documents import JsonOption, print_document
 from coaxshell.cli.streams import echo
 
@@ -13,18 +11,8 @@ def presets(as_json: JsonOption = False) -> None:
     from coaxshell.model import presets as library
 
     if as_json:
-        print_document({"presets": [{"name": name, "description": description(library.text(name))} for name in library.names()]})
+        print_document({"presets": [{"name": name, "description": library.description(name)} for name in library.names()]})
         return
     width = max(len(name) for name in library.names())
     for name in library.names():
-        echo(f"{name:<{width}}  {description(library.text(name))}")
-
-
-def description(text: str) -> str:
-    """Return the first sentence of the comment that a TOML text starts with."""
-    lines = []
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        lines.append(line.lstrip("# ").strip())
-    return re.split(r"(?<!Fig\.)(?<!Figs\.)(?<=\.) ", " ".join(lines), maxsplit=1)[0]
+        echo(f"{name:<{width}}  {library.description(name)}")

@@ -59,7 +59,7 @@ __all__ = [
 
 Material = Elastic | Piezoelectric
 
-KINDS: dict[str, type[Elastic] | type[Piezoelectric]] = {"elastic": Elastic, "piezoelectric": Piezoelectric}
+KINDS: dict[str, type[Material]] = {"elastic": Elastic, "piezoelectric": Piezoelectric}
 
 
 def as_material(value: Any) -> Material:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -249,12 +249,8 @@ class Sampled(Described):
 
 
 Pulse = Exponential | Step | Gaussian | Sampled
-PULSES: dict[str, type[Exponential] | type[Step] | type[Gaussian] | type[Sampled]] = {
-    "exponential": Exponential,
-    "step": Step,
-    "gaussian": Gaussian,
-    "sampled": Sampled,
-}
+PULSES: dict[str, type[Pulse]] = {kind.model_fields["type"].default: kind for kind in get_args(Pulse)}
+"""Kinds of pulse by the ``type`` that names them in a file."""
 
 OF_A_FILE = 'a measured one is {type = "sampled", file = "gauge.csv"}'
 

@@ -7,7 +7,7 @@ the source, and its clock starts when the front gets there (plus *delay*). Dista
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator
 
@@ -153,15 +153,8 @@ class UnderwaterExplosion(_Directed):
 
 
 Source = SphericalShock | PlaneShock | LineShock | SphericalWave | PlaneWave | LineWave | UnderwaterExplosion
-SOURCES: dict[str, type[Source]] = {
-    "spherical-shock": SphericalShock,
-    "plane-shock": PlaneShock,
-    "line-shock": LineShock,
-    "spherical-wave": SphericalWave,
-    "plane-wave": PlaneWave,
-    "line-wave": LineWave,
-    "underwater-explosion": UnderwaterExplosion,
-}
+SOURCES: dict[str, type[Source]] = {kind.model_fields["type"].default: kind for kind in get_args(Source)}
+"""Kinds of source by the ``type`` that names them in a file."""
 
 
 def source_distance(source: Source, outer_radius: float) -> float | None:

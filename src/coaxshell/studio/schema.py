@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import cache
 from importlib.util import find_spec
 from typing import Any
@@ -25,7 +24,7 @@ def schema() -> dict[str, Any]:
         "version": __version__,
         "schema": _with_nonzero(System.model_json_schema()),
         "presets": [
-            {"name": name, "title": _title(presets.text(name)), "system": normalised(presets.load(name)), "toml": presets.text(name)}
+            {"name": name, "title": presets.description(name), "system": normalised(presets.load(name)), "toml": presets.text(name)}
             for name in presets.names()
         ],
         "materials": [_material(name) for name in materials.names()],
@@ -62,8 +61,3 @@ def _with_nonzero(full: dict[str, Any]) -> dict[str, Any]:
             if (name, field.get("unit")) in _NOT_ZERO:
                 field["nonzero"] = True
     return full
-
-
-def _title(text: str) -> str:
-    comment = " ".join(line.lstrip("# ").strip() for line in text.split("\n\n")[0].splitlines() if line.startswith("#"))
-    return re.split(r"(?<!Fig\.)(?<!Figs\.)(?<=\.) ", comment, maxsplit=1)[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from coaxshell.response.summary_text import aligned
 from coaxshell.verification.rows import HEADINGS, Row
 from coaxshell.verification.suite import Report
 
@@ -21,8 +22,7 @@ def plain(report: Report) -> str:
     for result in report.results:
         lines += ["", f"{result.title} ({result.name}, {result.seconds:.1f} s)" if result.seconds else result.title]
         rows = [_headings(), *(_shown(row) for row in result.rows)]
-        widths = [max(len(cells[i]) for cells in rows) for i in range(len(_COLUMNS))]
-        lines += [_line(cells, widths) for cells in rows]
+        lines += [f"  {line}" for line in aligned(rows, _LEFT)]
     return "\n".join([*lines, "", report.verdict])
 
 
@@ -55,8 +55,3 @@ def _headings() -> tuple[str, ...]:
 
 def _shown(row: Row) -> tuple[str, ...]:
     return tuple(row.cells[i] for i in _COLUMNS)
-
-
-def _line(cells: tuple[str, ...], widths: list[int]) -> str:
-    padded = [cell.ljust(width) if i < _LEFT else cell.rjust(width) for i, (cell, width) in enumerate(zip(cells, widths, strict=True))]
-    return "  " + "  ".join(padded).rstrip()

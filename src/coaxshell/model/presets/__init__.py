@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from importlib import resources
+from itertools import takewhile
 
 from coaxshell.errors import InputError
 from coaxshell.model.naming import lookup
@@ -23,6 +25,12 @@ def text(name: str) -> str:
         raise InputError("preset", f"{name!r} is not a name", "must be one of " + ", ".join(NAMES))
     found = lookup({key: key for key in NAMES}, name, "preset", "preset")
     return resources.files(__package__).joinpath(f"{found}.toml").read_text(encoding="utf-8")
+
+
+def description(name: str) -> str:
+    """Return the first sentence of the comment that the text of a preset starts with."""
+    comment = " ".join(line.lstrip("# ").strip() for line in takewhile(lambda line: line.startswith("#"), text(name).splitlines()))
+    return re.split(r"(?<!Fig\.)(?<!Figs\.)(?<=\.) ", comment, maxsplit=1)[0]
 
 
 def load(name: str) -> System:
