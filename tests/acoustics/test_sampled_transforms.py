@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics import pulse_transforms
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.acoustics.sampled_transforms import _by_moments, _by_sum, piecewise_linear
@@ -67,3 +70,25 @@ def test_histories_and_impulses_of_a_step_between_neighbours() -> None:
     t = np.array([0.25, 0.75, 1.0])
     np.testing.assert_allclose(pulse_history(pulse, t, 1.0, 1.0), [1.0, 3.0, 3.0], rtol=1e-15)
     np.testing.assert_allclose(pulse_impulse(pulse, t, 1.0, 1.0), [0.25, 1.25, 2.0], rtol=1e-14)
+
+
+def test_a_long_record_is_transformed_once_for_all_nodes_of_a_contour(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = np.linspace(0.0, 4.0, 2001)
+    pulse = cx.Sampled(time=times, pressure=np.exp(-times) * (1.0 + 0.2 * np.sin(50.0 * times)))
+    asked: list[int] = []
+
+    def counted(s: np.ndarray, *record: np.ndarray) -> np.ndarray:
+        asked.append(s.size)
+        return piecewise_linear(s, *record)
+
+    monkeypatch.setattr(pulse_transforms, "piecewise_linear", counted)
+    whole = pulse_transform(pulse, S, 1.0, 1.0)
+    part = pulse_transform(pulse, S[:300].copy(), 1.0, 1.0)
+    assert asked == [S.size]
+    np.testing.assert_array_equal(part, whole[:300])
+    np.testing.assert_allclose(part, _by_sum(S[:300], *pulse.curve), rtol=1e-9)
+    for other in (LaplaceGrid(1e-2, 400).nodes, LaplaceGrid(2e-2, 500).nodes):
+        np.testing.assert_allclose(pulse_transform(pulse, other, 1.0, 1.0)[::50], _by_sum(other[::50], *pulse.curve), rtol=1e-9)
+    np.testing.assert_allclose(pulse_transform(pulse, S, 2.0, 3.0)[::50], _by_sum(S[::50] / 2.0, *pulse.curve) / 6.0, rtol=1e-9)
+    assert len(pulse.transforms) == 2
+    assert not pickle.loads(pickle.dumps(pulse)).transforms

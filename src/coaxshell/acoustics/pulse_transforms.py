@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.special import erfcx
 
-from coaxshell.acoustics.sampled_transforms import piecewise_linear
+from coaxshell.acoustics.sampled_transforms import is_long, piecewise_linear
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
 from coaxshell.numerics.arrays import ComplexArray
 
@@ -33,9 +33,26 @@ def pulse_transform(pulse: Pulse, s: ComplexArray, time_scale: float, pressure_s
             width, centre = pulse.width / time_scale, pulse.centre / time_scale
             return pulse.peak_pressure / pressure_scale * _gaussian(s, width, centre)
         case Sampled():
-            times, values = pulse.curve
-            return piecewise_linear(s, times / time_scale, values / pressure_scale)
+            return _record(pulse, s, time_scale, pressure_scale)
     raise TypeError(f"no transform for a pulse of type {type(pulse).__name__}")
+
+
+def _record(pulse: Sampled, s: ComplexArray, time_scale: float, pressure_scale: float) -> ComplexArray:
+    """Return the transform of a record; that of a long one is made once for all nodes of a contour, and kept as long as the record.
+
+    A run asks for it at the nodes of its spectra, of its estimates and of the pressures on its walls, of which the first are all.
+    """
+    times, values = pulse.curve
+    if not is_long(s, times):
+        return piecewise_linear(s, times / time_scale, values / pressure_scale)
+    contour = np.array([s[0].real, s[1].imag, time_scale, pressure_scale])
+    for known, spectrum in pulse.transforms:
+        if spectrum.size >= s.size and np.allclose(known, contour, rtol=1e-12, atol=0.0):
+            return np.asarray(spectrum[: s.size])
+    made = piecewise_linear(s, times / time_scale, values / pressure_scale)
+    made.flags.writeable = False
+    pulse.transforms.append((contour, made))
+    return made
 
 
 def _ramp(s: ComplexArray, rise: float) -> ComplexArray:

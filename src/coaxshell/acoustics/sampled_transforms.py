@@ -21,7 +21,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS
 
 _MOMENTS = 14
-_FEW = 4_000_000
+_FEW = 200_000
 """Products of samples and nodes up to which the sum is taken as it stands."""
 _BLOCK = 1_000_000
 _FORGOTTEN = 40.0
@@ -38,9 +38,14 @@ def piecewise_linear(s: ComplexArray, times: FloatArray, values: FloatArray) -> 
     times, values : ndarray, shape (samples,)
         Ascending times from 0 on.
     """
-    if times.size * s.size > _FEW and _is_uniform(s):
+    if is_long(s, times):
         return _by_moments(s, times, values)
     return _by_sum(s, times, values)
+
+
+def is_long(s: ComplexArray, times: FloatArray) -> bool:
+    """Return whether the transform of a record at some nodes is made from moments, which any nodes of the same contour share."""
+    return times.size * s.size > _FEW and _is_uniform(s)
 
 
 def _ends(s: ComplexArray, times: FloatArray, values: FloatArray) -> ComplexArray:
@@ -86,21 +91,23 @@ def _by_moments(s: ComplexArray, times: FloatArray, values: FloatArray) -> Compl
     last = min(float(times[-1]), times[0] + _FORGOTTEN / shift)
     edges = cell * np.arange(np.floor(times[0] / cell) + 1.0, np.ceil(last / cell))
     within = times <= last
-    knots = np.union1d(np.append(times[within], last), edges)
+    knots = np.sort(np.concatenate([times[within], [last], edges]), kind="stable")  # merges runs that are sorted
     levels = np.interp(knots, times, values)
     middle = 0.5 * (knots[1:] + knots[:-1])
     place = np.floor(middle / cell)
     begin, end = (2.0 * (x / cell - place) - 1.0 for x in (knots[:-1], knots[1:]))
     weight = np.diff(levels) * np.exp(-shift * cell * (place + 0.5))
-    folded = (place % cells).astype(np.int64)
+    starts = np.flatnonzero(np.diff(place, prepend=-1.0))
+    folded = (place[starts] % cells).astype(np.int64)
     half = -0.5 * cell * s
     total, factor = np.zeros_like(s), np.ones_like(s)
     mean, power = np.ones_like(begin), np.ones_like(begin)  # of x^k over an interval: (b^{k+1} - a^{k+1})/((k + 1)(b - a)), undivided
     for k in range(_MOMENTS):
-        moments = np.bincount(folded, weight * mean / (k + 1.0), cells)
+        moments = np.bincount(folded, np.add.reduceat(weight * mean, starts) / (k + 1.0), cells)
         total += factor * fft.rfft(moments, workers=WORKERS)[: s.size]
-        factor = factor * half / (k + 1.0)
-        power = power * begin
-        mean = mean * end + power
+        factor *= half / (k + 1.0)
+        power *= begin
+        mean *= end
+        mean += power
     total *= np.exp(-0.5j * cell * s.imag)
     return np.asarray((total + _ends(s, knots, levels)) / s)

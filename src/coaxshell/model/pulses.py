@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +19,7 @@ from coaxshell.model.units import AnyPressure, AnyTime, Delay, Pressure, Time, q
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from coaxshell.numerics.arrays import FloatArray
+    from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 
 class Exponential(Described):
@@ -168,6 +169,11 @@ class Sampled(Described):
         from coaxshell.model.records.binary_text import digest
 
         return digest(*self.curve)
+
+    @cached_property
+    def transforms(self) -> deque[tuple[FloatArray, ComplexArray]]:
+        """The latest transforms of the history, each with the numbers of its contour: a place for the solver to keep them."""
+        return deque(maxlen=2)
 
     @property
     def peak(self) -> float:
