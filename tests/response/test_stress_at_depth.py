@@ -13,7 +13,7 @@ from coaxshell.model import VACUUM, Fluid, Layer, Shell, SphericalShock, System,
 from coaxshell.response import Response
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.section import Section, section
-from coaxshell.structure.stress import control_stress, place, strain_gain, stress_gain
+from coaxshell.structure.stress import control_stress, strain_gain, stress_gain, wall_point
 from coaxshell.structure.thin import open_circuit_stiffness, wall_stiffness
 
 ORDERS = np.array([0.0, 1.0, 2.0, 5.0, 40.0])
@@ -65,7 +65,7 @@ def resultants(wall: Section, component: int) -> tuple[np.ndarray, np.ndarray]:
     for bottom, top, _ in wall.layers:
         for x, weight in zip(points, weights, strict=True):
             z = (bottom + top) / 2 + x * (top - bottom) / 2
-            sigma = stress_gain(wall, ORDERS, place(wall, z))[component]
+            sigma = stress_gain(wall, ORDERS, wall_point(wall, z))[component]
             force += weight * (top - bottom) / 2 * sigma
             moment += weight * (top - bottom) / 2 * sigma * z
     return force, moment
@@ -144,10 +144,10 @@ def test_faces_and_boundaries(response: Response, lopsided_section: Section) -> 
     assert not np.allclose(response.stress(0, 10, depth="inner"), response.stress(0, 10, depth="outer"))
     assert response.stress(0, 10, depth="outer").attrs["depth"] == pytest.approx(half)
     boundary = lopsided_section.layers[1][1]
-    assert place(lopsided_section, boundary).modulus == lopsided_section.layers[2][2]  # the outer layer of the two
-    assert place(lopsided_section, -half).piezoelectric.role == "sensor"
-    assert place(lopsided_section, half).piezoelectric.role == "actuator"
-    assert place(lopsided_section, 0.0).piezoelectric is None
+    assert wall_point(lopsided_section, boundary).modulus == lopsided_section.layers[2][2]  # the outer layer of the two
+    assert wall_point(lopsided_section, -half).piezoelectric.role == "sensor"
+    assert wall_point(lopsided_section, half).piezoelectric.role == "actuator"
+    assert wall_point(lopsided_section, 0.0).piezoelectric is None
 
 
 def test_control_adds_its_field_to_the_actuator_only(make: Callable[..., ModalSolution], response: Response) -> None:
@@ -160,10 +160,10 @@ def test_control_adds_its_field_to_the_actuator_only(make: Callable[..., ModalSo
 
 
 def test_control_stress_uses_the_material_s_own_choice(lopsided_section: Section) -> None:
-    assert control_stress(place(lopsided_section, 4e-3)) == pytest.approx(-materials.PZT4.e32 / 4e-3)
+    assert control_stress(wall_point(lopsided_section, 4e-3)) == pytest.approx(-materials.PZT4.e32 / 4e-3)
     standard = section(Shell(radius=1.0, layers=[Layer(materials.ALUMINIUM, 1e-2), Layer(materials.PZT4_STANDARD, 1e-3, role="actuator")]))
     reduced = materials.PZT4.e32 - materials.PZT4.c23 * materials.PZT4.e33 / materials.PZT4.c33
-    assert control_stress(place(standard, 5e-3)) == pytest.approx(-reduced / 1e-3)
+    assert control_stress(wall_point(standard, 5e-3)) == pytest.approx(-reduced / 1e-3)
 
 
 @pytest.mark.parametrize("depth", [7e-3, -7e-3, math.inf, "middle", True, [0.0]])

@@ -14,7 +14,7 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.stress import control_stress, place
+from coaxshell.structure.stress import control_stress, wall_point
 
 TENSION = "positive in tension"
 COUNTERCLOCKWISE = "positive towards increasing angle"
@@ -99,7 +99,7 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
         values = combined(solution, shell, stress_gain_of(solution, shell), theta)
         long_name = "mid-surface hoop stress of the core"
     else:
-        where = place(section, arguments.depth_of(section, depth))
+        where = wall_point(section, arguments.depth_of(section, depth))
         values = combined(solution, shell, stress_gain_of(solution, shell, where), theta)
         per_volt = control_stress(where)
         if per_volt and solution.problem.shells[shell].gains is not None:

@@ -62,7 +62,7 @@ def strain_gain(m: npt.ArrayLike, radius: float, z: float) -> tuple[FloatArray, 
     return m / radius + z * m / radius**2, -1.0 / radius - z * m**2 / radius**2
 
 
-def place(section: Section, z: float) -> WallPoint:
+def wall_point(section: Section, z: float) -> WallPoint:
     """Return what the wall is made of at z (m, positive outward); on the boundary of two layers the outer one is meant.
 
     Raises
@@ -96,7 +96,7 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> StressG
     m : array_like
         Circumferential orders.
     where : WallPoint
-        From :func:`place`.
+        From :func:`wall_point`.
 
     Returns
     -------

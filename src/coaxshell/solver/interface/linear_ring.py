@@ -51,10 +51,10 @@ def solve_ring(structure: StructureSpectra, absorbers: AbsorberSet) -> LinearAbs
         excited = (linear[:, members] * turn).sum(axis=1)
         receptance = structure.compliance[pair, pair][:, :, np.abs(orders[members])].sum(axis=2) * density[None, :, None]
         amplitude = _two_by_two(receptance, own, other, excited)
-        pull = -np.stack([own * amplitude[0] + other * amplitude[1], other * amplitude[0] + own * amplitude[1]])
-        pressure[:, members] = pull[:, None, :] * density[:, None, None] / turn
+        line_force = -np.stack([own * amplitude[0] + other * amplitude[1], other * amplitude[0] + own * amplitude[1]])
+        pressure[:, members] = line_force[:, None, :] * density[:, None, None] / turn
         around = np.exp(2j * np.pi * orders[k] * ring_index / count)[:, None]
-        force += around * pull[:, None, :]
+        force += around * line_force[:, None, :]
         displacement += around * mass * (amplitude[0] + amplitude[1])
     full = np.zeros((len(structure.problem.shells), absorbers.parities, structure.max_order + 1, nodes.size), np.complex128)
     full[pair] = _parities(pressure, absorbers.parities)
