@@ -53,6 +53,7 @@ TOML_LISTS = Limit(50_000, "lists and tables", "a TOML text")
 RECORD_BYTES = Limit(200_000_000, "bytes", "a pressure record")
 RECORD_SAMPLES = Limit(1_000_000, "samples", "a pressure record")
 RECORD_COLUMNS = Limit(256, "columns", "a pressure record")
+HISTORY_COLUMNS = Limit(12_000, "columns", "a file of histories")
 SAVED_TEXT = Limit(32_000_000, "bytes", "a text in a saved run")
 SAVED_STRUCTURE = Limit(250_000_000, "bytes", "what a saved run holds beside its arrays")
 SAVED_ARRAYS = Limit(16_000_000_000, "bytes", "the arrays of a saved run")
@@ -80,6 +81,7 @@ TABLE: tuple[Limit, ...] = (
     RECORD_BYTES,
     RECORD_SAMPLES,
     RECORD_COLUMNS,
+    HISTORY_COLUMNS,
     SAVED_TEXT,
     SAVED_STRUCTURE,
     SAVED_ARRAYS,

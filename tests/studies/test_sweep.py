@@ -9,6 +9,8 @@ import pytest
 import xarray as xr
 
 import coaxshell as cx
+from coaxshell.studies.paths import Field, field_of
+from coaxshell.studies.span import Span
 
 STRESS = ["inner.peak_stress"]
 
@@ -107,3 +109,16 @@ def test_bad_studies(hybrid, quick, over, options, message, tmp_path):
     with pytest.raises(cx.InputError, match=message):
         cx.sweep(hybrid, over, **{"metrics": STRESS, "workers": 1, "store": store, **quick, **options})
     assert not any(path.name != "study.json" for path in store.glob("*"))
+
+
+def test_a_million_points_of_a_span_are_checked_by_their_ends_alone(monkeypatch):
+    field = field_of(cx.presets.load("bare"), "source.peak_pressure")
+    asked = []
+    value = Field.value
+    monkeypatch.setattr(Field, "value", lambda self, given, where: asked.append(given) or value(self, given, where))
+    shares = np.linspace(0.0, 1.0, 1_000_000).tolist()
+    found = Span(start="1 kPa", to="4 kPa", scale="log").at(shares, field, "over")
+    assert asked == ["1 kPa", "4 kPa"]
+    assert found[0] == 1e3
+    assert found[-1] == pytest.approx(4e3)
+    assert found[500_000] == pytest.approx(2e3, rel=1e-5)

@@ -139,7 +139,4 @@ def _sampled(fields: Sequence[Field], given: Sequence[Any], points: str, samples
         unit = engine.random(2 ** math.ceil(math.log2(samples)))[:samples]
     else:
         unit = engine.random(samples)
-    return tuple(
-        tuple(span.at(float(u), field, f"over.{field.path}") for u in column)
-        for span, field, column in zip(spans, fields, unit.T, strict=True)
-    )
+    return tuple(span.at(column.tolist(), field, f"over.{field.path}") for span, field, column in zip(spans, fields, unit.T, strict=True))

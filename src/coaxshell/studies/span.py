@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -95,11 +95,11 @@ class Span(Described):
             return tuple(dict.fromkeys(round(float(value)) for value in raw))
         return tuple(float(value) for value in raw)
 
-    def at(self, share: float, field: Field, where: str) -> Any:
-        """Return the value at a share from 0 to 1 of the span, whole for a count (each with equal chance)."""
+    def at(self, shares: Iterable[float], field: Field, where: str) -> tuple[Any, ...]:
+        """Return the values at shares from 0 to 1 of the span, whole for a count (each with equal chance)."""
         low, high = self.ends(field, where)
         if field.integer:
-            return min(int(high), math.floor(low + share * (high - low + 1)))
+            return tuple(min(int(high), math.floor(low + share * (high - low + 1))) for share in shares)
         if self.scale == "log":
-            return low * (high / low) ** share
-        return low + share * (high - low)
+            return tuple(low * (high / low) ** share for share in shares)
+        return tuple(low + share * (high - low) for share in shares)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.limits import RECORD_BYTES
+from coaxshell.limits import HISTORY_COLUMNS, RECORD_BYTES
 from coaxshell.model.base import shown
 from coaxshell.model.records.columns import Column as FileColumn
 from coaxshell.model.records.columns import Table, factor_of
@@ -74,7 +74,7 @@ def read_histories(path: Path) -> Histories:
         Naming the file, the line or the column, and what is wrong.
     """
     content = regular_bytes(path, RECORD_BYTES, _REMEDY)
-    table = table_of(content, str(path)) if content.strip() else Table(())
+    table = table_of(content, str(path), HISTORY_COLUMNS) if content.strip() else Table(())
     if not table.columns or len(table.columns[0].values) < 2:
         raise InputError(str(path), "holds no histories", "give headings and at least 2 lines of numbers; --template writes an example")
     times: dict[str, FloatArray] = {}

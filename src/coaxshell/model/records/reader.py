@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
-from coaxshell.limits import RECORD_BYTES
+from coaxshell.limits import RECORD_BYTES, RECORD_COLUMNS, Limit
 from coaxshell.model.naming import suggestion
 from coaxshell.model.records.binary_tables import mat_table, wav_table
 from coaxshell.model.records.choosing import READING, choose
@@ -81,8 +81,8 @@ def checked_options(options: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in options.items() if value is not None}
 
 
-def table_of(content: bytes, name: str) -> Table:
-    """Return the columns of a file by what it holds, whatever it is called."""
+def table_of(content: bytes, name: str, most: Limit = RECORD_COLUMNS) -> Table:
+    """Return the columns of a file by what it holds, whatever it is called; of a text, at most so many."""
     if content[:4] in (b"RIFF", b"RIFX", b"RF64") and content[8:12] == b"WAVE":
         return wav_table(content, name)
     if content[:10] == b"MATLAB 5.0":
@@ -90,7 +90,7 @@ def table_of(content: bytes, name: str) -> Table:
     for mark, kind in _FOREIGN.items():
         if content.startswith(mark):
             raise InputError(name, kind, "give it as CSV text, a MATLAB file up to version 7 (save with -v7), or .wav")
-    return text_table(content, name)
+    return text_table(content, name, most)
 
 
 def _sampled(table: Table, given: dict[str, Any], name: str) -> Sampled:

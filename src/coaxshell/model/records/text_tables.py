@@ -15,7 +15,7 @@ from itertools import chain
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.limits import RECORD_COLUMNS, RECORD_SAMPLES
+from coaxshell.limits import RECORD_COLUMNS, RECORD_SAMPLES, Limit
 from coaxshell.model.base import shown
 from coaxshell.model.records.columns import Column, Table, column, factor_of, is_unit, split_heading
 from coaxshell.numerics.arrays import FloatArray
@@ -59,8 +59,8 @@ def number(text: str) -> float:
     return found if math.isfinite(found) else math.nan
 
 
-def text_table(content: bytes, name: str) -> Table:
-    """Return the columns of a text.
+def text_table(content: bytes, name: str, most: Limit = RECORD_COLUMNS) -> Table:
+    """Return the columns of a text, at most so many.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def text_table(content: bytes, name: str) -> Table:
     table = _fast(body, dialect) if text.isascii() and "_" not in text else None
     if table is None:
         table = _slow(body, numbers, dialect, headings, name)
-    RECORD_COLUMNS.check(table.shape[1], name)
+    most.check(table.shape[1], name)
     columns = tuple(_column(heading, unit, values) for (heading, unit), values in zip(headings, table.T, strict=True))
     return Table(columns, numbers)
 
