@@ -9,7 +9,6 @@ import pytest
 from scipy.optimize import brentq
 
 import coaxshell as cx
-from coaxshell.solver.coupling import shell_operator
 from coaxshell.solver.scaling import Problem, dimensionless
 
 THICKNESS = 1e-4
@@ -22,7 +21,7 @@ def problem(ring: Callable[..., cx.Shell], water: cx.Fluid, shock: cx.PlaneShock
 
 def stiffness(problem: Problem, omega: float, m: int) -> float:
     """Return Z(i omega), real in vacuo."""
-    return float(shell_operator(problem, 0, np.array([1j * omega]), np.array([float(m)])).impedance[0, 0].real)
+    return float(problem.shells[0].operator(np.array([float(m)]), np.array([1j * omega])).impedance[0, 0].real)
 
 
 def bending_speed(thickness: float) -> float:
@@ -47,7 +46,7 @@ def test_breathing_and_membrane(problem: Problem, m: int) -> None:
 
 def test_translation_has_only_mass(problem: Problem) -> None:
     # Slowly pushed, order 1 moves as a body: V = W, and twice the mass per normal load (V carries as much as W).
-    operator = shell_operator(problem, 0, np.array([1e-3 + 0j]), np.array([1.0]))
+    operator = problem.shells[0].operator(np.array([1.0]), np.array([1e-3 + 0j]))
     np.testing.assert_allclose(operator.tangential[0, 0], 1.0, rtol=5e-7)
     np.testing.assert_allclose(operator.impedance[0, 0] / 1e-6, 2 * problem.shells[0].mass, rtol=4e-7)
 

@@ -10,10 +10,11 @@ import pytest
 
 from coaxshell.model import Absorber, Fluid, Layer, PDControl, RigidShell, Shell, SphericalShock, System, materials
 from coaxshell.response import Response
-from coaxshell.solver.scaling import ControlGains, dimensionless
+from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.structure.section import Section, section
+from coaxshell.structure.shell_model import ControlGains
 
 M, STEPS, STEP = 12, 80, 0.025
 
@@ -55,7 +56,7 @@ def make() -> Callable[..., ModalSolution]:
         system = system_of() if system is None else system
         problem = dimensionless(system.replace(control=None))
         gains = None if system.control is None else ControlGains(system.control.proportional, system.control.derivative)
-        elastic = tuple(shell if shell.section is None else replace(shell, gains=gains) for shell in problem.shells)
+        elastic = tuple(wall.with_gains(gains) if wall.moves else wall for wall in problem.shells)
         problem = replace(problem, system=system, shells=elastic)
         random = np.random.default_rng(7)
         time = STEP * np.arange(steps + 1)

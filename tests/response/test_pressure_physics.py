@@ -90,7 +90,7 @@ def test_the_pressure_jump_is_the_shells_load(answer, shell):
     # I w'' + K (v, w) = p outside - p inside, order by order; orders summed at angles.
     spectra, problem = answer._spectra, answer.solution.problem
     radius, grid, m = (0.5, 1.0)[shell], spectra.grid, all_orders(M)[:, None]
-    stiffness = problem.stiffness(shell, m)
+    stiffness = problem.shells[shell].stiffness(m)
     load = (problem.shells[shell].mass * grid.nodes**2 + stiffness.ww) * spectra.normal[shell] + stiffness.vw * spectra.tangential[shell]
     history = grid.invert(load)[..., np.rint(TIME / STEP).astype(int)] * RHO * C**2
     theta = np.radians(ANGLES)[:, None] * m.T

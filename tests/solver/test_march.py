@@ -196,7 +196,7 @@ class TestDiscreteLaws:
             limit = voltage_limit(structure.problem, shell)
             volts = evaluate @ asked[row].reshape(evaluate.shape[1], -1)
             assert abs(volts).max() > 5 * limit
-            expected = structure.problem.actuator_pressure(shell) * (project @ np.clip(volts, -limit, limit))
+            expected = structure.problem.shells[shell].actuator_pressure * (project @ np.clip(volts, -limit, limit))
             given = found.actuation[shell].reshape(expected.shape)
             np.testing.assert_allclose(given[:, 1:], expected[:, 1:], rtol=0, atol=1e-9 * abs(given).max())
 

@@ -60,7 +60,7 @@ def test_the_recursion_of_no_order_grows(step: float) -> None:
     structure = StructureSpectra(problem, LaplaceGrid(step, 100), 150)
     weights = structure.kernels_with_voltage.kernels[2:]
     for shell in (0, 1):
-        own = problem.actuator_pressure(shell) * weights[shell, shell]
+        own = problem.shells[shell].actuator_pressure * weights[shell, shell]
         u = np.zeros_like(own)
         u[:, 0] = 1.0 / (1.0 - own[:, 0])
         for n in range(1, u.shape[1]):

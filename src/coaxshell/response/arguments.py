@@ -11,7 +11,6 @@ import numpy.typing as npt
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
-from coaxshell.structure.section import Section
 
 
 def angles(angle: npt.ArrayLike) -> FloatArray:
@@ -35,15 +34,26 @@ def one_of(name: str, value: object, allowed: Iterable[str]) -> str:
     return value
 
 
-def depth_of(section: Section, depth: object) -> float:
-    """Return z in metres from a number, or from "inner" or "outer" for the faces of the wall; InputError otherwise."""
+def depth_of(faces: tuple[float, float], depth: object) -> float:
+    """Return z in metres from a number, or from "inner" or "outer" for the faces of the wall, whose z are given.
+
+    Raises
+    ------
+    InputError
+        If it is neither, or lies outside the wall; the message names the range.
+    """
+    inner, outer = faces
     if isinstance(depth, str):
-        face = one_of("depth", depth, ("inner", "outer"))
-        return section.layers[0][0] if face == "inner" else section.layers[-1][1]
+        return inner if one_of("depth", depth, ("inner", "outer")) == "inner" else outer
     depth = plain(depth)
     if isinstance(depth, bool) or not isinstance(depth, (int, float, np.floating, np.integer)) or not math.isfinite(depth):
         raise InputError("depth", f"{depth!r} is not allowed", 'give z in metres (positive outward), "inner" or "outer"')
-    return float(depth)
+    slack = 1e-9 * (outer - inner)  # forgives the rounding of sums of thicknesses
+    if not inner - slack <= depth <= outer + slack:
+        raise InputError(
+            "depth", f"{depth:g} m is outside the wall", f'give z from {inner:g} to {outer:g} m (positive outward), "inner" or "outer"'
+        )
+    return min(max(float(depth), inner), outer)
 
 
 def time_window(time: FloatArray, window: Sequence[float] | None) -> slice:

@@ -34,7 +34,7 @@ def error_numbers(solution: ModalSolution) -> FloatArray:
     """Return the same as bare numbers, shape (shells, quantities, causes and combined)."""
     found = solution.estimates.by_cause()
     values = np.concatenate([found, found.sum(axis=-1, keepdims=True)], axis=-1)
-    values[[shell.section is None for shell in solution.problem.shells]] = np.nan
+    values[[not wall.moves for wall in solution.problem.shells]] = np.nan
     return values
 
 

@@ -9,12 +9,12 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import INWARD, history, modal_array
-from coaxshell.response.modal import Gain, amplitudes, displacement_gain, elastic_section, stress_gain_of, voltage_gain
+from coaxshell.response.modal import amplitudes, displacement_gain, elastic_wall, stress_gain_of, voltage_gain
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.stress import control_stress, wall_point
+from coaxshell.structure.shell_model import Gain
 
 TENSION = "positive in tension"
 COUNTERCLOCKWISE = "positive towards increasing angle"
@@ -94,20 +94,20 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
         If the shell is rigid, or the angle or the depth is not allowed.
     """
     theta = arguments.angles(angle)
-    section = elastic_section(solution.problem, shell)
+    wall = elastic_wall(solution.problem, shell)
     if depth is None:
         values = combined(solution, shell, stress_gain_of(solution, shell), theta)
         long_name = "mid-surface hoop stress of the core"
     else:
-        where = wall_point(section, arguments.depth_of(section, depth))
-        values = combined(solution, shell, stress_gain_of(solution, shell, where), theta)
-        per_volt = control_stress(where)
-        if per_volt and solution.problem.shells[shell].gains is not None:
+        z = arguments.depth_of(wall.faces, depth)
+        values = combined(solution, shell, stress_gain_of(solution, shell, z), theta)
+        per_volt = wall.control_stress(z)
+        if per_volt and wall.gains is not None:
             values = values + per_volt * actuator_values(solution, shell, theta)
-        long_name = f"hoop stress at {where.z:g} m outward of the mid-surface"
+        long_name = f"hoop stress at {z:g} m outward of the mid-surface"
     labelled = history(solution, values, theta, shell, name="stress", long_name=long_name, units="Pa", sign=TENSION)
     if depth is not None:
-        labelled.attrs["depth"] = where.z
+        labelled.attrs["depth"] = z
     return labelled
 
 

@@ -10,13 +10,14 @@ from coaxshell.model.places import shell_name
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.errors import error_table
-from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of
+from coaxshell.response.modal import amplitudes, displacement_gain, stress_gain_of
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.summary_text import summary_html, summary_text
 from coaxshell.response.translation import relative_gain, still_grows
 from coaxshell.response.voltages import actuator_limit, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.solver.electrodes import Segment, segment_length
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.structure.shell_model import Gain
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,7 @@ def summarise(solution: ModalSolution, window: Sequence[float] | None = None, se
     span = arguments.time_window(solution.time, window)
     time = solution.time[span]
     scales = solution.problem.scales
-    elastic = [i for i, shell in enumerate(solution.problem.shells) if shell.section is not None]
+    elastic = [i for i, shell in enumerate(solution.problem.shells) if shell.moves]
     lengths = [segment_length(solution.problem, i, segment) for i in elastic]  # all checked before the first is computed
     shells = tuple(_shell(solution, i, span, length) for i, length in zip(elastic, lengths, strict=True))
     q, f = solution.absorber_displacement, solution.absorber_force
@@ -153,8 +154,7 @@ def _shell(solution: ModalSolution, shell: int, span: slice, length: float) -> S
     ends = [head, head + 180.0]
     time = solution.time
     width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
-    section = solution.problem.shells[shell].section
-    assert section is not None  # the caller leaves rigid shells out
+    wall = solution.problem.shells[shell]
 
     def of(gain: Gain) -> Amplitudes:
         return lambda block: amplitudes(solution, shell, gain, block)
@@ -181,10 +181,10 @@ def _shell(solution: ModalSolution, shell: int, span: slice, length: float) -> S
         relative_displacement=relative,
         displacement_head=displacement_head,
         displacement_tail=displacement_tail,
-        sensor_voltage=largest_sensor_voltage(solution, shell, span, length) if section.layer("sensor") else None,
-        actuator_voltage=largest_demanded_voltage(solution, shell, span, length) if solution.problem.shells[shell].gains else None,
-        segment=length if section.layer("sensor") else None,
-        actuator_limit=actuator_limit(solution, shell).volts if section.layer("actuator") else None,
+        sensor_voltage=largest_sensor_voltage(solution, shell, span, length) if wall.has("sensor") else None,
+        actuator_voltage=largest_demanded_voltage(solution, shell, span, length) if wall.gains else None,
+        segment=length if wall.has("sensor") else None,
+        actuator_limit=actuator_limit(solution, shell).volts if wall.has("actuator") else None,
         stress_truncation=float(solution.estimates.modal_stress[shell]),
         errors=error_table(solution, shell),
     )

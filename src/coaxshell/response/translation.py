@@ -18,8 +18,9 @@ from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import time_coordinates
-from coaxshell.response.modal import Gain, displacement_gain
+from coaxshell.response.modal import displacement_gain
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.structure.shell_model import Gain
 
 LATE = 0.1
 """The last share of a window, over which growth is judged."""

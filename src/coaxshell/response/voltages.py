@@ -15,12 +15,13 @@ from coaxshell.numerics.circle import circle_angles
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import history
-from coaxshell.response.modal import Gain, amplitudes, elastic_section, orders, voltage_gain
+from coaxshell.response.modal import amplitudes, elastic_wall, orders, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import Segment, lower_half, segment_length, segment_mean
-from coaxshell.solver.scaling import ControlGains
+from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.structure.shell_model import ControlGains, Gain
 
 _PER_WAVE = 8
 _FEWEST = 64
@@ -45,12 +46,10 @@ def control_gains(solution: ModalSolution, shell: int) -> ControlGains:
 
 def actuator_limit(solution: ModalSolution, shell: int) -> ActuatorLimit:
     """Return field limit times thickness of the actuator, V (section 5 of the theory); InputError if the shell has none."""
-    actuator = elastic_section(solution.problem, shell).layer("actuator")
-    if actuator is None:
+    if not elastic_wall(solution.problem, shell).has("actuator"):
         raise InputError(f"shells[{shell}].layers", "there is no actuator", 'give a piezoelectric layer the role "actuator"')
     control = solution.problem.system.control
-    field = control.field_limit if control is not None and control.field_limit is not None else actuator.field_limit
-    return ActuatorLimit(field * actuator.thickness, control is not None and control.saturation)
+    return ActuatorLimit(voltage_limit(solution.problem, shell), control is not None and control.saturation)
 
 
 def time_derivative(values: FloatArray, step: float) -> FloatArray:

@@ -27,12 +27,12 @@ def pressure_asked(
         Positive inward; 0 on shells without feedback.
     """
     pressure, orders = np.zeros_like(normal), all_orders(normal.shape[2] - 1)[:, None]
-    for i, shell in enumerate(problem.shells):
-        if shell.gains is None:
+    for i, wall in enumerate(problem.shells):
+        if wall.gains is None:
             continue
-        sensor_v, sensor_w = problem.sensor_gain(i, orders)
-        sensed, rate = (sensor_v * v[i] + sensor_w * w[i] for w, v in ((normal, tangential), (normal_rate, tangential_rate)))
-        pressure[i] = problem.actuator_pressure(i) * (shell.gains.proportional * sensed + shell.gains.derivative * rate)
+        sensor = wall.sensor_gain(orders)
+        sensed, rate = (sensor.v * v[i] + sensor.w * w[i] for w, v in ((normal, tangential), (normal_rate, tangential_rate)))
+        pressure[i] = wall.actuator_pressure * (wall.gains.proportional * sensed + wall.gains.derivative * rate)
     return pressure
 
 

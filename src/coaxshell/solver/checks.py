@@ -27,7 +27,6 @@ from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
 from coaxshell.solver.tension import AMBIENT, Tension
 
-THIN_SHELL_LIMIT = 0.1
 TRUNCATION_LIMIT = 1e-2
 STEP_LIMIT = 1e-3
 MARCH_LIMIT = 1e-2
@@ -45,7 +44,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     """Return the warnings that need no solution."""
     return (
         cut(problem, float(grid.time[-1]))
-        + _thin_shells(problem)
+        + [f"{shell_phrase(i, len(problem.shells))}: {one}" for i, wall in enumerate(problem.shells) for one in wall.remarks()]
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)
@@ -144,27 +143,10 @@ def _stretch(force: float, linear: float, cubic: float) -> float:
     return float(roots[np.abs(roots.imag) <= 1e-9 * np.abs(roots).max() + 1e-300].real.max(initial=0.0))
 
 
-def _thin_shells(problem: Problem) -> list[str]:
-    warnings = []
-    for i, shell in enumerate(problem.shells):
-        if shell.section is None:
-            continue
-        ratio = (shell.section.layers[-1][1] - shell.section.layers[0][0]) / shell.section.radius
-        if ratio > THIN_SHELL_LIMIT:
-            warnings.append(
-                f"{shell_phrase(i, len(problem.shells))}: thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell "
-                "theory loses accuracy; use a thinner shell or compare with a solid model"
-            )
-    return warnings
-
-
 def _resolved_membrane(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     warnings = []
-    for i, shell in enumerate(problem.shells):
-        if shell.section is None:
-            continue
-        stiffness = problem.stiffness(i, np.array([float(max_order)]))
-        highest = float(np.sqrt(stiffness.vv[0] / shell.mass))
+    for i, wall in enumerate(problem.shells):
+        highest = float(wall.highest_frequency(np.array([float(max_order)]))[0])
         if highest > grid.nyquist:
             warnings.append(
                 f"{shell_phrase(i, len(problem.shells))}: the membrane frequency of order {max_order} is {highest:.4g} per transit, above "

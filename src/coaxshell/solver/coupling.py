@@ -23,37 +23,6 @@ from coaxshell.solver.shared_parts import SharedParts
 
 
 @dataclass
-class ShellOperator:
-    """One shell at all orders and nodes: dynamic stiffness Z (load per W) and V per unit W."""
-
-    impedance: ComplexArray
-    tangential: ComplexArray
-
-
-def shell_operator(problem: Problem, index: int, s: ComplexArray, orders: FloatArray) -> ShellOperator:
-    """Return Z = M s^2 + K_ww + c_w - (K_vw + c_v) K_vw/(M s^2 + K_vv) and V/W = -K_vw/(M s^2 + K_vv).
-
-    c_v, c_w are the feedback's contribution, minus actuator pressure per volt times (k_p + k_d s) times the sensor's gain
-    (Eqs. 4, 17, 20).
-    """
-    m = orders[:, None]
-    stiffness = problem.stiffness(index, m)
-    inertia = problem.shells[index].mass * s * s
-    tangential = -stiffness.vw / (inertia + np.where(m == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
-    impedance = inertia + stiffness.ww + stiffness.vw * tangential
-    gains = problem.shells[index].gains
-    if gains is not None:
-        impedance -= (gains.proportional + gains.derivative * s) * pressure_fed_back(problem, index, tangential, m)
-    return ShellOperator(impedance, tangential)
-
-
-def pressure_fed_back(problem: Problem, index: int, tangential: ComplexArray, m: FloatArray) -> ComplexArray:
-    """Return the actuator's pressure per normal displacement and unit gain: pressure per volt times the sensor's voltage per W."""
-    sensor_v, sensor_w = problem.sensor_gain(index, m)
-    return np.asarray(problem.actuator_pressure(index) * (sensor_v * tangential + sensor_w))
-
-
-@dataclass
 class FluidMatrix:
     """Added mass of all fluids: minus the net inward pressure on each shell per normal acceleration of each, tridiagonal.
 
@@ -117,8 +86,7 @@ class ModalSystem:
     ----------
     surface : RadialFunctions
         Exterior fluid at r = 1, reused by the incident wave.
-    shells : list of ShellOperator or None
-        None for a rigid shell.
+    shells : list of WallOperator
     """
 
     def __init__(
@@ -127,9 +95,7 @@ class ModalSystem:
         self.problem, self.s, self.orders, self._shared = problem, s, orders, shared
         self._radial: dict[tuple[float, float], RadialFunctions] = {} if like is None else like._radial
         self.surface = self.radial(1.0, 1.0)
-        self.shells = [
-            shell_operator(problem, i, s, orders) if shell.section is not None else None for i, shell in enumerate(problem.shells)
-        ]
+        self.shells = [wall.operator(orders, s) for wall in problem.shells]
         self._assemble()
         self._factor()
 
@@ -155,12 +121,11 @@ class ModalSystem:
 
     def _assemble(self) -> None:
         """Add shells and fluids; a rigid shell keeps a row of its own, W = 0, and couples to none."""
-        s2, fluids = self.s * self.s, self._fluids()
+        s2, fluids, free = self.s * self.s, self._fluids(), [wall.moves for wall in self.problem.shells]
         self._diagonal = [
-            op.impedance + s2 * fluids.diagonal[i] if op is not None else np.ones(self._shape, np.complex128)
-            for i, op in enumerate(self.shells)
+            wall.impedance + s2 * fluids.diagonal[i] if free[i] else np.ones(self._shape, np.complex128)
+            for i, wall in enumerate(self.shells)
         ]
-        free = [op is not None for op in self.shells]
         self._upper = [s2 * x if free[i] and i + 1 < len(free) and free[i + 1] else 0.0 for i, x in enumerate(fluids.upper)]
         self._lower = [s2 * x if free[i] and i > 0 and free[i - 1] else 0.0 for i, x in enumerate(fluids.lower)]
 
@@ -178,7 +143,7 @@ class ModalSystem:
 
     def solve(self, index: int, load: ComplexArray | float) -> list[ComplexArray]:
         """Return W of every shell under a normal load (positive inward) on shell ``index`` alone."""
-        if self.shells[index] is None:
+        if not self.problem.shells[index].moves:
             return [np.zeros(self._shape, np.complex128) for _ in self.shells]
         count = len(self.shells)
         loads: list[ComplexArray | float] = [0.0] * count
@@ -208,7 +173,7 @@ class ModalSystem:
 
     def tangential(self, normal: list[ComplexArray]) -> list[ComplexArray]:
         """Return V of every shell from W of every shell (no tangential load)."""
-        return [op.tangential * w if op is not None else w for op, w in zip(self.shells, normal, strict=True)]
+        return [wall.tangential * w for wall, w in zip(self.shells, normal, strict=True)]
 
 
 def determinant(diagonal: Sequence[ComplexArray], coupling: Sequence[ComplexArray | float]) -> ComplexArray:

@@ -89,7 +89,7 @@ def largest_demand(solution: ModalSolution, index: int, above: float) -> Largest
     length = segment_length(problem, index)
     orders = all_orders(solution.normal.shape[2] - 1)
     share = segment_mean(orders, length / problem.system.shells[index].radius)
-    sensor_v, sensor_w = (share * each for each in problem.sensor_gain(index, orders))
+    sensor_v, sensor_w = (share * each for each in problem.shells[index].sensor_gain(orders))
     voltage = sensor_w[:, None] * (gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index])
     voltage += sensor_v[:, None] * (gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index])
     highest = _largest(voltage, _NEAR * above)

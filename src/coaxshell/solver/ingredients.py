@@ -15,8 +15,6 @@ from coaxshell.acoustics.incident import IncidentWave, LineGeometry, PlaneGeomet
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.structure.section import Section
-from coaxshell.structure.thin import WallStiffness, wall_stiffness
 
 if TYPE_CHECKING:
     from coaxshell.solver.interface.absorbers import AbsorberSet
@@ -53,8 +51,6 @@ class Ingredients:
 
     Attributes
     ----------
-    stiffness : callable
-        From a section and the orders to the modal stiffness of the wall on (V, W).
     wall_motion_factor : callable
         From problem, number of the fluid, number of the shell beside it and Bessel ratios to the factor, a number or an array
         (M + 1, nodes), with which that fluid feels the acceleration of that shell.
@@ -64,7 +60,6 @@ class Ingredients:
         From absorbers and M to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
     """
 
-    stiffness: Callable[[Section, FloatArray], WallStiffness] = wall_stiffness
     wall_motion_factor: Callable[[Problem, int, int, Radial], ComplexArray | float] = wall_motion_factor
     source_geometry: Callable[[Problem, Source], IncidentWave] = source_geometry
     point_force_shares: Callable[[AbsorberSet, int], FloatArray] = point_force_shares

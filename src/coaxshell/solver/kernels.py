@@ -9,7 +9,8 @@ like 1/s. Its two leading terms are inverted in closed form,
 
     s C_ii(s) = (1/M)/(s + b) + O(1/s^3),    b = (R_out + R_in + c)/M,
 
-R the specific impedances rho c of the fluids and c the modal damping of the derivative feedback; the rest is smooth enough for
+R the specific impedances rho c of the fluids, M and c mass and damping with which the wall answers at once
+(:meth:`coaxshell.structure.shell_model.ShellModel.leading`: its own, and the derivative feedback's); the rest is smooth enough for
 the inverse FFT. Off-diagonal kernels start smoothly, after the transit of the gap.
 """
 
@@ -24,14 +25,10 @@ from coaxshell.solver.scaling import Problem
 
 
 def initial_decay(problem: Problem, index: int, max_order: int) -> FloatArray:
-    """Return b, shape (M + 1, 1): the rate at which fluids and derivative feedback slow a shell just after an impulse."""
-    shell = problem.shells[index]
+    """Return b, shape (M + 1, 1): the rate at which fluids, derivative feedback and its own losses slow a shell just after an impulse."""
+    wall = problem.shells[index].leading(all_orders(max_order))
     resistance = sum(fluid.density / fluid.slowness for fluid in problem.fluids[index : index + 2] if fluid is not None)
-    decay = np.full((max_order + 1, 1), resistance)
-    if shell.gains is not None:
-        _, sensor_w = problem.sensor_gain(index, all_orders(max_order)[:, None])
-        decay = decay - problem.actuator_pressure(index) * shell.gains.derivative * sensor_w
-    return decay / shell.mass
+    return (np.full((max_order + 1, 1), resistance) + wall.damping) / wall.mass
 
 
 def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArray) -> FloatArray:
@@ -48,8 +45,8 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
     for i in range(count):
         for j in range(count):
             spectrum = compliance[i, j] * grid.nodes
-            if i == j and problem.shells[i].section is not None:
-                mass, decay = problem.shells[i].mass, initial_decay(problem, i, max_order)
+            if i == j and problem.shells[i].moves:
+                mass, decay = problem.shells[i].leading(all_orders(max_order)).mass, initial_decay(problem, i, max_order)
                 weights[i, j] = grid.invert((spectrum - 1.0 / (mass * (grid.nodes + decay))) * hat)
                 weights[i, j] += exponential_weights(decay, grid) / mass
             else:
@@ -62,10 +59,10 @@ def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArr
 
     ``ratio`` is V/W of the shell, shape (M + 1, nodes).
     """
-    gains = problem.shells[index].gains
-    assert gains is not None
-    sensor_v, sensor_w = problem.sensor_gain(index, all_orders(ratio.shape[0] - 1)[:, None])
-    return np.asarray((gains.proportional + gains.derivative * s) * (sensor_v * ratio + sensor_w), dtype=np.complex128)
+    wall = problem.shells[index]
+    assert wall.gains is not None
+    sensor = wall.sensor_gain(all_orders(ratio.shape[0] - 1)[:, None])
+    return np.asarray(wall.gains.at(s) * sensor.recovered(ratio), dtype=np.complex128)
 
 
 def sensor_rate_weights(
@@ -78,11 +75,11 @@ def sensor_rate_weights(
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
     weights = np.empty((len(controlled), count, max_order + 1, grid.time.size))
-    hat, orders = grid.hat * grid.time_step, all_orders(max_order)[:, None]
+    hat, orders = grid.hat * grid.time_step, all_orders(max_order)
     for row, i in enumerate(controlled):
-        sensor_v, sensor_w = problem.sensor_gain(i, orders)
-        sensed = grid.nodes * (sensor_v * ratio[i] + sensor_w)
-        decay, leading = initial_decay(problem, i, max_order), sensor_w / problem.shells[i].mass
+        sensor = problem.shells[i].sensor_gain(orders[:, None])
+        sensed = grid.nodes * sensor.recovered(ratio[i])
+        decay, leading = initial_decay(problem, i, max_order), sensor.w / problem.shells[i].leading(orders).mass
         for j in range(count):
             if i == j:
                 weights[row, j] = grid.invert((sensed * compliance[i, j] - leading / (grid.nodes + decay)) * hat)

@@ -19,11 +19,10 @@ from scipy import special
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.coupling import pressure_fed_back
 from coaxshell.solver.interface.saturation import circle, voltage_limit
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import NODES, SampledOrders
-from coaxshell.solver.scaling import ControlGains, Problem
+from coaxshell.solver.scaling import Problem
 
 _INSTANTS = 256
 _UNLIKELY = 4.0
@@ -115,7 +114,7 @@ class LimitedActuator:
 
 def pressure_limits(problem: Problem) -> dict[int, float]:
     """Return the largest pressure of each actuator, by shell."""
-    return {i: abs(problem.actuator_pressure(i)) * voltage_limit(problem, i) for i, s in enumerate(problem.shells) if s.gains is not None}
+    return {i: abs(wall.actuator_pressure) * voltage_limit(problem, i) for i, wall in enumerate(problem.shells) if wall.gains is not None}
 
 
 def asked_above(problem: Problem, above: SampledOrders, squares: FloatArray) -> dict[int, FloatArray]:
@@ -125,10 +124,9 @@ def asked_above(problem: Problem, above: SampledOrders, squares: FloatArray) -> 
     """
     found = {}
     for i in pressure_limits(problem):
-        gains, wall = problem.shells[i].gains, above.modal.shells[i]
-        assert gains is not None
-        assert wall is not None
-        law = (gains.proportional + gains.derivative * above.nodes) * pressure_fed_back(problem, i, wall.tangential, above.orders[:, None])
+        wall = problem.shells[i]
+        assert wall.gains is not None
+        law = wall.gains.at(above.nodes) * wall.fed_back(above.modal.shells[i].tangential, above.orders)
         found[i] = 0.5 * (above.weight @ (np.abs(law) ** 2 * squares[i]))
     return found
 
@@ -137,9 +135,9 @@ def softened(problem: Problem, actuators: list[LimitedActuator]) -> Problem:
     """Return the problem with the share of the gains that the orders above M get."""
     shells = list(problem.shells)
     for one in actuators:
-        gains = shells[one.shell].gains
-        assert gains is not None
-        shells[one.shell] = replace(shells[one.shell], gains=ControlGains(one.gain * gains.proportional, one.gain * gains.derivative))
+        wall = shells[one.shell]
+        assert wall.gains is not None
+        shells[one.shell] = wall.with_gains(wall.gains.scaled(one.gain, one.gain))
     return replace(problem, shells=tuple(shells))
 
 

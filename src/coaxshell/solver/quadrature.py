@@ -29,11 +29,10 @@ RESOLVED = 0.6
 
 
 def unresolved_orders(problem: Problem, grid: LaplaceGrid, max_order: int) -> npt.NDArray[np.bool_]:
-    """Return which orders have a shell whose membrane frequency, sqrt(K_vv/M), the step does not resolve: shape (M + 1,)."""
+    """Return which orders have a shell whose highest frequency the step does not resolve: shape (M + 1,)."""
     orders, late = all_orders(max_order), np.zeros(max_order + 1, dtype=bool)
-    for i, shell in enumerate(problem.shells):
-        if shell.section is not None:
-            late |= np.sqrt(problem.stiffness(i, orders).vv / shell.mass) > RESOLVED * grid.nyquist
+    for wall in problem.shells:
+        late |= wall.highest_frequency(orders) > RESOLVED * grid.nyquist
     return late
 
 
@@ -55,7 +54,7 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
     rate : ndarray, shape (len(sensors), shells, orders, T)
     """
     count, nodes = len(problem.shells), (2.0 / grid.time_step) * np.tanh(0.5 * grid.time_step * grid.nodes)
-    gains = [problem.sensor_gain(i, orders[:, None]) for i in sensors]
+    gains = [problem.shells[i].sensor_gain(orders[:, None]) for i in sensors]
     velocity = np.empty((count, count, orders.size, nodes.size), np.complex128)
     rate = np.empty((len(sensors), count, orders.size, nodes.size), np.complex128)
 
@@ -66,9 +65,8 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
             normal = modal.solve(j, 1.0)
             for i, w in enumerate(normal):
                 velocity[i, j, :, block] = s * w
-            for row, (i, (on_v, on_w)) in enumerate(zip(sensors, gains, strict=True)):
-                operator = modal.shells[i]
-                rate[row, j, :, block] = 0.0 if operator is None else s * (on_v * operator.tangential + on_w) * normal[i]
+            for row, (i, gain) in enumerate(zip(sensors, gains, strict=True)):
+                rate[row, j, :, block] = s * gain.recovered(modal.shells[i].tangential) * normal[i]
 
     map_node_blocks(node_blocks(grid, orders.size), work, None, "kernels")
     whole = np.ones(nodes.size)

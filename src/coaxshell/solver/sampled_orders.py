@@ -30,8 +30,7 @@ _SAMPLE = 20
 
 def crossing_order(problem: Problem) -> float:
     """Return the largest order R sqrt(a22/d22) at which a shell's membrane and bending frequencies cross."""
-    sections = [shell.section for shell in problem.shells if shell.section is not None]
-    return max((s.radius * float(np.sqrt(s.membrane / s.bending)) for s in sections if s.bending > 0), default=0.0)
+    return max(wall.crossing_order for wall in problem.shells)
 
 
 def orders_above(problem: Problem, first: int) -> FloatArray:
@@ -80,10 +79,7 @@ class SampledOrders:
         excited = np.zeros((count, orders.size, nodes.size))
         for load in SurfaceLoads(problem, grid, orders, shared)(modal.surface, NODES):
             excited += np.abs(np.stack(modal.solve(count - 1, load))) ** 2
-        strain = [
-            np.zeros((orders.size, nodes.size)) if wall is None else np.abs(orders[:, None] * wall.tangential - 1.0) ** 2
-            for wall in modal.shells
-        ]
+        strain = [np.abs(orders[:, None] * wall.tangential - 1.0) ** 2 for wall in modal.shells]
         weight = standing_for(orders)
         weight[-1] += 0.5 * orders[-1]  # those above the last
         return cls(problem, orders, weight, nodes, excited, np.stack(strain), modal)

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.system import System
 from coaxshell.solver.ingredients import OWN, Ingredients
-from coaxshell.structure.section import Section, section
-from coaxshell.structure.thin import WallStiffness, potential_gain
+from coaxshell.structure.rigid import RigidWall
+from coaxshell.structure.section import section
+from coaxshell.structure.shell_model import ControlGains, ShellModel
+from coaxshell.structure.thin_wall import ThinWall
 
 
 @dataclass(frozen=True)
@@ -61,36 +61,6 @@ class FluidRegion:
 
 
 @dataclass(frozen=True)
-class ControlGains:
-    """PD feedback of one shell: u = proportional * phi_s + derivative * dphi_s/dt, t dimensionless (Eq. 17)."""
-
-    proportional: float
-    derivative: float
-
-
-@dataclass(frozen=True)
-class ShellProblem:
-    """One shell in dimensionless form.
-
-    Attributes
-    ----------
-    radius : float
-        R/a.
-    section : Section or None
-        Section integrals in SI; None for a rigid shell (w = v = 0).
-    mass : float
-        I/(rho_e a).
-    gains : ControlGains or None
-        Feedback from this shell's sensor to its actuator.
-    """
-
-    radius: float
-    section: Section | None
-    mass: float
-    gains: ControlGains | None = None
-
-
-@dataclass(frozen=True)
 class Problem:
     """The dimensionless problem.
 
@@ -99,8 +69,8 @@ class Problem:
     system : System
         Where it comes from.
     scales : Scales
-    shells : tuple of ShellProblem
-        From the inside out.
+    shells : tuple of ShellModel
+        The walls, from the inside out.
     fluids : tuple of FluidRegion or None
         From the inside out, one more than the shells; None is a vacuum.
     ingredients : Ingredients
@@ -109,38 +79,14 @@ class Problem:
 
     system: System
     scales: Scales
-    shells: tuple[ShellProblem, ...]
+    shells: tuple[ShellModel, ...]
     fluids: tuple[FluidRegion | None, ...]
     ingredients: Ingredients = OWN
 
     @property
     def open_loop(self) -> Problem:
         """The problem without feedback."""
-        return replace(self, shells=tuple(replace(shell, gains=None) for shell in self.shells))
-
-    def stiffness(self, index: int, m: np.ndarray) -> WallStiffness:
-        """Return the dimensionless modal stiffness of one shell, K a/(rho_e c_e^2)."""
-        wall = self.shells[index].section
-        assert wall is not None
-        factor = self.scales.length / self.scales.pressure
-        return WallStiffness(*(factor * entry for entry in self.ingredients.stiffness(wall, m)))
-
-    def sensor_gain(self, index: int, m: np.ndarray, role: str = "sensor") -> tuple[np.ndarray, np.ndarray]:
-        """Return volts of a layer per unit dimensionless (V, W) of one shell (Eq. 20); zeros if it has no such layer."""
-        wall = self.shells[index].section
-        layer = wall.layer(role) if wall is not None else None
-        if wall is None or layer is None:
-            return np.zeros_like(m), np.zeros_like(m)
-        gain_v, gain_w = potential_gain(layer, m, wall.radius)
-        return self.scales.length * gain_v, self.scales.length * gain_w
-
-    def actuator_pressure(self, index: int) -> float:
-        """Return the dimensionless inward pressure per volt of control, -e32/(R rho_e c_e^2) (Eqs. 4, 13)."""
-        wall = self.shells[index].section
-        actuator = wall.layer("actuator") if wall is not None else None
-        if wall is None or actuator is None:
-            return 0.0
-        return -actuator.actuator_coupling / (wall.radius * self.scales.pressure)
+        return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
 
 
 def dimensionless(system: System) -> Problem:
@@ -148,18 +94,20 @@ def dimensionless(system: System) -> Problem:
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
-    shells = tuple(_shell(system, i, rho * a) for i in range(len(system.shells)))
+    shells = tuple(_wall(system, i, scales) for i in range(len(system.shells)))
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
     return Problem(system, scales, shells, fluids)
 
 
-def _shell(system: System, index: int, mass_scale: float) -> ShellProblem:
+def _wall(system: System, index: int, scales: Scales) -> ShellModel:
     shell = system.shells[index]
     radius = shell.radius / system.reference_radius
     if isinstance(shell, RigidShell):
-        return ShellProblem(radius, None, 0.0)
-    wall = section(shell)
-    return ShellProblem(radius, wall, wall.mass / mass_scale, _gains(system, index))
+        return RigidWall(radius=radius)
+    found = section(shell)
+    mass = found.mass / (system.exterior.density * scales.length)
+    gains = _gains(system, index)
+    return ThinWall(radius=radius, mass=mass, gains=gains, section=found, length=scales.length, pressure=scales.pressure)
 
 
 def _gains(system: System, index: int) -> ControlGains | None:

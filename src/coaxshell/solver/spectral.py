@@ -95,7 +95,7 @@ def linear_spectra(
                 for i, w in enumerate(modal.solve(j, 1.0)):
                     spectra.compliance[i, j, :, block] = w
             for i, operator in enumerate(modal.shells):
-                spectra.ratio[i, :, block] = operator.tangential if operator is not None else 0.0
+                spectra.ratio[i, :, block] = operator.tangential
 
     map_node_blocks(node_blocks(grid, max_order), work, progress, "frequencies")
     return spectra

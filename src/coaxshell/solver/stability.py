@@ -18,9 +18,9 @@ from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.winding import turning
-from coaxshell.solver.coupling import ModalSystem, determinant, pressure_fed_back
+from coaxshell.solver.coupling import ModalSystem, determinant
 from coaxshell.solver.ingredients import OWN
-from coaxshell.solver.scaling import ControlGains, Problem
+from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 
 _MAX_NODES = 8192
@@ -65,9 +65,9 @@ class OpenLoop:
         """Return it for a problem, whose gains only tell which shells are controlled."""
         system = ModalSystem(problem.open_loop, nodes, orders, shared=shared)
         fed_back = {
-            i: pressure_fed_back(problem, i, operator.tangential, orders[:, None])
-            for i, operator in enumerate(system.shells)
-            if operator is not None and problem.shells[i].gains is not None
+            i: wall.fed_back(operator.tangential, orders)
+            for i, (wall, operator) in enumerate(zip(problem.shells, system.shells, strict=True))
+            if wall.gains is not None
         }
         return cls(system.diagonal, system.coupling, determinant(system.diagonal, system.coupling), fed_back)
 
@@ -77,38 +77,27 @@ class OpenLoop:
         for i, pressure in self.fed_back.items():
             gains = problem.shells[i].gains
             if gains is not None:
-                diagonal[i] = diagonal[i] - (gains.proportional + gains.derivative * nodes) * pressure
+                diagonal[i] = diagonal[i] - gains.at(nodes) * pressure
         return np.asarray(determinant(diagonal, self.coupling) / self.determinant)
 
 
 def with_gains(problem: Problem, proportional: float, derivative: float) -> Problem:
     """Return the problem with the gains of every controlled shell scaled by 0 or 1 each."""
-    scaled = [
-        None if s.gains is None else ControlGains(s.gains.proportional * proportional, s.gains.derivative * derivative)
-        for s in problem.shells
-    ]
-    return replace(problem, shells=tuple(replace(s, gains=gains) for s, gains in zip(problem.shells, scaled, strict=True)))
+    shells = (wall.with_gains(None if wall.gains is None else wall.gains.scaled(proportional, derivative)) for wall in problem.shells)
+    return replace(problem, shells=tuple(shells))
 
 
 def highest_frequency(problem: Problem, max_order: int) -> float:
     """Return a power of two above which feedback is less than half of every controlled shell's inertia."""
-    orders = all_orders(max_order)
-    highest = 1.0
-    for i, shell in enumerate(problem.shells):
-        if shell.gains is None:
-            continue
-        volts = np.abs(np.stack(problem.sensor_gain(i, orders))).max(axis=0) * abs(problem.actuator_pressure(i))
-        damping = float((volts * abs(shell.gains.derivative)).max()) / shell.mass
-        stiffness = float((volts * abs(shell.gains.proportional)).max()) / shell.mass
-        highest = max(highest, 2.0 * damping + 2.0 * np.sqrt(stiffness))
+    highest = max(1.0, *(wall.feedback_frequency(all_orders(max_order)) for wall in problem.shells))
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
 def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, FloatArray]:
     """Return sigma_0 and the frequencies: evenly spaced as far as shells resonate, then by a growing step to where feedback fades."""
     order = np.array([float(max_order)])
-    resonances = [np.sqrt(problem.stiffness(i, order).vv[0] / s.mass) for i, s in enumerate(problem.shells) if s.section is not None]
-    dense = min(1.2 * float(max(resonances)), highest_frequency(problem, max_order))
+    resonance = max(float(wall.highest_frequency(order)[0]) for wall in problem.shells)
+    dense = min(1.2 * resonance, highest_frequency(problem, max_order))
     shift = max(1.0 / duration, dense / (_SPACING * _MAX_NODES))
     even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)
     beyond = np.geomspace(even[-1], max(highest_frequency(problem, max_order), 1.02 * even[-1]), 200)

@@ -213,7 +213,7 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
     for i in [] if interface.saturating is None else interface.saturating.controlled:
         assert interface.saturating is not None
         law = voltage_law(interface.saturating.problem, i, grid.nodes, structure.tangential_ratio[i])
-        given[i] += problem.actuator_pressure(i) * (law * moved[i])[:, orders]
+        given[i] += problem.shells[i].actuator_pressure * (law * moved[i])[:, orders]
     normal = np.einsum("ijmk,jhmk->ihmk", compliance[:, :, orders], given)
     return relative(_of_orders(normal, structure.tangential_ratio[:, None, orders] * normal, orders, grid.invert), whole)
 

@@ -15,17 +15,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.structure.section import PiezoelectricLayer, Section
+from coaxshell.structure.shell_model import Gain
 from coaxshell.structure.thin import potential_gain
-
-
-class StressGain(NamedTuple):
-    """Hoop stress per unit amplitude V and W, Pa/m, each of the shape of m."""
-
-    v: FloatArray
-    w: FloatArray
 
 
 class WallPoint(NamedTuple):
@@ -36,7 +29,7 @@ class WallPoint(NamedTuple):
     piezoelectric: PiezoelectricLayer | None
 
 
-def design_stress_gain(section: Section, m: npt.ArrayLike) -> StressGain:
+def design_stress_gain(section: Section, m: npt.ArrayLike) -> Gain:
     """Return the mid-surface hoop stress of the core per unit (V, W): E_h/(1 - nu^2) (m, -1)/R (Eq. 22).
 
     Parameters
@@ -48,12 +41,12 @@ def design_stress_gain(section: Section, m: npt.ArrayLike) -> StressGain:
 
     Returns
     -------
-    StressGain
+    Gain
         Pa per metre of displacement.
     """
     m = np.asarray(m, dtype=np.float64)
     scale = section.core_modulus / section.radius
-    return StressGain(scale * m, np.full_like(m, -scale))
+    return Gain(scale * m, np.full_like(m, -scale))
 
 
 def strain_gain(m: npt.ArrayLike, radius: float, z: float) -> tuple[FloatArray, FloatArray]:
@@ -63,19 +56,9 @@ def strain_gain(m: npt.ArrayLike, radius: float, z: float) -> tuple[FloatArray, 
 
 
 def wall_point(section: Section, z: float) -> WallPoint:
-    """Return what the wall is made of at z (m, positive outward); on the boundary of two layers the outer one is meant.
-
-    Raises
-    ------
-    InputError
-        If z lies outside the wall; the message names the range.
-    """
+    """Return what the wall is made of at z (positive outward) or its nearest face; between two layers the outer one is meant."""
     inner, outer = section.layers[0][0], section.layers[-1][1]
     slack = 1e-9 * (outer - inner)  # forgives the rounding of sums of thicknesses
-    if not inner - slack <= z <= outer + slack:
-        raise InputError(
-            "depth", f"{z:g} m is outside the wall", f'give z from {inner:g} to {outer:g} m (positive outward), "inner" or "outer"'
-        )
     z = min(max(z, inner), outer)
     bottom, top, modulus = next((layer for layer in section.layers if z < layer[1] - slack), section.layers[-1])
     middle = (bottom + top) / 2.0
@@ -83,7 +66,7 @@ def wall_point(section: Section, z: float) -> WallPoint:
     return WallPoint(z, modulus, piezoelectric)
 
 
-def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> StressGain:
+def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> Gain:
     """Return the hoop stress at a point of the wall per unit (V, W), bending and open-circuit potential included (Eqs. A.4, A.5).
 
     sigma = Q strain(z) - e32~ E_z, E_z = -dPhi/dz with Phi = -cos(pi (z - z_c)/t) phi_j (Eq. A.7) and phi_j of Eq. 20. The voltage
@@ -100,7 +83,7 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> StressG
 
     Returns
     -------
-    StressGain
+    Gain
         Pa per metre of displacement.
     """
     strain_v, strain_w = strain_gain(m, section.radius, where.z)
@@ -110,7 +93,7 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> StressG
         per_volt = layer.reduced_coupling * math.pi / layer.thickness * math.sin(math.pi * (where.z - layer.centre) / layer.thickness)
         phi_v, phi_w = potential_gain(layer, m, section.radius)
         gain_v, gain_w = gain_v + per_volt * phi_v, gain_w + per_volt * phi_w
-    return StressGain(gain_v, gain_w)
+    return Gain(gain_v, gain_w)
 
 
 def control_stress(where: WallPoint) -> float:

@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.structure.section import PiezoelectricLayer, Section
-
-
-class WallStiffness(NamedTuple):
-    """Entries of the symmetric modal stiffness of one wall on (V, W), N/m^3, each of the shape of m."""
-
-    vv: FloatArray
-    vw: FloatArray
-    ww: FloatArray
+from coaxshell.structure.shell_model import Gain, WallStiffness
 
 
 def membrane_strain(m: FloatArray, radius: float) -> tuple[FloatArray, FloatArray]:
@@ -61,11 +52,11 @@ def wall_stiffness(section: Section, m: npt.ArrayLike) -> WallStiffness:
     )
 
 
-def potential_gain(layer: PiezoelectricLayer, m: npt.ArrayLike, radius: float) -> tuple[FloatArray, FloatArray]:
+def potential_gain(layer: PiezoelectricLayer, m: npt.ArrayLike, radius: float) -> Gain:
     """Return the potential of an open-circuit layer per unit (V, W), V/m (sensor equation, Eq. 20).
 
     phi_j = E_j (m V - m^2 W)/(zeta33 R^2 + m^2 zeta22); a rigid translation (m = 1, V = W) gives none.
     """
     m = np.asarray(m, dtype=np.float64)
     gain = layer.coupling / (layer.zeta33 * radius**2 + m**2 * layer.zeta22)
-    return gain * m, -gain * m**2
+    return Gain(gain * m, -gain * m**2)

@@ -14,11 +14,12 @@ from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import Response
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.modal import Gain, amplitudes, displacement_gain, stress_gain_of, voltage_gain
+from coaxshell.response.modal import amplitudes, displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.translation import relative_gain
 from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.solver.electrodes import segment_length
+from coaxshell.structure.shell_model import Gain
 
 
 class DesignReading:

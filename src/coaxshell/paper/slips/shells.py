@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 
 from scipy.integrate import quad
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.scaling import Problem
 from coaxshell.structure.section import PiezoelectricLayer, Section
-from coaxshell.structure.thin import WallStiffness, bending_strain, membrane_strain, open_circuit_stiffness
+from coaxshell.structure.shell_model import WallStiffness
+from coaxshell.structure.thin import bending_strain, membrane_strain, open_circuit_stiffness
+from coaxshell.structure.thin_wall import ThinWall
 
 
 def control_sign(problem: Problem) -> Problem:
@@ -38,32 +39,43 @@ def doubled_curvature(problem: Problem) -> Problem:
     return _with_layers(problem, printed)
 
 
-def printed_strain(ingredients: Ingredients) -> Ingredients:
-    """Return the ingredients with the strain of Eq. A.3, ((1 - z/R) dv/dtheta - w)/R: no curvature from w, k = (-m, 0)/R^2.
+@dataclass(frozen=True, kw_only=True)
+class PrintedStrain(ThinWall):
+    """A thin wall with the strain of Eq. A.3, ((1 - z/R) dv/dtheta - w)/R: no curvature from w, k = (-m, 0)/R^2.
 
     Only section stiffness is changed; the open-circuit stiffening of piezoelectric layers keeps Eq. 20, which has both terms.
     """
 
-    def stiffness(section: Section, m: FloatArray) -> WallStiffness:
-        ev, ew = membrane_strain(m, section.radius)
-        kv, kw = bending_strain(m, section.radius)
+    def stiffness(self, orders: FloatArray) -> WallStiffness:
+        """Return K with that strain."""
+        section = self.section
+        ev, ew = membrane_strain(orders, section.radius)
+        kv, kw = bending_strain(orders, section.radius)
         a, b, d = section.membrane, section.cross, section.bending
-        electric = sum(open_circuit_stiffness(layer, m, section.radius) for layer in section.piezoelectric)
+        electric = sum(open_circuit_stiffness(layer, orders, section.radius) for layer in section.piezoelectric)
+        factor = self.length / self.pressure
         return WallStiffness(
-            vv=a * ev * ev + 2 * b * ev * kv + (d + electric) * kv * kv,
-            vw=a * ev * ew + b * ew * kv + electric * kv * kw,
-            ww=a * ew * ew + electric * kw * kw,
+            vv=factor * (a * ev * ev + 2 * b * ev * kv + (d + electric) * kv * kv),
+            vw=factor * (a * ev * ew + b * ew * kv + electric * kv * kw),
+            ww=factor * (a * ew * ew + electric * kw * kw),
         )
 
-    return replace(ingredients, stiffness=stiffness)
+
+def printed_strain(problem: Problem) -> Problem:
+    """Return the problem with walls of the printed strain."""
+    return _changed(problem, lambda wall: PrintedStrain(**{field.name: getattr(wall, field.name) for field in fields(wall)}))
 
 
 def _with_layers(problem: Problem, change: Callable[[Section, PiezoelectricLayer], PiezoelectricLayer]) -> Problem:
     """Return the problem with its piezoelectric layers changed."""
-    shells = []
-    for shell in problem.shells:
-        section = shell.section
-        if section is not None:
-            section = replace(section, piezoelectric=tuple(change(section, layer) for layer in section.piezoelectric))
-        shells.append(replace(shell, section=section))
-    return replace(problem, shells=tuple(shells))
+
+    def changed(wall: ThinWall) -> ThinWall:
+        layers = tuple(change(wall.section, layer) for layer in wall.section.piezoelectric)
+        return replace(wall, section=replace(wall.section, piezoelectric=layers))
+
+    return _changed(problem, changed)
+
+
+def _changed(problem: Problem, change: Callable[[ThinWall], ThinWall]) -> Problem:
+    """Return the problem with its thin walls changed."""
+    return replace(problem, shells=tuple(change(wall) if isinstance(wall, ThinWall) else wall for wall in problem.shells))

@@ -40,7 +40,7 @@ _SWITCHES: Mapping[str, Callable[[Problem], Problem]] = MappingProxyType(
         "permittivity": _printed_permittivity,
         "control-sign": shells.control_sign,
         "doubled-curvature": shells.doubled_curvature,
-        "printed-strain": _formula(shells.printed_strain),
+        "printed-strain": shells.printed_strain,
         "radius-factor": _formula(fluids.radius_factor),
         "interior-derivative": _formula(fluids.interior_derivative),
         "interior-function": _formula(fluids.interior_function),
@@ -79,7 +79,7 @@ def slipped(system: System, slips: Iterable[str]) -> Problem:
         what = "has no switch" if key in SLIPS else "is not known"
         raise InputError("slips", f"{key!r} {what}", f"use {', '.join(sorted(SWITCHED))}")
     problem = dimensionless(system)
-    if wanted and (len(problem.shells) != 2 or None in problem.fluids or any(shell.section is None for shell in problem.shells)):
+    if wanted and (len(problem.shells) != 2 or None in problem.fluids or not all(wall.moves for wall in problem.shells)):
         raise InputError("slips", "the system is not two elastic shells in three fluids", "use one that is, such as the preset 'bare'")
     for key, switch in _SWITCHES.items():
         if key in wanted:

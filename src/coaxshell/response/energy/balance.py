@@ -17,7 +17,7 @@ from coaxshell.numerics.scalars import plain
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.energy.shells import actuator_work, shell_energy
+from coaxshell.response.energy.shells import actuator_work, shell_dissipation, shell_energy
 from coaxshell.response.energy.work import SurfaceWork, surface_pressures
 from coaxshell.response.labels import time_coordinates
 from coaxshell.solver.recompute import SolvedSpectra
@@ -51,7 +51,8 @@ def energy(
     - store: ``<shell>_kinetic``, ``_strain`` (membrane and bending of all layers), ``_piezoelectric`` (open-circuit stiffening);
       ``interior_`` and ``gap_kinetic``, ``_compression``, integrated from the field in the fluid, not from work at its walls;
       ``absorber_kinetic``, ``absorber_spring``.
-    - loss, since the start: ``damper_dissipation``; ``actuator_work``, taken from the shells by the actuators (negative: given).
+    - loss, since the start: ``damper_dissipation``; ``<shell>_dissipation`` of a wall that has losses; ``actuator_work``, taken from
+      the shells by the actuators (negative: given).
     - work on the outer shell, since the start: ``exterior_work`` of the total exterior pressure, the sum of ``incident_work``
       (the wave as if nothing were there), ``scattered_work`` (what a rigid cylinder adds to it) and ``radiated_work``. The
       ``radiated_energy`` is minus the last: all that the shell's motion gave the exterior fluid, its near field included.
@@ -110,13 +111,15 @@ def _shells(motion: Motion) -> dict[str, Entry]:
     count = len(motion.problem.shells)
     entries: dict[str, Entry] = {}
     for i in range(count):
-        found = shell_energy(motion, i)
-        if found is None:
+        if not motion.problem.shells[i].moves:
             continue
+        found, lost = shell_energy(motion, i), shell_dissipation(motion, i)
         name = shell_name(i, count) if i in (0, count - 1) else f"shell_{i}"
         group = shell_phrase(i, count)
         for part, what in (("kinetic", "kinetic"), ("strain", "strain"), ("piezoelectric", "piezoelectric (open-circuit)")):
             entries[f"{name}_{part}"] = Entry(getattr(found, part), "store", group, f"{what} energy of the {group}")
+        if lost is not None:
+            entries[f"{name}_dissipation"] = Entry(lost, "loss", group, f"energy dissipated in the {group}")
     taken = actuator_work(motion)[motion.kept]
     return entries | {"actuator_work": Entry(taken, "loss", "actuators", "work that the actuators have taken from the shells")}
 

@@ -2,54 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import NamedTuple
-
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
-from coaxshell.structure.thin import WallStiffness, bending_strain, open_circuit_stiffness, wall_stiffness
+from coaxshell.structure.shell_model import WallEnergy, WallMotion
 
 
-class ShellEnergy(NamedTuple):
-    """Kinetic, strain and piezoelectric energy of one shell, each of shape (kept instants,), in rho_e c_e^2 a^2 per length."""
-
-    kinetic: FloatArray
-    strain: FloatArray
-    piezoelectric: FloatArray
+def shell_energy(motion: Motion, shell: int) -> WallEnergy:
+    """Return the energies of one shell at the kept instants."""
+    return motion.problem.shells[shell].energy(_of_wall(motion, shell, motion.kept))
 
 
-def shell_energy(motion: Motion, shell: int) -> ShellEnergy | None:
-    """Return the energies of one shell; None for a rigid one.
-
-    kinetic (R/2) sum beta pi M (dW/dt^2 + dV/dt^2); strain (R/2) sum beta pi (V, W) K (V, W) with the layers' own membrane,
-    cross and bending stiffness; piezoelectric the same with sum_j kappa_j k k', the open-circuit stiffening.
-    """
+def shell_dissipation(motion: Motion, shell: int) -> FloatArray | None:
+    """Return the energy that has turned into heat in a shell by the kept instants; None if none ever does."""
     wall = motion.problem.shells[shell]
-    if wall.section is None:
+    if not wall.dissipates:
         return None
-    w, v, dw, dv = (x[..., motion.kept] for x in motion.histories(shell))
-    weight = 0.5 * wall.radius * motion.circle
-    scale = motion.problem.scales.length / motion.problem.scales.pressure
-    elastic = wall_stiffness(replace(wall.section, piezoelectric=()), motion.orders)
-    electric = sum((open_circuit_stiffness(x, motion.orders, wall.section.radius) for x in wall.section.piezoelectric), 0.0 * weight)
-    bend_v, bend_w = bending_strain(motion.orders, wall.section.radius)
-    bending = bend_v[:, None] * v + bend_w[:, None] * w
-    return ShellEnergy(
-        kinetic=wall.mass * (_square(weight, dw, dw) + _square(weight, dv, dv)),
-        strain=scale * _quadratic(weight, elastic, v, w),
-        piezoelectric=scale * _square(weight * electric, bending, bending),
-    )
+    power = wall.dissipated_power(_of_wall(motion, shell, slice(None)))
+    return np.asarray(integrate.cumulative_simpson(power, dx=motion.grid.time_step, initial=0.0)[motion.kept])
 
 
-def _square(weight: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("m,hmt,hmt->t", weight, a, b), dtype=np.float64)
-
-
-def _quadratic(weight: FloatArray, k: WallStiffness, v: FloatArray, w: FloatArray) -> FloatArray:
-    return _square(weight * k.vv, v, v) + 2.0 * _square(weight * k.vw, v, w) + _square(weight * k.ww, w, w)
+def _of_wall(motion: Motion, shell: int, instants: slice) -> WallMotion:
+    return WallMotion(motion.orders, motion.circle, *(x[..., instants] for x in motion.histories(shell)))
 
 
 def actuator_work(motion: Motion) -> FloatArray:
@@ -61,14 +38,14 @@ def actuator_work(motion: Motion) -> FloatArray:
     problem, grid, s = motion.problem, motion.grid, motion.grid.nodes
     given = motion.spectra.actuation
     total = np.zeros(grid.time.size)
-    for i, shell in enumerate(problem.shells):
-        if shell.gains is None:
+    for i, wall in enumerate(problem.shells):
+        if wall.gains is None:
             continue
         if given is not None:
             pressure = grid.transform_linear(given[i])
         else:
-            gain_v, gain_w = problem.sensor_gain(i, motion.orders[:, None])
-            volts = gain_v * motion.spectra.tangential[i] + gain_w * motion.spectra.normal[i]
-            pressure = problem.actuator_pressure(i) * (shell.gains.proportional + shell.gains.derivative * s) * volts
-        total -= SurfaceWork(grid, shell.radius * motion.circle, motion.normal_velocity[i])(pressure)
+            sensor = wall.sensor_gain(motion.orders[:, None])
+            volts = sensor.v * motion.spectra.tangential[i] + sensor.w * motion.spectra.normal[i]
+            pressure = wall.actuator_pressure * wall.gains.at(s) * volts
+        total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

@@ -22,19 +22,17 @@ class ModalStep:
         self.problem, self.step = problem, grid.time_step
         self.orders = all_orders(max_order)
         count = len(problem.shells)
-        self.free = np.array([shell.section is not None for shell in problem.shells])
-        self.mass = np.array([shell.mass if shell.section is not None else 1.0 for shell in problem.shells])
-        stiff = [problem.stiffness(i, self.orders) if self.free[i] else None for i in range(count)]
-        zero = np.zeros(max_order + 1)
-        self.vv, self.vw, self.ww = (
-            np.stack([zero if k is None else getattr(k, name) for k in stiff])[:, None] for name in ("vv", "vw", "ww")
-        )
-        sensors = [problem.sensor_gain(i, self.orders) for i in range(count)]
+        walls = problem.shells
+        self.free = np.array([wall.moves for wall in walls])
+        self.mass = np.array([wall.mass for wall in walls])
+        stiffness = [wall.stiffness(self.orders) for wall in walls]
+        self.vv, self.vw, self.ww = (np.stack([k[entry] for k in stiffness])[:, None] for entry in range(3))
+        sensors = [wall.sensor_gain(self.orders) for wall in walls]
         self.sensor_v, self.sensor_w = (np.stack([pair[k] for pair in sensors])[:, None] for k in (0, 1))
-        gains = [shell.gains for shell in problem.shells]
+        gains = [wall.gains for wall in walls]
         self.proportional = np.array([0.0 if g is None else g.proportional for g in gains])[:, None, None]
         self.derivative = np.array([0.0 if g is None else g.derivative for g in gains])[:, None, None]
-        self.actuator = np.array([problem.actuator_pressure(i) if g is not None else 0.0 for i, g in enumerate(gains)])[:, None, None]
+        self.actuator = np.array([0.0 if wall.gains is None else wall.actuator_pressure for wall in walls])[:, None, None]
         shape = (count, parities, max_order + 1)
         self.w, self.w_before, self.v, self.v_before = (np.zeros(shape) for _ in range(4))
         self._require_stable()
@@ -62,7 +60,6 @@ class ModalStep:
         Also advances V, whose equation has no fluid in it.
         """
         tangential = -(self.vv * self.v + self.vw * self.w) / self.mass[:, None, None]
-        tangential[~self.free] = 0.0
         self.v_after = 2.0 * self.v - self.v_before + self.step**2 * tangential
         self.v_rate = (self.v_after - self.v_before) / (2.0 * self.step)
         self.w_rate_known = (self.w - self.w_before) / self.step

@@ -210,7 +210,7 @@ def _block_length(unknowns: int) -> int:
 
 def _actuators(structure: StructureSpectra, points: InterfacePoints | PointsAlone, controlled: list[int]) -> Actuators:
     limits = np.array([voltage_limit(structure.problem, i) for i in controlled])
-    full = np.array([structure.problem.actuator_pressure(i) for i in controlled]) * limits
+    full = np.array([structure.problem.shells[i].actuator_pressure for i in controlled]) * limits
     return Actuators(points.shells, controlled, points.parities, points.modes, limits, full)
 
 

@@ -117,7 +117,7 @@ class SaturatedShell:
     def __init__(self, problem: Problem, index: int, present: FloatArray, parities: int) -> None:
         self.index = index
         self.limit = voltage_limit(problem, index)
-        self.pressure_per_volt = problem.actuator_pressure(index)
+        self.pressure_per_volt = problem.shells[index].actuator_pressure
         self.evaluate, self.project = circle(present.size, parities)
         self._shape = (parities, present.size)
         self._feedthrough = np.tile(present, parities) * self.pressure_per_volt
@@ -148,10 +148,5 @@ class SaturatedShell:
 
 def voltage_limit(problem: Problem, index: int) -> float:
     """Return the largest voltage of a shell's actuator: field limit times thickness."""
-    section, control = problem.shells[index].section, problem.system.control
-    assert section is not None
-    assert control is not None
-    actuator = section.layer("actuator")
-    assert actuator is not None
-    field = control.field_limit if control.field_limit is not None else actuator.field_limit
-    return field * actuator.thickness
+    control = problem.system.control
+    return problem.shells[index].voltage_limit(None if control is None else control.field_limit)

@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 from coaxshell.model.fluids import VACUUM, Fluid
 from coaxshell.model.sources import PlaneShock
 from coaxshell.model.system import System
-from coaxshell.solver.coupling import shell_operator
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
@@ -55,7 +54,7 @@ def _zero(problem: Problem, guess: float, m: int) -> float:
     """Return the frequency next to a guess at which the dynamic stiffness, real in vacuo, vanishes."""
 
     def stiffness(omega: float) -> float:
-        return float(shell_operator(problem, 0, np.array([1j * omega]), np.array([float(m)])).impedance[0, 0].real)
+        return float(problem.shells[0].operator(np.array([float(m)]), np.array([1j * omega])).impedance[0, 0].real)
 
     return float(brentq(stiffness, 0.99 * guess, 1.01 * guess, xtol=1e-14))
 

@@ -1,0 +1,242 @@
+"""What a wall tells the rest of the house: the protocol behind which thin, rigid and any other walls stand.
+
+Everything that goes in and comes out is dimensionless (lengths in a, times in a/c_e, pressures in rho_e c_e^2), voltages are in volts.
+A wall is linear; per order m and Laplace node s its normal displacement W (positive inward) answers the net inward pressure on it by its
+impedance Z, and every other quantity is recovered from W:
+
+    Z W = p,      V = (V/W) W,      a quantity = gain.v V + gain.w W.
+
+A wall of another theory is a subclass of :class:`ShellModel`; nothing else needs to know of it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Self, TypeVar
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+
+Ratio = TypeVar("Ratio", FloatArray, ComplexArray)
+
+
+@dataclass(frozen=True)
+class ControlGains:
+    """PD feedback of one wall: u = proportional * phi_s + derivative * dphi_s/dt, t dimensionless (Eq. 17)."""
+
+    proportional: float
+    derivative: float
+
+    def at(self, s: ComplexArray) -> ComplexArray:
+        """Return u per phi_s, k_p + k_d s."""
+        return self.proportional + self.derivative * s
+
+    def scaled(self, proportional: float, derivative: float) -> ControlGains:
+        """Return the gains times a factor each."""
+        return ControlGains(proportional * self.proportional, derivative * self.derivative)
+
+
+class Gain(NamedTuple):
+    """A quantity per unit amplitude V and W, each of the shape of the orders."""
+
+    v: FloatArray
+    w: FloatArray
+
+    def recovered(self, tangential: Ratio) -> Ratio:
+        """Return the quantity per unit W where V is ``tangential`` times W."""
+        return self.v * tangential + self.w
+
+
+@dataclass
+class WallOperator:
+    """One wall at some orders and nodes, each of shape (orders, nodes): dynamic stiffness Z (load per W), feedback included, and V/W."""
+
+    impedance: ComplexArray
+    tangential: ComplexArray
+
+
+class Leading(NamedTuple):
+    """How a wall answers at once, Z = mass s^2 + damping s + O(1): ``damping`` is a number or of shape (orders, 1)."""
+
+    mass: float
+    damping: FloatArray | float
+
+
+class WallStiffness(NamedTuple):
+    """Entries of the symmetric stiffness of a wall on (V, W), each of the shape of the orders."""
+
+    vv: FloatArray
+    vw: FloatArray
+    ww: FloatArray
+
+
+class WallMotion(NamedTuple):
+    """Histories of one wall, of which energies are made.
+
+    Attributes
+    ----------
+    orders : ndarray, shape (M + 1,)
+    circle : ndarray, shape (M + 1,)
+        Integrals of cos^2(m theta) over the circle, beta pi.
+    w, v, w_rate, v_rate : ndarray, shape (parities, M + 1, T)
+        W, V, dW/dt, dV/dt.
+    """
+
+    orders: FloatArray
+    circle: FloatArray
+    w: FloatArray
+    v: FloatArray
+    w_rate: FloatArray
+    v_rate: FloatArray
+
+
+class WallEnergy(NamedTuple):
+    """Energies of one wall, each of shape (T,), in units of rho_e c_e^2 a^2 per length; open-circuit stiffening is ``piezoelectric``."""
+
+    kinetic: FloatArray
+    strain: FloatArray
+    piezoelectric: FloatArray
+
+
+def square(weight: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return sum over m of weight_m a_m b_m over both parities, shape (T,), of histories (parities, M + 1, T)."""
+    return np.asarray(np.einsum("m,hmt,hmt->t", weight, a, b), dtype=np.float64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShellModel(ABC):
+    """A wall on a cylinder.
+
+    Attributes
+    ----------
+    radius : float
+        R/a, of the surface that the fluids wet.
+    mass : float
+        I/(rho_e a), by which it resists at once; infinite if it does not move.
+    gains : ControlGains or None
+        Feedback from its sensor to its actuator.
+    """
+
+    radius: float
+    mass: float
+    gains: ControlGains | None = None
+
+    def with_gains(self, gains: ControlGains | None) -> Self:
+        """Return the wall with other feedback, or with none."""
+        return replace(self, gains=gains)
+
+    # Motion
+
+    @property
+    def moves(self) -> bool:
+        """Whether it moves at all."""
+        return True
+
+    @abstractmethod
+    def passive(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
+        """Return impedance and V/W without feedback."""
+
+    @abstractmethod
+    def highest_frequency(self, orders: FloatArray) -> FloatArray:
+        """Return the highest frequency at which each order resonates by itself, radians per transit: steps and contours resolve it."""
+
+    @property
+    def damping(self) -> float:
+        """Coefficient of s in its impedance without feedback as s grows: 0 for a wall without losses."""
+        return 0.0
+
+    @property
+    def crossing_order(self) -> float:
+        """An order above which its stress may rise again before it falls, 0 if there is none: orders left out are sampled beyond it."""
+        return 0.0
+
+    def stiffness(self, orders: FloatArray) -> WallStiffness:
+        """Return K of a wall that is M d2(v, w)/dt2 + K (v, w), as the direct engine steps it; InputError if it is none."""
+        raise InputError("engine", "'direct' cannot step a wall of this kind", 'use engine="spectral"')
+
+    def operator(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
+        """Return impedance and V/W with feedback, which adds - (k_p + k_d s) times what it feeds back per unit gain (Eqs. 4, 17, 20)."""
+        found = self.passive(orders, s)
+        if self.gains is not None:
+            found.impedance -= self.gains.at(s) * self.fed_back(found.tangential, orders)
+        return found
+
+    def leading(self, orders: FloatArray) -> Leading:
+        """Return mass and damping at once: its own, and what derivative feedback adds."""
+        if self.gains is None:
+            return Leading(self.mass, self.damping)
+        sensed = self.sensor_gain(orders[:, None]).w
+        return Leading(self.mass, self.damping - self.actuator_pressure * self.gains.derivative * sensed)
+
+    # Transducers
+
+    def has(self, role: str) -> bool:
+        """Return whether it has a piezoelectric layer of a role, "sensor" or "actuator"."""
+        return False
+
+    def sensor_gain(self, orders: FloatArray, role: str = "sensor") -> Gain:
+        """Return volts of an open-circuit layer per unit (V, W) (Eq. 20); zeros if it has no such layer."""
+        return Gain(np.zeros_like(orders), np.zeros_like(orders))
+
+    @property
+    def actuator_pressure(self) -> float:
+        """Inward pressure per volt of control (Eqs. 4, 13); 0 without an actuator."""
+        return 0.0
+
+    def voltage_limit(self, field: float | None = None) -> float:
+        """Return the largest voltage of its actuator, V, by its material's field limit or another (V per a); infinite without one."""
+        return float("inf")
+
+    def fed_back(self, tangential: ComplexArray, orders: FloatArray) -> ComplexArray:
+        """Return the actuator's pressure per W and unit gain: pressure per volt times the sensor's voltage per W; V/W is given."""
+        return np.asarray(self.actuator_pressure * self.sensor_gain(orders[:, None]).recovered(tangential))
+
+    def feedback_frequency(self, orders: FloatArray) -> float:
+        """Return a frequency above which feedback is less than half of its inertia; 0 without feedback."""
+        if self.gains is None:
+            return 0.0
+        volts = np.abs(np.stack(self.sensor_gain(orders))).max(axis=0) * abs(self.actuator_pressure)
+        damping = float((volts * abs(self.gains.derivative)).max()) / self.mass
+        stiffness = float((volts * abs(self.gains.proportional)).max()) / self.mass
+        return 2.0 * damping + 2.0 * float(np.sqrt(stiffness))
+
+    # Stress, energy, range of the theory
+
+    def stress_gain(self, orders: FloatArray, depth: float | None = None) -> Gain:
+        """Return the hoop stress per unit (V, W): of the core at the mid-surface (Eq. 22), or at a depth (outward of the mid-surface).
+
+        Raises
+        ------
+        InputError
+            If it has no stress, or the depth lies outside it.
+        """
+        raise InputError("shell", "this wall has no stress", "choose another one")
+
+    def control_stress(self, depth: float) -> float:
+        """Return the hoop stress per volt of control at a depth (Eq. A.10)."""
+        return 0.0
+
+    @property
+    def faces(self) -> tuple[float, float]:
+        """Depths of its inner and its outer face."""
+        return 0.0, 0.0
+
+    @abstractmethod
+    def energy(self, motion: WallMotion) -> WallEnergy:
+        """Return the energies of a motion."""
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether any energy turns into heat in it."""
+        return False
+
+    def dissipated_power(self, motion: WallMotion) -> FloatArray:
+        """Return the power that turns into heat in it, shape (T,)."""
+        return np.zeros(motion.w.shape[-1])
+
+    def remarks(self) -> list[str]:
+        """Return a sentence for each respect in which it lies outside the range of its theory, with both numbers and the remedy."""
+        return []

@@ -1,0 +1,133 @@
+"""A thin layered wall in plane strain (Kirchhoff and Love), V eliminated from the motion of each order:
+
+    Z = M s^2 + K_ww - K_vw^2/(M s^2 + K_vv),      V/W = -K_vw/(M s^2 + K_vv),
+
+with the modal stiffness K of :mod:`coaxshell.structure.thin`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.structure.section import Section
+from coaxshell.structure.shell_model import Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
+from coaxshell.structure.stress import control_stress, design_stress_gain, stress_gain, wall_point
+from coaxshell.structure.thin import bending_strain, open_circuit_stiffness, potential_gain, wall_stiffness
+
+THIN_SHELL_LIMIT = 0.1
+"""Thickness over radius up to which thin-shell theory is taken without a remark."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThinWall(ShellModel):
+    """A wall of thin layers.
+
+    Attributes
+    ----------
+    section : Section
+        Its section integrals, SI.
+    length, pressure : float
+        a, m, and rho_e c_e^2, Pa.
+    """
+
+    section: Section
+    length: float
+    pressure: float
+
+    def stiffness(self, orders: FloatArray) -> WallStiffness:
+        """Return K, membrane, cross, bending and open-circuit stiffness together."""
+        factor = self.length / self.pressure
+        return WallStiffness(*(factor * entry for entry in wall_stiffness(self.section, orders)))
+
+    def passive(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
+        """Return impedance and V/W without feedback."""
+        m = orders[:, None]
+        stiffness = self.stiffness(m)
+        inertia = self.mass * s * s
+        tangential = -stiffness.vw / (inertia + np.where(m == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
+        return WallOperator(inertia + stiffness.ww + stiffness.vw * tangential, tangential)
+
+    def highest_frequency(self, orders: FloatArray) -> FloatArray:
+        """Return the membrane frequency of each order, sqrt(K_vv/M)."""
+        return np.asarray(np.sqrt(self.stiffness(orders).vv / self.mass))
+
+    @property
+    def crossing_order(self) -> float:
+        """R sqrt(a22/d22), where membrane and bending frequencies cross."""
+        section = self.section
+        return section.radius * math.sqrt(section.membrane / section.bending) if section.bending > 0 else 0.0
+
+    def has(self, role: str) -> bool:
+        """Return whether it has a piezoelectric layer of a role."""
+        return self.section.layer(role) is not None
+
+    def sensor_gain(self, orders: FloatArray, role: str = "sensor") -> Gain:
+        """Return volts of an open-circuit layer per unit (V, W) (Eq. 20)."""
+        layer = self.section.layer(role)
+        if layer is None:
+            return super().sensor_gain(orders, role)
+        gain_v, gain_w = potential_gain(layer, orders, self.section.radius)
+        return Gain(self.length * gain_v, self.length * gain_w)
+
+    @property
+    def actuator_pressure(self) -> float:
+        """-e32/(R rho_e c_e^2) (Eqs. 4, 13)."""
+        actuator = self.section.layer("actuator")
+        return 0.0 if actuator is None else -actuator.actuator_coupling / (self.section.radius * self.pressure)
+
+    def voltage_limit(self, field: float | None = None) -> float:
+        """Return field limit times thickness of the actuator."""
+        actuator = self.section.layer("actuator")
+        if actuator is None:
+            return super().voltage_limit(field)
+        return (field if field is not None else actuator.field_limit) * actuator.thickness
+
+    def stress_gain(self, orders: FloatArray, depth: float | None = None) -> Gain:
+        """Return the hoop stress of the core at the mid-surface (Eq. 22), or at a depth (Eqs. A.4, A.5)."""
+        section = self.section
+        gain = design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, wall_point(section, depth))
+        return Gain(self.length * gain.v, self.length * gain.w)
+
+    def control_stress(self, depth: float) -> float:
+        """Return -e32/t within the actuator, 0 elsewhere."""
+        return control_stress(wall_point(self.section, depth))
+
+    @property
+    def faces(self) -> tuple[float, float]:
+        """Depths of its inner and its outer face."""
+        return self.section.layers[0][0], self.section.layers[-1][1]
+
+    def energy(self, motion: WallMotion) -> WallEnergy:
+        """Return the energies of a motion, sums over the orders with weights (R/2) beta pi.
+
+        Kinetic M (dW/dt^2 + dV/dt^2); strain (V, W) K (V, W) with the layers' own membrane, cross and bending stiffness; piezoelectric
+        the same with sum_j kappa_j k k', the open-circuit stiffening.
+        """
+        orders, section, (w, v) = motion.orders, self.section, (motion.w, motion.v)
+        weight = 0.5 * self.radius * motion.circle
+        scale = self.length / self.pressure
+        k = wall_stiffness(replace(section, piezoelectric=()), orders)
+        electric = sum((open_circuit_stiffness(x, orders, section.radius) for x in section.piezoelectric), 0.0 * weight)
+        bend_v, bend_w = bending_strain(orders, section.radius)
+        bending = bend_v[:, None] * v + bend_w[:, None] * w
+        strain = square(weight * k.vv, v, v) + 2.0 * square(weight * k.vw, v, w) + square(weight * k.ww, w, w)
+        return WallEnergy(
+            kinetic=self.mass * (square(weight, motion.w_rate, motion.w_rate) + square(weight, motion.v_rate, motion.v_rate)),
+            strain=scale * strain,
+            piezoelectric=scale * square(weight * electric, bending, bending),
+        )
+
+    def remarks(self) -> list[str]:
+        """Return a sentence if it is too thick for its theory."""
+        inner, outer = self.faces
+        ratio = (outer - inner) / self.section.radius
+        if ratio <= THIN_SHELL_LIMIT:
+            return []
+        return [
+            f"thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell theory loses accuracy; use a thinner shell or "
+            "compare with a solid model"
+        ]
