@@ -181,6 +181,13 @@ def test_energies_and_exports_that_do_not_fit(run: cx.Response, tmp_path: Path, 
     assert list(tmp_path.iterdir()) == []
 
 
+def test_what_is_solved_again_for_a_field_is_weighed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = cx.simulate(_linked(4, 1e18), duration=1.0, time_step=2e-2, modes=12, refinement=4)
+    monkeypatch.setenv(memory.VARIABLE, "2 MB")
+    with pytest.raises(InputError, match=r"a run of 2 shells, orders 0 to 12 and 201 instants needs about"):
+        kept.pressure(x=0.0, y=0.5, time=0.5)
+
+
 def test_films_that_do_not_fit(run: cx.Response, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(memory.VARIABLE, "300 MB")
     with pytest.raises(InputError, match=r"memory: a film of 3 frames of 4,000 x 4,000 pixels needs about .* are free; use fewer pixels"):

@@ -238,7 +238,8 @@ def _marched_bytes(size: Size) -> tuple[float, float]:
     while 2 * length <= _LONGEST_BLOCK and 2 * length * unknowns <= _BLOCK_UNKNOWNS:
         length *= 2
     longest = length * 2 ** int(math.log2(max(1, size.instants // length)))
-    kernels = pairs * size.history
+    rates = size.controlled * n * size.history  # of the sensors, kept for the error of the step
+    kernels = pairs * size.history + rates
     left = kernels + 2.0 * n * size.source_parities * size.history + 3.0 * pairs * _COMPLEX * size.orders * longest
     state = (n + outputs + n) * size.parities * size.history + 2.0 * size.controlled * size.parities * size.history
     matrices = _REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))

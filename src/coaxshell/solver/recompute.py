@@ -14,6 +14,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.actuation import pressure_given
+from coaxshell.solver.cost import require_room
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
@@ -79,6 +80,7 @@ def _linked(structure: StructureSpectra, links: AbsorberSet, solution: ModalSolu
     if actuation is None and not links.count:
         return None
     if solution.settings.refinement > 1 or (links.is_linear and actuation is None):
+        require_room(structure.problem, solution.settings)  # a saved run may come from a larger machine
         return solve_linked(structure, links, saturate=actuation is not None)
     if actuation is not None:
         structure = structure.open_loop
