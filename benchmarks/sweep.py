@@ -10,6 +10,7 @@ import time
 
 import coaxshell as cx
 from coaxshell.solver.settings import Settings
+from coaxshell.studies import Execution
 from coaxshell.studies.evaluation import Batch, Case, batches, evaluate
 from coaxshell.studies.executors import process_pool
 from coaxshell.studies.metrics import metrics_of
@@ -51,7 +52,7 @@ def seconds_of(workers: int) -> float:
     with process_pool(workers) as pool:
         list(pool.map(evaluate, planned(workers)[: 2 * workers]))
         start = time.perf_counter()
-        run_cases(systems, metrics, RESOLUTION, executor=pool)
+        run_cases(systems, metrics, RESOLUTION, Execution(executor=pool))
         return time.perf_counter() - start
 
 

@@ -52,8 +52,10 @@ if TYPE_CHECKING:
         presets,
     )
     from coaxshell.response import PreparedSystem, Response, load_response, prepare, simulate
+    from coaxshell.solver.settings import Settings
     from coaxshell.studies import (
         Choice,
+        Execution,
         Integer,
         LogNormal,
         Normal,
@@ -74,7 +76,8 @@ _ROOMS = {
         "Vacuum absorber_ring fluids materials presets"
     ),
     "coaxshell.response": "PreparedSystem Response load_response prepare simulate",
-    "coaxshell.studies": "Choice Integer LogNormal Normal Objective Optimum Range Uniform optimise robustness sensitivity sweep",
+    "coaxshell.solver.settings": "Settings",
+    "coaxshell.studies": "Choice Execution Integer LogNormal Normal Objective Optimum Range Uniform optimise robustness sensitivity sweep",
 }
 _SUBPACKAGES = ("export", "plotting")
 _HOME = {name: room for room, names in _ROOMS.items() for name in names.split()}
@@ -86,6 +89,7 @@ __all__ = [
     "AbsorberRing",
     "Choice",
     "Elastic",
+    "Execution",
     "Explosive",
     "Exponential",
     "Fluid",
@@ -109,6 +113,7 @@ __all__ = [
     "Response",
     "RigidShell",
     "Sampled",
+    "Settings",
     "Shell",
     "SphericalShock",
     "SphericalWave",

@@ -111,6 +111,6 @@ def test_bad_options(refused, study):
     name = study()
     assert "--workers" in refused("sweep", name, "--workers", "two", left=[name])
     assert "no scheduler answers" in refused("sweep", name, "--dask", "tcp://127.0.0.1:9", left=[name])
-    assert "has no effect with --dask" in refused("sweep", name, "--dask", "x", "--workers", "2", left=[name])
+    assert "--workers: has no effect beside dask" in refused("sweep", name, "--dask", "x", "--workers", "2", left=[name])
     assert "--output" in refused("sweep", name, "--output", "x.txt", left=[name])
     assert "cannot be read" in refused("sweep", "none.toml", left=[name])

@@ -34,10 +34,33 @@ def test_descriptions_promise_type_checkers_no_narrower_types_than_they_take() -
     assert "__dataclass_transform__" in vars(type(Described).__mro__[1])
 
 
+SHARED = """
+import coaxshell as cx
+cx.simulate("bare", duration="3 ms", modes="auto", settings=cx.Settings(time_step=2e-3))
+cx.sweep("bare", {"source.peak_pressure": [1e4]}, modes=60, workers=1, store="kept", execution=cx.Execution(resume=True))
+cx.simulate("bare", mods=60)
+cx.sweep("bare", {"source.peak_pressure": [1e4]}, workers="two")
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("checker", CHECKERS)
+def test_shared_keywords_are_known_with_their_types(checker: str, tmp_path: Path) -> None:
+    path = tmp_path / "shared.py"
+    path.write_text(SHARED, encoding="utf-8")
+    found = checked(checker, tmp_path, [str(path)])
+    assert [int(line) for line in re.findall(r"shared\.py:(\d+):.*error", found.stdout)] == [5, 6], found.stdout[-3000:]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("checker", CHECKERS)
 def test_examples_and_readme(checker: str, tmp_path: Path) -> None:
-    files = [str(path) for path in sources(tmp_path)]
+    found = checked(checker, tmp_path, [str(path) for path in sources(tmp_path)])
+    assert found.returncode == 0, found.stdout[-3000:] + found.stderr[-1000:]
+
+
+def checked(checker: str, tmp_path: Path, files: list[str]) -> subprocess.CompletedProcess[str]:
+    """Return what a type checker says of some files of somebody else."""
     if checker == "mypy":
         (tmp_path / "mypy.ini").write_text("[mypy]\n", encoding="utf-8")
         options = [
@@ -54,5 +77,4 @@ def test_examples_and_readme(checker: str, tmp_path: Path) -> None:
         (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
         command = [checker, "--pythonpath", sys.executable, "--level", "error", *files]
     environment = {"MYPYPATH": str(PROJECT / "src"), "PATH": str(Path(shutil.which(checker) or sys.executable).parent) + ":/usr/bin:/bin"}
-    found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=environment)
-    assert found.returncode == 0, found.stdout[-3000:] + found.stderr[-1000:]
+    return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=environment)

@@ -37,7 +37,8 @@ class AnalyticCrew:
         self.functions = functions
         self.systems = []
 
-    def __call__(self, executor, workers):
+    def pool(self, execution, metrics, store):
+        self.metrics = metrics
         return self
 
     def __enter__(self):
@@ -46,9 +47,9 @@ class AnalyticCrew:
     def __exit__(self, *unused):
         pass
 
-    def run(self, systems, targets, resolution, store):
+    def __call__(self, systems, resolution):
         self.systems += systems
-        return [self._outcome(system, targets.metrics) for system in systems]
+        return [self._outcome(system, self.metrics) for system in systems]
 
     def _outcome(self, system, metrics):
         if isinstance(system, InputError):
@@ -64,7 +65,7 @@ def analytic(monkeypatch):
 
     def replaced(**functions):
         crew = AnalyticCrew({names[key]: function for key, function in functions.items()})
-        monkeypatch.setattr(optimising, "Crew", crew)
+        monkeypatch.setattr(optimising, "WorkerPool", crew.pool)
         return crew
 
     return replaced

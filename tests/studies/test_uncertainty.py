@@ -12,7 +12,7 @@ from scipy.special import ndtri
 from scipy.stats import truncnorm
 
 import coaxshell as cx
-from coaxshell.studies import How, OptimisationStudy, optimise_problem, read_study, running
+from coaxshell.studies import Execution, OptimisationStudy, optimise_problem, read_study, running
 from coaxshell.studies.evaluation import Outcome, failure
 from coaxshell.studies.uncertainty.distributions import coordinates_of, uncertain_of
 from coaxshell.studies.uncertainty.statistics import statistic
@@ -31,7 +31,7 @@ def stand_in(monkeypatch):
     """Replace the runs by a function of the system."""
 
     def replaced(function):
-        def run_cases(systems, metrics, resolution, **unused):
+        def run_cases(systems, metrics, *unused):
             return [
                 failure(metrics, str(one)) if isinstance(one, cx.InputError) else Outcome((function(one),) * len(metrics))
                 for one in systems
@@ -223,7 +223,7 @@ def test_a_robust_objective_of_a_study_file_is_the_statistic_of_robustness(tmp_p
         modes = 6
         """
     )
-    found = optimise_problem(read_study(tmp_path / "study.toml", OptimisationStudy).problem(tmp_path), How(workers=1))
+    found = optimise_problem(read_study(tmp_path / "study.toml", OptimisationStudy).problem(tmp_path), Execution(workers=1))
     uncertain = {"source.peak_pressure": {"relative": 0.1}, "absorbers.damping": cx.Uniform(0.5, 2, relative=True)}
     same = cx.robustness(found.system, uncertain, STRESS, samples=8, seed=5, workers=1, **quick)
     expected = float(same[STRESS[0]].sel(statistic="p95", estimate="value"))

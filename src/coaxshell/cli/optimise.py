@@ -64,10 +64,10 @@ def optimise(
 
     problem = read_study(study, OptimisationStudy).problem(study.parent, allow_code=allow_code, tell=tell_code)
     folder = journal or Path(f"{study.stem}.journal")
-    with study_options(folder, resume, workers, dask, quiet) as how:
+    with study_options(folder, resume, workers, dask, quiet) as execution:
         runs = problem.evaluations * max(1, len(problem.uncertain.points))
-        tell_study_time([problem.space.base], problem.resolution, runs, how, quiet=quiet)
-        optimum = optimise_problem(problem, how)
+        tell_study_time([problem.space.base], problem.resolution, runs, execution, quiet=quiet)
+        optimum = optimise_problem(problem, execution)
     with named_as_options(folder="output", path="output"):
         optimum.save(target)
     if figure is not None:

@@ -48,9 +48,9 @@ def sensitivity(
 
     plan = read_study(study, SensitivityStudy).plan(study.parent, allow_code=allow_code, tell=tell_code)
     folder = store or Path(f"{study.stem}.store")
-    with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as how:
-        tell_study_time(plan.systems, plan.resolution, len(plan.systems), how, quiet=quiet)
-        found = uncertainty_of(plan, how)
+    with kept(folder, len(plan.systems)), study_options(folder, resume, workers, dask, quiet) as execution:
+        tell_study_time(plan.systems, plan.resolution, len(plan.systems), execution, quiet=quiet)
+        found = uncertainty_of(plan, execution)
     with named_as_options(path="output"):
         write_netcdf(found, target)
     if figure is not None and told(found):

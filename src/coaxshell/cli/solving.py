@@ -40,7 +40,7 @@ class Request:
         with values.named_as_options(), progress(quiet) as report:
             if settings.modes != "auto":
                 tell_time(run_cost(system, settings), "the run", quiet)
-            return simulate(system, progress=report, **settings.arguments())
+            return simulate(system, settings=settings, progress=report)
 
     def settings(self, system: System) -> Settings:
         """Return the settings of a run of a system; InputError names the option that is wrong."""

@@ -56,9 +56,9 @@ def sweep(
     if figure is not None and len(design.fields) > 2:
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")
-    with kept(folder, len(design.cases)), study_options(folder, resume, workers, dask, quiet) as how:
-        tell_study_time([system], resolution, len(design.cases), how, quiet=quiet)
-        dataset = sweep_design(system, design, metrics, resolution, how)
+    with kept(folder, len(design.cases)), study_options(folder, resume, workers, dask, quiet) as execution:
+        tell_study_time([system], resolution, len(design.cases), execution, quiet=quiet)
+        dataset = sweep_design(system, design, metrics, resolution, execution)
     _write(dataset, target, csv, figure)
     if store is None:
         shutil.rmtree(folder, ignore_errors=True)

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Literal
+from typing import Unpack
 
 from coaxshell import solver
+from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
+from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
-from coaxshell.solver.settings import Settings
+from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.shared_parts import shared_parts
 
 
+@showing(SettingsKeywords, Settings)
 def simulate(
     system: SystemLike,
     *,
-    duration: float | str = 5.0,
-    time_step: float | str = 1e-3,
-    modes: int | Literal["auto"] = 150,
-    engine: str = "spectral",
-    tolerance: float = 1e-3,
-    refinement: int = 1,
     progress: Progress | None = None,
+    **keywords: Unpack[SettingsKeywords],
 ) -> Response:
     """Return the response of a system to its sources.
 
@@ -42,6 +40,8 @@ def simulate(
         Relative error aimed at by ``modes="auto"``.
     refinement : int
         The run is made at time_step/refinement and every refinement-th instant is kept: for stiff absorbers.
+    settings : Settings or mapping, optional
+        All of these at once, or a table of some; those given beside it change it.
     progress : callable, optional
         Called with the fraction done (0 to 1) and the name of the stage.
 
@@ -55,11 +55,7 @@ def simulate(
         If a setting is not allowed, or there is no such preset or file.
     """
     system = as_system(system)
-    settings = Settings.of(
-        system,
-        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
-    )
-    return Response(solver.solve(system, settings=settings, progress=progress))
+    return Response(solver.solve(system, settings=Settings.asked(system, keywords), progress=progress))
 
 
 class PreparedSystem:
@@ -116,16 +112,13 @@ class PreparedSystem:
         return PreparedSystem(self._prepared.retuned(as_system(system)))
 
 
+@showing(SettingsKeywords, Settings)
 def prepare(
     system: SystemLike,
     *,
-    duration: float | str = 5.0,
-    time_step: float | str = 1e-3,
-    modes: int | Literal["auto"] = 150,
-    tolerance: float = 1e-3,
-    refinement: int = 1,
     retunable: bool = False,
     progress: Progress | None = None,
+    **keywords: Unpack[SettingsKeywords],
 ) -> PreparedSystem:
     """Solve once all that does not depend on the absorbers: shells, fluids, sources and feedback.
 
@@ -143,7 +136,7 @@ def prepare(
         If a setting is not allowed or the feedback is unstable.
     """
     system = as_system(system)
-    settings = Settings.of(
-        system, {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "refinement": refinement}
-    )
+    settings = Settings.asked(system, keywords)
+    if settings.engine != "spectral":
+        raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
     return PreparedSystem(solver.Prepared(system, settings, progress, shared=shared_parts() if retunable else None))

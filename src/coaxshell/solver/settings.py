@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
@@ -60,10 +60,10 @@ class Settings:
         for name, unit in (("duration", _TRANSITS), ("time_step", _TRANSITS), ("tolerance", "relative error")):
             object.__setattr__(self, name, _positive(name, getattr(self, name), unit))
         if not isinstance(self.modes, str) or self.modes.strip().lower() != "auto":
-            object.__setattr__(self, "modes", _whole("modes", self.modes, MAX_MODES, ' or "auto"'))
+            object.__setattr__(self, "modes", whole("modes", self.modes, MAX_MODES, ' or "auto"'))
         else:
             object.__setattr__(self, "modes", "auto")
-        object.__setattr__(self, "refinement", _whole("refinement", self.refinement, MAX_REFINEMENT))
+        object.__setattr__(self, "refinement", whole("refinement", self.refinement, MAX_REFINEMENT))
         if self.engine not in ENGINES:
             raise InputError("engine", f"{shown(self.engine)} is unknown", f"allowed: {', '.join(ENGINES)}")
         if self.duration < 4 * self.time_step:
@@ -113,6 +113,24 @@ class Settings:
         except InputError as error:
             raise within(where, error) from None
 
+    @classmethod
+    def asked(cls, system: System, keywords: Mapping[str, Any]) -> Settings:
+        """Return what the keywords of a call ask for, see :class:`SettingsKeywords`.
+
+        Raises
+        ------
+        InputError
+            As :meth:`of`.
+        TypeError
+            A keyword that there is not.
+        """
+        changes = dict(keywords)
+        base = cls.of(system, changes.pop("settings", None), where="settings")
+        unknown = next((name for name in changes if name not in NAMES), None)
+        if unknown is not None:
+            raise TypeError(f"unexpected keyword argument {unknown!r}; {suggestion(unknown, NAMES)}")
+        return cls.of(system, changes, base=base)
+
     def up_to(self, duration: float) -> Settings:
         """Return the settings of a run that is no longer than *duration* transits."""
         return replace(self, duration=min(self.duration, duration))
@@ -125,6 +143,18 @@ class Settings:
     def steps(self) -> int:
         """Number of time steps: the last instant is steps * time_step, within rounding of the duration or just below it."""
         return math.floor(self.duration / self.time_step * (1 + 1e-12) + 1e-9)
+
+
+class SettingsKeywords(TypedDict, total=False):
+    """The keywords of every call that runs: single settings, and *settings* that they change, whole or as the table of a study file."""
+
+    duration: float | str
+    time_step: float | str
+    modes: int | Literal["auto"]
+    engine: str
+    tolerance: float
+    refinement: int
+    settings: Settings | Mapping[str, Any] | None
 
 
 NAMES = tuple(field.name for field in fields(Settings))
@@ -140,7 +170,7 @@ def _positive(name: str, value: Any, unit: str) -> float:
     return float(found)
 
 
-def _whole(name: str, value: Any, most: int, more: str = "") -> int:
+def whole(name: str, value: Any, most: int, more: str = "") -> int:
     """Return a whole number from 1 to *most*."""
     number = plain(value)
     found = _number(number, int)

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from coaxshell.numerics.renamed import renamed
 from coaxshell.studies.cluster import dask_executor
+from coaxshell.studies.execution import Execution
 from coaxshell.studies.optimisation.optimising import optimise, optimise_problem
 from coaxshell.studies.optimisation.optimum import OPTIMUM_PARTS, Optimum
 from coaxshell.studies.optimisation.study import OptimisationStudy
 from coaxshell.studies.optimisation.targets import Objective
 from coaxshell.studies.optimisation.variables import Choice, Integer, Range
-from coaxshell.studies.running import How
 from coaxshell.studies.structures import solve_each
 from coaxshell.studies.study_file import SweepStudy, read_study
 from coaxshell.studies.sweeping import sweep, sweep_design
@@ -22,7 +22,7 @@ from coaxshell.studies.uncertainty.study import SensitivityStudy
 __all__ = [
     "OPTIMUM_PARTS",
     "Choice",
-    "How",
+    "Execution",
     "Integer",
     "LogNormal",
     "Normal",
@@ -48,4 +48,4 @@ __all__ = [
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        return renamed(__name__, name, Resolution="coaxshell.solver.settings.Settings")
+        return renamed(__name__, name, How="coaxshell.studies.execution.Execution", Resolution="coaxshell.solver.settings.Settings")

@@ -18,11 +18,12 @@ from typing import Any, TypeVar
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.identity import difference, environment
-from coaxshell.numerics.scalars import plain
+from coaxshell.solver.settings import whole
 
 T = TypeVar("T")
 R = TypeVar("R")
 
+MAX_WORKERS = 1024
 AHEAD = 2
 """Tasks handed out per worker: one in work and one waiting."""
 
@@ -63,10 +64,7 @@ def worker_count(workers: int | None) -> int:
     """Return how many processes to use: as asked, or one a core that this process may use; InputError if that is not a number."""
     if workers is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    workers = plain(workers)
-    if isinstance(workers, bool) or not isinstance(workers, int) or not 1 <= workers <= 1024:
-        raise InputError("workers", f"{workers!r} is not allowed", "give a whole number from 1 to 1024")
-    return int(workers)
+    return whole("workers", workers, MAX_WORKERS)
 
 
 def capacity(executor: Executor | None, workers: int | None) -> int:

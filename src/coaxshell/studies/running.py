@@ -4,57 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
-from dataclasses import dataclass
-from pathlib import Path
+from contextlib import ExitStack
+from dataclasses import replace
 from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.model.paths import within
 from coaxshell.model.system import System
-from coaxshell.numerics.progress import Progress
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
-from coaxshell.studies.executors import capacity, completed
+from coaxshell.studies.execution import Execution
+from coaxshell.studies.executors import completed, process_pool
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.store import Store
 from coaxshell.studies.user_functions import OtherCodeError
-
-
-@dataclass(frozen=True)
-class How:
-    """How a study is worked on; nothing of it changes a number.
-
-    Attributes
-    ----------
-    executor : concurrent.futures.Executor, optional
-        Where the work is done; a pool of processes of our own otherwise.
-    workers : int, optional
-        Processes of that pool, one a core by default; 1 works in this process.
-    store : str or Path, optional
-        Folder in which every finished case is kept.
-    resume : bool
-        Go on with what the store holds.
-    progress : callable, optional
-        Called with the fraction done and a word.
-    """
-
-    executor: Executor | None = None
-    workers: int | None = None
-    store: str | Path | None = None
-    resume: bool = False
-    progress: Progress | None = None
-
-    def opened(self, parts: Mapping[str, Any], metrics: Sequence[Metric]) -> Store | None:
-        """Return the store of a study, told from others by its *parts*; None if nothing is to be kept."""
-        return None if self.store is None else Store(Path(self.store), parts, metrics, resume=self.resume)
 
 
 def run_study(
     systems: Sequence[System | InputError],
     metrics: tuple[Metric, ...],
     resolution: Settings,
-    how: How,
+    execution: Execution,
     parts: Mapping[str, Any],
     where: str = "",
 ) -> list[Outcome]:
@@ -63,20 +34,19 @@ def run_study(
     if len(refused) == len(systems):
         first = refused[0]
         raise within(where, InputError(first.where, f"no case is possible: {first.problem}", first.remedy))
-    store = how.opened(parts, metrics)
-    return run_cases(systems, metrics, resolution, executor=how.executor, workers=how.workers, store=store, progress=how.progress)
+    store = execution.opened(parts, metrics)
+    with execution.started() as ready:
+        return run_cases(systems, metrics, resolution, ready, store)
 
 
 def run_cases(
     systems: Sequence[System | InputError],
     metrics: tuple[Metric, ...],
     resolution: Settings,
-    *,
-    executor: Executor | None = None,
-    workers: int | None = None,
+    execution: Execution,
     store: Store | None = None,
+    *,
     keep: bool = False,
-    progress: Progress | None = None,
 ) -> list[Outcome]:
     """Return the outcome of every case, in order.
 
@@ -85,15 +55,12 @@ def run_cases(
     systems : sequence of System, or of the InputError for which there is none
     metrics : tuple of Metric
     resolution : Settings
-    executor : concurrent.futures.Executor, optional
-    workers : int, optional
-        Processes of a pool of our own; 1 works in this process. By default one a core, or 1 where a function stands in a notebook.
+    execution : Execution
+        Its executor or its workers (by default one a core, or 1 where a function stands in a notebook), and whom to tell of progress.
     store : Store, optional
         Where finished cases are kept, and looked for first.
     keep : bool
         Leave the last structure's kernels in this process for the next call; :func:`coaxshell.studies.evaluation.forget` ends that.
-    progress : callable, optional
-        Called with the fraction of cases done and a word.
 
     Raises
     ------
@@ -102,21 +69,20 @@ def run_cases(
     KeyboardInterrupt
         As it came; what was finished is in the store.
     """
-    if executor is None and workers is None and any(metric.function is not None and metric.function.only_here for metric in metrics):
-        workers = 1
-    workers_at_once = capacity(executor, workers)
+    execution = _in_reach(execution, metrics)
+    executor, workers_at_once = execution.executor, execution.capacity
     if executor is not None or workers_at_once > 1:
         _sendable(metrics, executor)
     keys = {n: store.key(one, resolution) for n, one in enumerate(systems) if store is not None and isinstance(one, System)}
     outcomes = {n: failure(metrics, str(one)) for n, one in enumerate(systems) if isinstance(one, InputError)}
     _look_up(keys, store, outcomes)
-    report = progress or (lambda fraction, stage: None)
+    report = execution.progress or (lambda fraction, stage: None)
     report(len(outcomes) / len(systems), "cases")
     waiting = [Case(i, system) for i, system in enumerate(systems) if i not in outcomes and isinstance(system, System)]
     if executor is None:
         require_room(case_cost([case.system for case in waiting], resolution), len(waiting), workers_at_once)
     planned = batches(waiting, metrics, resolution, workers_at_once)
-    processes = 1 if executor is None and len(planned) == 1 else workers
+    processes = 1 if executor is None and len(planned) == 1 else execution.workers
     try:
         for batch, result in completed(_still_needed(planned, store, keys, outcomes), evaluate, executor=executor, workers=processes):
             for case, outcome in zip(batch.cases, _told(result, batch), strict=True):
@@ -128,6 +94,47 @@ def run_cases(
         if not keep:
             forget()
     return [outcomes[number] for number in range(len(systems))]
+
+
+class WorkerPool:
+    """Run cases again and again by workers that stay in between; a pool that breaks is replaced.
+
+    Parameters
+    ----------
+    execution : Execution
+        With its cluster, if there is one, reached.
+    metrics : tuple of Metric
+    store : Store, optional
+        Where finished cases are kept, and looked for first.
+    """
+
+    def __init__(self, execution: Execution, metrics: tuple[Metric, ...], store: Store | None = None) -> None:
+        self._given, self._metrics, self._store = _in_reach(replace(execution, progress=None), metrics), metrics, store
+        self._stack = ExitStack()
+        self._pool: Executor | None = None
+
+    def __enter__(self) -> WorkerPool:
+        return self
+
+    def __exit__(self, *unused: object) -> None:
+        self._stack.close()
+        forget()
+
+    def __call__(self, systems: Sequence[System | InputError], resolution: Settings) -> list[Outcome]:
+        """Return the outcome of each system, in order."""
+        given = self._given
+        if given.executor is None and self._pool is None and given.capacity > 1:
+            self._pool = self._stack.enter_context(process_pool(given.capacity))
+        ready = given if self._pool is None else replace(given, executor=self._pool)
+        outcomes = run_cases(systems, self._metrics, resolution, ready, self._store, keep=True)
+        lost = [k for k, outcome in enumerate(outcomes) if outcome.reason.startswith("WorkerDiedError")]
+        if lost and given.executor is None:
+            self._stack.close()
+            self._pool = None
+            again = run_cases([systems[k] for k in lost], self._metrics, resolution, given, self._store, keep=True)
+            for k, outcome in zip(lost, again, strict=True):
+                outcomes[k] = outcome
+        return outcomes
 
 
 def _look_up(keys: Mapping[int, str], store: Store | None, outcomes: dict[int, Outcome]) -> None:
@@ -154,6 +161,13 @@ def _told(result: list[Outcome] | Exception, batch: Batch) -> list[Outcome]:
         reason = f"{type(result).__name__}: {result}"
         return [failure(batch.metrics, reason, expected=False) for _ in batch.cases]
     return result
+
+
+def _in_reach(execution: Execution, metrics: Sequence[Metric]) -> Execution:
+    """Return an execution in this process where a function stands in a notebook, unless another was asked for."""
+    asked = execution.executor is not None or execution.workers is not None
+    here = any(metric.function is not None and metric.function.only_here for metric in metrics)
+    return replace(execution, workers=1) if here and not asked else execution
 
 
 def _sendable(metrics: Sequence[Metric], executor: Executor | None) -> None:

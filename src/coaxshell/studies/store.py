@@ -62,6 +62,8 @@ class Store:
         Their values are what is kept, in this order.
     resume : bool
         Whether the folder may already hold this study.
+    where : str
+        What errors call it.
 
     Raises
     ------
@@ -69,20 +71,22 @@ class Store:
         The folder cannot be written to, holds something else, another study, or this one though *resume* is false.
     """
 
-    def __init__(self, folder: Path, study: Mapping[str, Any], metrics: Sequence[Metric], *, resume: bool = False) -> None:
-        self.folder, self.metrics = Path(folder), tuple(metrics)
+    def __init__(
+        self, folder: Path, study: Mapping[str, Any], metrics: Sequence[Metric], *, resume: bool = False, where: str = "store"
+    ) -> None:
+        self.folder, self.metrics, self._where = Path(folder), tuple(metrics), where
         manifest = {"format": FORMAT_VERSION, "numerics": origin(), "study": {key: digest(part) for key, part in study.items()}}
         try:
             self._open({**manifest, "description": dict(study)}, resume=resume)
         except OSError as error:
             raise InputError(
-                "store", f"{str(self.folder)!r} cannot be used ({reason(error)})", "give a folder that you may write to"
+                where, f"{str(self.folder)!r} cannot be used ({reason(error)})", "give a folder that you may write to"
             ) from None
 
     def _open(self, manifest: dict[str, Any], *, resume: bool) -> None:
         path = self.folder / MANIFEST
         if self.folder.is_dir() and not path.is_file() and any(not name.name.startswith(".") for name in self.folder.iterdir()):
-            raise InputError("store", f"{str(self.folder)!r} holds something else than a study", "give an empty or a new folder")
+            raise InputError(self._where, f"{str(self.folder)!r} holds something else than a study", "give an empty or a new folder")
         self.folder.mkdir(parents=True, exist_ok=True)
         reclaim(self.folder)
         if path.is_file():
@@ -90,7 +94,7 @@ class Store:
             if not resume:
                 kept = sum(1 for _ in self.folder.glob("*.json")) - 1
                 remedy = "use resume (--resume) to go on with it, or remove it"
-                raise InputError("store", f"{str(self.folder)!r} already holds {kept} cases of this study", remedy)
+                raise InputError(self._where, f"{str(self.folder)!r} already holds {kept} cases of this study", remedy)
             return
         with scratch(self.folder, sweep=False) as place:
             made = place / MANIFEST
@@ -103,14 +107,14 @@ class Store:
     def _same(self, found: dict[str, Any] | None, ours: dict[str, Any]) -> None:
         name, another = str(self.folder), "give another folder, or remove this one"
         if found is None or "study" not in found:
-            raise InputError("store", f"{name!r} has a damaged {MANIFEST}", another)
+            raise InputError(self._where, f"{name!r} has a damaged {MANIFEST}", another)
         if found.get("format") != FORMAT_VERSION or found.get("numerics") != ours["numerics"]:
             theirs = found.get("numerics", "another version")
-            raise InputError("store", f"{name!r} was made by coaxshell {theirs}; this is {ours['numerics']}", another)
+            raise InputError(self._where, f"{name!r} was made by coaxshell {theirs}; this is {ours['numerics']}", another)
         theirs, mine = found["study"], ours["study"]
         differ = [key for key in {**theirs, **mine} if theirs.get(key) != mine.get(key)]
         if differ:
-            raise InputError("store", f"{name!r} holds another study: its {' and '.join(differ)} differ", another)
+            raise InputError(self._where, f"{name!r} holds another study: its {' and '.join(differ)} differ", another)
 
     def key(self, system: System, resolution: Settings) -> str:
         """Return the name of a case."""
@@ -136,7 +140,7 @@ class Store:
             named = {metric.name: value for metric, value in zip(self.metrics, outcome.values, strict=True)}
             data |= {"values": named, "warnings": list(outcome.warnings)}
         path = self.folder / (f"{key}.failed.json" if outcome.failed else f"{key}.json")
-        write_text(path, json.dumps(data), "store", durable=False)  # cut short by a power cut, it counts as not there
+        write_text(path, json.dumps(data), self._where, durable=False)  # cut short by a power cut, it counts as not there
         if not outcome.failed:
             (self.folder / f"{key}.failed.json").unlink(missing_ok=True)  # an accident that has been made good
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
@@ -39,22 +38,20 @@ class Structures:
 
     def response(self, system: System) -> Response:
         """Return the response of a system; InputError as :func:`coaxshell.response.simulate`."""
-        settings = self.resolution.arguments()
         saturates = system.control is not None and system.control.saturation
         if self.resolution.engine != "spectral" or not (system.absorber_list or saturates):
-            return simulate(system, progress=self._progress, **settings)
+            return simulate(system, progress=self._progress, settings=self.resolution)
         structure = structure_of(system)
         if self._prepared is None or self._structure != structure:
-            self._prepared, self._structure = self._made(structure, settings), structure
+            self._prepared, self._structure = self._made(structure), structure
         return self._prepared.simulate(system.absorbers, progress=self._progress)
 
-    def _made(self, structure: System, settings: dict[str, Any]) -> PreparedSystem:
+    def _made(self, structure: System) -> PreparedSystem:
         """Return a prepared structure: the last one retuned, which shares what the two have in common and gives the same numbers."""
         if self._prepared is not None and self.resolution.modes != "auto":  # retuning keeps the number of modes
             return self._prepared.retuned(structure)
-        del settings["engine"]
         self._prepared = None  # let go of the old kernels before new ones are made
-        return prepare(structure, progress=self._progress, **settings)
+        return prepare(structure, progress=self._progress, settings=self.resolution)
 
 
 def solve_each(systems: Mapping[str, System], resolution: Settings, progress: Progress | None = None) -> Iterator[tuple[str, Response]]:

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from concurrent.futures import Executor
-from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Unpack
 
 from coaxshell.errors import InputError, PhysicsWarning
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
+from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.numerics.progress import Progress
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, Points, design_of
+from coaxshell.studies.execution import Execution, StudyKeywords, asked
 from coaxshell.studies.labelled import failures_text, labelled
 from coaxshell.studies.metrics import Metric, Metrics, metrics_of
 from coaxshell.studies.paths import varied
-from coaxshell.studies.running import How, run_study
+from coaxshell.studies.running import run_study
 
 
+@showing(StudyKeywords, Settings, Execution)
 def sweep(
     system: SystemLike,
     over: Mapping[str, Any],
@@ -29,17 +29,7 @@ def sweep(
     points: Points = "grid",
     samples: int | None = None,
     seed: int = 0,
-    duration: float | str = 5.0,
-    time_step: float | str = 1e-3,
-    modes: int | Literal["auto"] = 150,
-    tolerance: float = 1e-3,
-    refinement: int = 1,
-    engine: str = "spectral",
-    executor: Executor | None = None,
-    workers: int | None = None,
-    store: str | Path | None = None,
-    resume: bool = False,
-    progress: Progress | None = None,
+    **keywords: Unpack[StudyKeywords],
 ) -> xr.Dataset:
     """Return metrics of a system at many points of some of its fields.
 
@@ -60,16 +50,10 @@ def sweep(
         Number of sampled points, and what makes them repeatable.
     duration, time_step, modes, tolerance, refinement, engine
         As those of :func:`coaxshell.simulate`.
-    executor : concurrent.futures.Executor, optional
-        Where the work is done; a pool of processes of our own otherwise.
-    workers : int, optional
-        Processes of that pool, one a core by default; 1 works in this process.
-    store : str or Path, optional
-        Folder in which every finished case is kept; safe to kill at any moment, safe for several writers.
-    resume : bool
-        Go on with what the store holds.
-    progress : callable, optional
-        Called with the fraction of cases done and a word.
+    executor, workers, store, resume, progress, dask
+        See :class:`coaxshell.Execution`: where the work is done, and where finished cases are kept.
+    settings, execution : Settings, Execution, optional
+        All of these at once; those given beside them change them.
 
     Returns
     -------
@@ -82,18 +66,15 @@ def sweep(
         Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``, ``Store``.
     """
     system = as_system(system)
-    resolution = Settings.of(
-        system,
-        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
-    )
+    resolution, execution = asked(system, keywords)
     design = design_of(system, over, points, samples, seed)
-    return sweep_design(system, design, metrics_of(metrics, system), resolution, How(executor, workers, store, resume, progress))
+    return sweep_design(system, design, metrics_of(metrics, system), resolution, execution)
 
 
-def sweep_design(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Settings, how: How) -> xr.Dataset:
+def sweep_design(system: System, design: Design, metrics: tuple[Metric, ...], resolution: Settings, execution: Execution) -> xr.Dataset:
     """Return the dataset of a sweep whose parts have been checked; see :func:`sweep`."""
     systems = [_case(system, changes) for changes in design.cases]
-    outcomes = run_study(systems, metrics, resolution, how, study_parts(system, design, metrics, resolution), where="over")
+    outcomes = run_study(systems, metrics, resolution, execution, study_parts(system, design, metrics, resolution), where="over")
     message = failures_text(outcomes)
     if message:
         warnings.warn(message, PhysicsWarning, stacklevel=3)

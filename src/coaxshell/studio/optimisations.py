@@ -18,9 +18,8 @@ from coaxshell.studies.metrics import metric_names
 from coaxshell.studies.optimisation.optimising import Problem, problem_of, searched
 from coaxshell.studies.optimisation.optimum import Optimum
 from coaxshell.studies.optimisation.search import Candidate
-from coaxshell.studies.optimisation.targets import Objective, Target, Targets
+from coaxshell.studies.optimisation.targets import Objective, Target
 from coaxshell.studies.optimisation.variables import space_of
-from coaxshell.studies.store import Store
 from coaxshell.studies.structures import Structures
 from coaxshell.studio import descriptions, limits, worker
 
@@ -121,7 +120,7 @@ def _whole(data: dict[str, Any], entry: str, least: int, most: int, default: int
 
 
 class Hand:
-    """The crew of one worker: system after system on the structure that it has at hand, reported as parts of the whole.
+    """Run the systems of an optimisation in one worker, one after another, on the structure at hand; reported as parts of the whole.
 
     Parameters
     ----------
@@ -130,16 +129,16 @@ class Hand:
     """
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        prepared, self._settings = None, settings
+        prepared, self._settings, self._metrics = None, settings, problem.targets.metrics
         with suppress(InputError):  # an unstable feedback is the baseline's own failure
             prepared = worker.structure(problem.space.base, settings)
         self._structures = Structures(problem.resolution, prepared, worker.report)
         self._count, self._done, self._stage = 1 + problem.evaluations, 0, "baseline"
         self.warnings: dict[System, tuple[str, ...]] = {}
 
-    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Settings, store: Store | None) -> list[Outcome]:
+    def __call__(self, systems: Sequence[System | InputError], resolution: Settings) -> list[Outcome]:
         """Return the outcome of each system, in order."""
-        return [self._outcome(system, targets) for system in systems]
+        return [self._outcome(system) for system in systems]
 
     def told(self, fraction: float, stage: str) -> None:
         """Take in what the search says after every generation."""
@@ -147,11 +146,11 @@ class Hand:
         self._done, self._stage = 1 + done, f"{done}: {stage.removeprefix('optimising: ')}"
         worker.report(self._done / self._count, self._stage)
 
-    def _outcome(self, system: System | InputError, targets: Targets) -> Outcome:
+    def _outcome(self, system: System | InputError) -> Outcome:
         if isinstance(system, InputError):
-            return failure(targets.metrics, str(system))
+            return failure(self._metrics, str(system))
         with worker.part(min(self._done, self._count - 1), self._count, self._stage):
-            outcome = evaluated(system, targets.metrics, self._solved)
+            outcome = evaluated(system, self._metrics, self._solved)
         self._done += 1
         self.warnings[system] = outcome.warnings
         return outcome
@@ -165,7 +164,7 @@ class Hand:
 def optimise(problem: Problem, settings: Settings) -> Found:
     """Carry out an optimisation."""
     hand = Hand(problem, settings)
-    optimum = searched(problem, hand, progress=hand.told)
+    optimum = searched(problem, hand, hand.told)
     best = optimum.space.system(optimum.best.values)
     return Found(optimum, hand.warnings.get(best, ()) if isinstance(best, System) else ())
 

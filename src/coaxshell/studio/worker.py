@@ -165,7 +165,7 @@ def _structure(system: System, settings: Settings) -> PreparedSystem:
     kin = _Here.structures.latest(lambda kept: kept.settings == settings) if live else None
     if kin is not None:
         return kin.retuned(system)
-    return prepare(system, retunable=live, progress=report, **limits.table_of(settings))
+    return prepare(system, settings=settings, retunable=live, progress=report)
 
 
 def solve(system: System, settings: Settings) -> Any:

@@ -79,7 +79,7 @@ def _fields(job: Job, store: Store) -> Piece:
 def _responses(job: Job, names: tuple[str, ...]) -> list[Any]:
     from coaxshell.response import simulate
 
-    return [simulate(systems.preset(name), **job.resolution.arguments()) for name in names]
+    return [simulate(systems.preset(name), settings=job.resolution) for name in names]
 
 
 def _figure(job: Job, store: Store) -> Piece:
@@ -125,11 +125,10 @@ def _direct(job: Job, store: Store) -> Piece:
     from coaxshell.response import simulate
 
     seconds: dict[str, list[float]] = {"direct": [], "spectral": []}
-    settings = {**job.resolution.arguments(), "refinement": 1}
     for system in cases.count(systems.preset("bare"), DIRECT_SAMPLE).values():
         for engine, taken in seconds.items():
             start = time.process_time()
-            simulate(system, **{**settings, "engine": engine})
+            simulate(system, settings=job.resolution, engine=engine, refinement=1)
             taken.append(time.process_time() - start)
     return {}, {**seconds, "sample": list(DIRECT_SAMPLE)}
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
-from coaxshell.studies.optimisation.search import Runner
+from coaxshell.studies.optimisation.search import Run
 from coaxshell.studies.optimisation.targets import Targets
 
 Scenarios = Callable[[System], Any]
@@ -44,14 +44,14 @@ def finer(system: System, resolution: Settings, confirm: Mapping[str, Any] | Non
 
 
 def confirmed(
-    baseline: System, best: System, resolutions: tuple[Settings, ...], targets: Targets, scenarios: Scenarios, crew: Runner
+    baseline: System, best: System, resolutions: tuple[Settings, ...], targets: Targets, scenarios: Scenarios, run: Run
 ) -> tuple[Confirmation, ...]:
     """Return both systems' targets at each resolution."""
     found = []
     for resolution in resolutions:
         told = []
         for system in (baseline, best):
-            outcomes = crew.run(list(scenarios(system)), targets, resolution, None)
+            outcomes = run(list(scenarios(system)), resolution)
             failed = any(outcome.failed for outcome in outcomes)
             told.append({} if failed else targets.values(np.array([outcome.values for outcome in outcomes], dtype=np.float64)))
         found.append(Confirmation(resolution, told[0], told[1]))

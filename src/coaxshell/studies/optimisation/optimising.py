@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Unpack
 
 from coaxshell.errors import InputError
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
+from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
-from coaxshell.solver.settings import NAMES, Settings
+from coaxshell.solver.settings import Settings
+from coaxshell.studies.execution import Execution, StudyKeywords, asked
 from coaxshell.studies.metrics import ANYWHERE
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
 from coaxshell.studies.optimisation.methods import Setting, chosen, search
 from coaxshell.studies.optimisation.optimum import Optimum
-from coaxshell.studies.optimisation.search import Candidate, Crew, EnoughError, Evaluations, Runner, non_dominated
+from coaxshell.studies.optimisation.search import Candidate, EnoughError, Evaluations, Run, non_dominated
 from coaxshell.studies.optimisation.targets import Targets, targets_of
 from coaxshell.studies.optimisation.variables import Space, VariableLike, space_of
-from coaxshell.studies.running import How
-from coaxshell.studies.store import Store
+from coaxshell.studies.running import WorkerPool
 from coaxshell.studies.uncertainty.distributions import Uncertain, uncertain_of
 from coaxshell.studies.user_functions import UserCode
 
@@ -69,6 +69,7 @@ class Problem:
         }
 
 
+@showing(StudyKeywords, Settings, Execution)
 def optimise(
     system: SystemLike,
     *,
@@ -82,18 +83,9 @@ def optimise(
     population: int | None = None,
     start: Literal["auto", "system"] = "auto",
     seed: int = 0,
-    duration: float | str = 5.0,
-    time_step: float | str = 1e-3,
-    modes: int | Literal["auto"] = 150,
-    tolerance: float = 1e-3,
-    refinement: int = 1,
-    engine: str = "spectral",
     confirm: Mapping[str, Any] | None = None,
-    executor: Executor | None = None,
-    workers: int | None = None,
     journal: str | Path | None = None,
-    resume: bool = False,
-    progress: Progress | None = None,
+    **keywords: Unpack[StudyKeywords],
 ) -> Optimum:
     """Return the best system within some ranges; the system given is the baseline.
 
@@ -124,12 +116,11 @@ def optimise(
         As those of :func:`coaxshell.simulate`.
     confirm : mapping, optional
         Settings of a finer resolution, as ``{"modes": 300}``: baseline and best are run there, and there at half the time step.
-    executor, workers
-        As for :func:`sweep`.
     journal : str or Path, optional
-        Folder that keeps every evaluation: a study killed at any moment goes on there and ends exactly as if it had not been.
-    resume : bool
-        Go on with what the journal holds.
+        Folder that keeps every evaluation, the *store* of an optimisation: a study killed at any moment goes on there and ends exactly
+        as if it had not been.
+    executor, workers, resume, dask, settings, execution
+        As those of :func:`sweep`.
     progress : callable, optional
         Called with the fraction done and the best so far.
 
@@ -144,11 +135,11 @@ def optimise(
         Anything wrong with the study, before its first run.
     """
     system = as_system(system)
-    resolution = Settings.of(system, dict(zip(NAMES, (duration, time_step, modes, engine, tolerance, refinement), strict=True)))
+    resolution, execution = asked(system, keywords if journal is None else {**keywords, "store": journal})
     chance = (uncertain, samples)
     search_by = (method, evaluations, population, start, seed)
     problem = problem_of(system, variables, objectives, constraints, resolution, chance, search_by, confirm)
-    return optimise_problem(problem, How(executor, workers, journal, resume, progress))
+    return optimise_problem(problem, execution)
 
 
 def problem_of(
@@ -188,17 +179,15 @@ def problem_of(
     )
 
 
-def optimise_problem(problem: Problem, how: How) -> Optimum:
-    """Search the best of a problem whose parts have been checked, its journal the store of *how*; see :func:`optimise`."""
-    try:
-        journal = how.opened(problem.parts(), problem.targets.metrics)
-    except InputError as error:
-        raise InputError(error.where.replace("store", "journal"), error.problem, error.remedy) from None
-    with Crew(how.executor, how.workers) as crew:
-        return searched(problem, crew, journal, how.progress)
+def optimise_problem(problem: Problem, execution: Execution) -> Optimum:
+    """Search the best of a problem whose parts have been checked, its journal the store of *execution*; see :func:`optimise`."""
+    metrics = problem.targets.metrics
+    journal = execution.opened(problem.parts(), metrics, where="journal")
+    with execution.started() as ready, WorkerPool(ready, metrics, journal) as pool:
+        return searched(problem, pool, execution.progress)
 
 
-def searched(problem: Problem, crew: Runner, journal: Store | None = None, progress: Progress | None = None) -> Optimum:
+def searched(problem: Problem, run: Run, progress: Progress | None = None) -> Optimum:
     """Search the best of a problem with whoever runs its systems; *progress* is told after every generation."""
     report = progress or (lambda fraction, stage: None)
     samples = problem.uncertain.scenarios
@@ -206,7 +195,7 @@ def searched(problem: Problem, crew: Runner, journal: Store | None = None, progr
     def told(candidates: list[Candidate]) -> None:
         report(len(candidates) / problem.evaluations, f"optimising: {best_so_far(problem.targets, candidates)}")
 
-    evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, crew, problem.evaluations, journal, told)
+    evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, run, problem.evaluations, told)
     baseline, complete = evaluations.baseline(), True
     confirmations: tuple[Confirmation, ...] = ()
     try:
@@ -221,7 +210,7 @@ def searched(problem: Problem, crew: Runner, journal: Store | None = None, progr
     optimum = Optimum(*answer, baseline, (), complete)
     if complete and problem.finer and optimum.feasible:
         report(1.0, "confirming")
-        confirmations = confirmed(problem.space.base, optimum.system, problem.finer, problem.targets, samples, crew)
+        confirmations = confirmed(problem.space.base, optimum.system, problem.finer, problem.targets, samples, run)
     return Optimum(*answer, baseline, confirmations, complete)
 
 

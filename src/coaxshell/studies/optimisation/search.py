@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
-from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -14,16 +12,15 @@ from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.settings import Settings
-from coaxshell.studies.evaluation import Outcome, forget
-from coaxshell.studies.executors import process_pool, worker_count
+from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.optimisation.targets import FAILED, UNSOLVED, Targets
 from coaxshell.studies.optimisation.variables import Space
 from coaxshell.studies.reading import DesignReading
-from coaxshell.studies.running import run_cases
-from coaxshell.studies.store import Store
 
 Scenarios = Callable[[System], Sequence[System | InputError]]
 """From a design to itself and, after it, its samples under uncertain properties."""
+Run = Callable[[Sequence[System | InputError], Settings], list[Outcome]]
+"""Runs systems at a resolution: a :class:`coaxshell.studies.running.WorkerPool`, or a program with workers of its own."""
 
 
 class EnoughError(Exception):
@@ -70,52 +67,6 @@ class Candidate:
         return self.violation, self.objectives[0] if self.feasible else 0.0
 
 
-class Runner(Protocol):
-    """Whoever runs the systems of a generation: a :class:`Crew`, or a program with workers of its own."""
-
-    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Settings, store: Store | None) -> list[Outcome]:
-        """Return the outcome of each system, in order."""
-        ...
-
-
-class Crew:
-    """Workers that stay from generation to generation; a pool that breaks is replaced.
-
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor, optional
-    workers : int, optional
-        As for :func:`coaxshell.studies.running.run_cases`.
-    """
-
-    def __init__(self, executor: Executor | None, workers: int | None) -> None:
-        self._given, self._workers = executor, worker_count(workers)
-        self._stack = ExitStack()
-        self._pool: Executor | None = None
-
-    def __enter__(self) -> Crew:
-        return self
-
-    def __exit__(self, *unused: object) -> None:
-        self._stack.close()
-        forget()
-
-    def run(self, systems: Sequence[System | InputError], targets: Targets, resolution: Settings, store: Store | None) -> list[Outcome]:
-        """Return the outcome of each system, in order."""
-        if self._given is None and self._pool is None and self._workers > 1:
-            self._pool = self._stack.enter_context(process_pool(self._workers))
-        pool = self._given or self._pool
-        outcomes = run_cases(systems, targets.metrics, resolution, executor=pool, workers=self._workers, store=store, keep=True)
-        lost = [k for k, outcome in enumerate(outcomes) if outcome.reason.startswith("WorkerDiedError")]
-        if lost and self._given is None:
-            self._stack.close()
-            self._pool = None
-            again = run_cases([systems[k] for k in lost], targets.metrics, resolution, workers=self._workers, store=store, keep=True)
-            for k, outcome in zip(lost, again, strict=True):
-                outcomes[k] = outcome
-        return outcomes
-
-
 class Evaluations:
     """Evaluate points of the unit cube, generation by generation, until the budget is spent.
 
@@ -123,9 +74,9 @@ class Evaluations:
     ----------
     space, targets, scenarios, resolution
         The problem.
-    crew : Runner
+    run : callable
+        From systems and a resolution to their outcomes.
     budget : int
-    store : Store, optional
     told : callable
         Called with all candidates after every generation.
     """
@@ -136,13 +87,12 @@ class Evaluations:
         targets: Targets,
         scenarios: Scenarios,
         resolution: Settings,
-        crew: Runner,
+        run: Run,
         budget: int,
-        store: Store | None,
         told: Callable[[list[Candidate]], None],
     ) -> None:
         self.space, self.targets, self.scenarios, self.resolution = space, targets, scenarios, resolution
-        self.crew, self.budget, self.store, self.told = crew, budget, store, told
+        self.run, self.budget, self.told = run, budget, told
         self.candidates: list[Candidate] = []
         self._known: dict[tuple[Any, ...], Candidate] = {}
         self._generation = 0
@@ -176,7 +126,7 @@ class Evaluations:
         waiting = [(k, system) for k, system in enumerate(systems) if found[k] is None and isinstance(system, System)]
         samples = [list(self.scenarios(system)) for _, system in waiting]
         flat = [one for several in samples for one in several]
-        outcomes = iter(self.crew.run(flat, self.targets, self.resolution, self.store) if flat else ())
+        outcomes = iter(self.run(flat, self.resolution) if flat else ())
         for (k, _), several in zip(waiting, samples, strict=True):
             mine = [next(outcomes) for _ in several]
             failed = next((outcome for outcome in mine if outcome.failed), None)

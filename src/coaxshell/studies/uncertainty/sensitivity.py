@@ -5,22 +5,21 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Executor
-from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Unpack
 
 import numpy as np
 
 from coaxshell.errors import PhysicsWarning
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.numerics.progress import Progress
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Outcome
+from coaxshell.studies.execution import Execution, StudyKeywords, asked
 from coaxshell.studies.labelled import CASE, failures_text, labelled
 from coaxshell.studies.metrics import Metrics, metrics_of
-from coaxshell.studies.running import How, run_study
+from coaxshell.studies.running import run_study
 from coaxshell.studies.uncertainty.indices import indices_with_intervals
 from coaxshell.studies.uncertainty.plan import Plan, plan_of
 from coaxshell.studies.uncertainty.statistics import STATISTICS, statistics_with_intervals
@@ -31,6 +30,7 @@ FIRST, TOTAL = "first_order", "total_order"
 ESTIMATES = ("value", "low", "high")
 
 
+@showing(StudyKeywords, Settings, Execution)
 def sensitivity(
     system: SystemLike,
     over: Mapping[str, Any],
@@ -39,17 +39,7 @@ def sensitivity(
     samples: int = 256,
     seed: int = 0,
     confidence: float = 0.95,
-    duration: float | str = 5.0,
-    time_step: float | str = 1e-3,
-    modes: int | Literal["auto"] = 150,
-    tolerance: float = 1e-3,
-    refinement: int = 1,
-    engine: str = "spectral",
-    executor: Executor | None = None,
-    workers: int | None = None,
-    store: str | Path | None = None,
-    resume: bool = False,
-    progress: Progress | None = None,
+    **keywords: Unpack[StudyKeywords],
 ) -> xr.Dataset:
     """Return how much of the variance of each metric each uncertain property is the cause of, and the statistics of the metrics.
 
@@ -73,7 +63,7 @@ def sensitivity(
         Of the intervals, which are bootstrapped.
     duration, time_step, modes, tolerance, refinement, engine
         As those of :func:`coaxshell.simulate`.
-    executor, workers, store, resume, progress
+    executor, workers, store, resume, progress, dask, settings, execution
         As those of :func:`coaxshell.sweep`.
 
     Returns
@@ -89,14 +79,12 @@ def sensitivity(
         Anything wrong with the study, before its first run; see :func:`coaxshell.studies.uncertainty.plan.plan_of`.
     """
     system = as_system(system)
-    resolution = Settings.of(
-        system,
-        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
-    )
+    resolution, execution = asked(system, keywords)
     plan = plan_of(system, over, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=True, where="over")
-    return uncertainty_of(plan, How(executor, workers, store, resume, progress))
+    return uncertainty_of(plan, execution)
 
 
+@showing(StudyKeywords, Settings, Execution)
 def robustness(
     system: SystemLike,
     uncertain: Mapping[str, Any],
@@ -105,17 +93,7 @@ def robustness(
     samples: int = 128,
     seed: int = 0,
     confidence: float = 0.95,
-    duration: float | str = 5.0,
-    time_step: float | str = 1e-3,
-    modes: int | Literal["auto"] = 150,
-    tolerance: float = 1e-3,
-    refinement: int = 1,
-    engine: str = "spectral",
-    executor: Executor | None = None,
-    workers: int | None = None,
-    store: str | Path | None = None,
-    resume: bool = False,
-    progress: Progress | None = None,
+    **keywords: Unpack[StudyKeywords],
 ) -> xr.Dataset:
     """Return mean, standard deviation and percentiles of the metrics of a system whose properties are uncertain.
 
@@ -130,7 +108,7 @@ def robustness(
         One or more; see :func:`sensitivity`.
     samples : int
         Runs; a power of two keeps the balance of the points.
-    metrics, seed, confidence, duration, time_step, modes, tolerance, refinement, engine, executor, workers, store, resume, progress
+    metrics, seed, confidence, and all others
         As those of :func:`sensitivity`.
 
     Returns
@@ -144,17 +122,14 @@ def robustness(
         Anything wrong with the study, before its first run.
     """
     system = as_system(system)
-    resolution = Settings.of(
-        system,
-        {"duration": duration, "time_step": time_step, "modes": modes, "tolerance": tolerance, "engine": engine, "refinement": refinement},
-    )
+    resolution, execution = asked(system, keywords)
     plan = plan_of(system, uncertain, metrics_of(metrics, system), resolution, (samples, seed, confidence), indices=False)
-    return uncertainty_of(plan, How(executor, workers, store, resume, progress))
+    return uncertainty_of(plan, execution)
 
 
-def uncertainty_of(plan: Plan, how: How) -> xr.Dataset:
+def uncertainty_of(plan: Plan, execution: Execution) -> xr.Dataset:
     """Return the dataset of a study whose parts have been checked; see :func:`sensitivity` and :func:`robustness`."""
-    outcomes = run_study(plan.systems, plan.metrics, plan.resolution, how, plan.parts)
+    outcomes = run_study(plan.systems, plan.metrics, plan.resolution, execution, plan.parts)
     message = failures_text(outcomes)
     if message:
         wanted = "indices and statistics" if plan.indices else "statistics"
