@@ -7,11 +7,14 @@ import pytest
 from scipy import special
 
 import coaxshell as cx
-from coaxshell.acoustics.free_field import NEAREST, LineField, PlaneField, SphericalField, TimeFunction
-from coaxshell.acoustics.incident import LineGeometry, PlaneGeometry, SphericalGeometry
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.pulse_histories import pulse_history
 from coaxshell.acoustics.rays import front_angle, path_to, surface_rays
+from coaxshell.acoustics.sources import LineGeometry, PlaneGeometry, SphericalGeometry, TimeFunction
+from coaxshell.acoustics.sources.line import LineField
+from coaxshell.acoustics.sources.plane import PlaneField
+from coaxshell.acoustics.sources.source import NEAREST
+from coaxshell.acoustics.sources.spherical import SphericalField
 from coaxshell.numerics.bessel_ratios import kve
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.direct.loads import arc_integrals
@@ -20,17 +23,17 @@ from coaxshell.solver.settings import Settings
 from coaxshell.solver.solve import solve
 
 DISTANCES = [2.0, 10.0, 1e3, 1e6, 1e9, 1e12, 1e15, 1e16, 1e30, 1e200]
-GRID, ORDERS = LaplaceGrid(2e-2, 100), all_orders(12)
+GRID, MODES = LaplaceGrid(2e-2, 100), Modes.up_to(12)
 THETA = np.linspace(0.0, np.pi, 181)
 
 
 @pytest.mark.parametrize("geometry", [SphericalGeometry, LineGeometry])
 def test_the_load_tends_to_the_plane_waves(geometry: type) -> None:
-    surface, every = RadialFunctions(GRID.nodes, 1.0, ORDERS), slice(None)
-    plane = PlaneGeometry().prepare(GRID, ORDERS)(surface, every)
+    basis, every = RadialBasis(MODES, GRID.nodes), slice(None)
+    plane = PlaneGeometry().prepare(GRID, MODES)(basis, every)
     scale = np.abs(plane).max()
     for distance in DISTANCES:
-        load = geometry(distance).prepare(GRID, ORDERS)(surface, every)
+        load = geometry(distance).prepare(GRID, MODES)(basis, every)
         # Paths differ by sin^2(theta)/2 R0 and the spread by as much, at a highest frequency of 160.
         assert np.abs(load - plane).max() < (200.0 / distance + 1e-10) * scale, distance
 
@@ -98,16 +101,16 @@ def test_arcs_are_split_where_the_pulse_has_corners(distance: float | None, puls
     """
     bare = cx.presets.load("iakovlev-evacuated")
     source = cx.PlaneWave(pulse=pulse) if distance is None else cx.SphericalWave(pulse=pulse, distance=distance)
-    problem, orders = dimensionless(bare.replace(source=source)), all_orders(6)
+    problem, modes = dimensionless(bare.replace(source=source)), Modes.up_to(6)
     time = np.array([0.02, 0.11, 0.4, 1.0, 1.7])
     nodes, weights = np.polynomial.legendre.leggauss(6)
     scales, edges = problem.scales, np.linspace(0.0, np.pi, 4001)
     theta = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (nodes + 1.0)).ravel()
     share = (0.5 * np.diff(edges)[:, None] * weights).ravel()
     rays = surface_rays(theta, distance)
-    cosines = np.cos(theta * orders[:, None]) * np.where(orders == 0, 1.0, 2.0)[:, None] / np.pi
+    cosines = np.cos(theta * modes.orders[:, None]) * np.where(modes.orders == 0, 1.0, 2.0)[:, None] / np.pi
     expected = np.stack(
         [cosines @ (share * rays.spread * pulse_history(pulse, t - rays.path, scales.time, scales.pressure)) for t in time], axis=1
     )
-    found = arc_integrals(problem, problem.system.sources[0], time, orders)[0]
+    found = arc_integrals(problem, problem.system.sources[0], problem.sources[0], time, modes)[0]
     np.testing.assert_allclose(found, expected, rtol=0, atol=allowed * np.abs(expected).max())

@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coaxshell.acoustics.free_field import LineField, PlaneField, SphericalField, TimeFunction
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
+from coaxshell.acoustics.sources import TimeFunction
+from coaxshell.acoustics.sources.line import LineField
+from coaxshell.acoustics.sources.plane import PlaneField
+from coaxshell.acoustics.sources.spherical import SphericalField
 from coaxshell.model.pulses import Exponential, Gaussian, Sampled, Step
 
 SCALE, PRESSURE = 0.5, 4.0

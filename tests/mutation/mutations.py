@@ -114,15 +114,15 @@ MUTATIONS = (
     ),
     Mutation(
         "incident-beta",
-        "acoustics/incident.py",
-        "np.where(orders == 0, 1.0, 2.0)",
-        "np.where(orders == 0, 2.0, 2.0)",
+        "acoustics/basis.py",
+        "np.where(self.orders == 0, 1.0, 2.0)",
+        "np.where(self.orders == 0, 2.0, 2.0)",
         "projection of the incident wave: beta of order 0",
         "acoustics/test_incident.py",
     ),
     Mutation(
         "afterflow",
-        "acoustics/incident.py",
+        "acoustics/sources/spherical.py",
         "front * s + afterflow",
         "front * s - afterflow",
         "afterflow of the spherical wave",
@@ -130,7 +130,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rigid-scattering",
-        "acoustics/incident.py",
+        "acoustics/sources/spherical.py",
         "pressure[:, nodes] + acceleration[:, nodes]",
         "pressure[:, nodes] - acceleration[:, nodes]",
         "wave scattered by the rigid cylinder: sign",
@@ -138,7 +138,7 @@ MUTATIONS = (
     ),
     Mutation(
         "free-field-afterflow",
-        "acoustics/free_field.py",
+        "acoustics/sources/spherical.py",
         "self._pulse.impulse(since) / self._range",
         "self._pulse.impulse(since)",
         "afterflow in the free field: 1/R",

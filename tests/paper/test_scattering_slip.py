@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.response_functions import exterior
 from coaxshell.paper.slips import scattering_delay
 from coaxshell.solver.direct.loads import arc_integrals
@@ -24,7 +25,7 @@ def projected(field, order, angles):
 def test_the_printed_convolution_is_the_corrected_field_and_the_missing_delay(order):
     radius, instants = 1.5, [0.9, 1.3, 2.2]
     problem, times = dimensionless(BARE), np.arange(0.0, 2.2 + STEP / 2, STEP)
-    _, velocity = arc_integrals(problem, BARE.source, times, np.arange(order + 1.0))
+    _, velocity = arc_integrals(problem, BARE.source, problem.sources[0], times, Modes.up_to(order))
     b = velocity[order]
     # -b(t)/sqrt(r) - integral of b(eta) dxi/dt(t - eta), xi smooth from its front at t = r - 1 on (Eq. B.13 as printed).
     late = times[times >= radius - 1.0 - STEP / 2]

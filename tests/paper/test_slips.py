@@ -9,14 +9,13 @@ import pytest
 from scipy.special import ive
 
 import coaxshell as cx
-from coaxshell.acoustics.incident import SphericalGeometry
-from coaxshell.acoustics.operators import RadialFunctions
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.sources import SphericalGeometry
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
 from coaxshell.paper.slips.switches import slipped
 from coaxshell.paper.slips.waves import PrintedPotential
 from coaxshell.solver.coupling import ModalSystem
-from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
@@ -202,16 +201,15 @@ def test_the_printed_potential_gives_the_velocity_of_its_derivative():
 
 
 def test_reversed_diffraction_takes_the_load_from_a_rigid_head():
-    grid, orders = LaplaceGrid(1e-2, 50), np.arange(81.0)
-    surface = RadialFunctions(grid.nodes, 1.0, orders)
+    grid, modes = LaplaceGrid(1e-2, 50), Modes.up_to(80)
+    radial = RadialBasis(modes, grid.nodes)
 
     def load(slips):
-        problem = slipped(BARE, slips)
-        wave = incident_wave(problem, BARE.source)
-        return grid.invert(wave.prepare(grid, orders)(surface, slice(None)) / (grid.nodes + 1.0), grid.lanczos()).sum(axis=0)
+        (wave,) = slipped(BARE, slips).sources
+        return grid.invert(wave.prepare(grid, modes)(radial, slice(None)) / (grid.nodes + 1.0), grid.lanczos()).sum(axis=0)
 
     doubled, cancelled = load(frozenset()), load(frozenset({"diffraction-sign"}))
-    incident = SphericalGeometry(5.0).projections(grid, orders)[0] / (grid.nodes + 1.0)
+    incident = SphericalGeometry(5.0).projections(grid, modes)[0] / (grid.nodes + 1.0)
     np.testing.assert_allclose(doubled + cancelled, 2 * grid.invert(incident, grid.lanczos()).sum(axis=0), rtol=0, atol=1e-11)
     assert abs(doubled[5] - 2.0) < 0.2
     assert abs(cancelled[5]) < 0.2
@@ -224,7 +222,7 @@ def test_growth_is_that_of_a_root(preset, key, modes):
     problem, order = slipped(system.replace(absorbers=()), frozenset({key})), np.array([float(found.order)])
 
     def determinant(s):
-        return complex(ModalSystem(problem, np.array([s]), order).determinant()[0, 0])
+        return complex(ModalSystem(problem, np.array([s]), Modes(order)).determinant()[0, 0])
 
     # Newton's method from the fastest of many starts on the line Re s = rate.
     best = None

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import dimensionless
@@ -22,7 +23,7 @@ def pressure_spectrum(grid: LaplaceGrid, modes: int, source: object) -> np.ndarr
     water = cx.Fluid(density=1000, sound_speed=1400)
     problem = dimensionless(cx.System(shells=[cx.RigidShell(radius=0.8)], fluids=[cx.VACUUM, water], source=source))
     orders = all_orders(modes)
-    load = SurfaceLoads(problem, grid, orders)(RadialFunctions(grid.nodes, 1.0, orders), slice(None))
+    load = SurfaceLoads(problem, grid, Modes(orders))(RadialBasis(Modes(orders), grid.nodes), slice(None))
     return load[0] * problem.scales.pressure / STEP
 
 

@@ -11,7 +11,8 @@ import pytest
 from scipy.special import gammainc, iv
 
 import coaxshell as cx
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.energy.fluids import Sampler, fluid_energy
 from coaxshell.response.energy.motion import Motion
@@ -119,10 +120,10 @@ COARSE = LaplaceGrid(0.02, 200)
 
 
 def parts(system: cx.System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    problem, surface = dimensionless(system), RadialFunctions(COARSE.nodes, 1.0, ORDERS)
-    total = np.stack(SurfaceLoads(problem, COARSE, ORDERS)(surface, slice(None)))
-    incident, slope = incident_on_surface(problem, COARSE, surface)
-    return incident, -surface.exterior * slope, total
+    problem, radial = dimensionless(system), RadialBasis(Modes(ORDERS), COARSE.nodes)
+    total = np.stack(SurfaceLoads(problem, COARSE, radial.modes)(radial, slice(None)))
+    incident, slope = incident_on_surface(problem, COARSE, radial)
+    return incident, -radial.surface.exterior * slope, total
 
 
 def test_the_incident_part_of_a_plane_wave(double: cx.System) -> None:

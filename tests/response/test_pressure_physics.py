@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field, exterior_field
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -105,8 +106,8 @@ def test_order_by_order_walls_and_loads_agree_in_the_laplace_domain(shells, wate
     answer = cx.simulate(cx.System(shells=shells, fluids=[water, sea, water], source=source), duration=1.0, time_step=5e-3, modes=30)
     spectra, problem = answer._spectra, answer.solution.problem
     grid, ones = spectra.grid, np.ones(spectra.grid.nodes.size)
-    modal = ModalSystem(problem, grid.nodes, all_orders(30))
-    incident_and_diffracted = SurfaceLoads(problem, grid, all_orders(30))(modal.surface, slice(None))[0]
+    modal = ModalSystem(problem, grid.nodes, Modes.up_to(30))
+    incident_and_diffracted = SurfaceLoads(problem, grid, modal.modes)(modal.radial, slice(None))[0]
     pressures = {}
     for region in regions(problem):
         field = modal_field(spectra, grid, region, "radiated")

@@ -9,6 +9,7 @@ import pytest
 from scipy.special import iv, ivp, kv, kvp
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
 
@@ -48,7 +49,7 @@ def dense(problem: Problem, m: int, s: complex) -> np.ndarray:
 
 @pytest.mark.parametrize("loaded", [0, 1, 2])
 def test_against_the_dense_system(problem: Problem, loaded: int) -> None:
-    system = ModalSystem(problem, S, ORDERS)
+    system = ModalSystem(problem, S, Modes(ORDERS))
     w = system.solve(loaded, np.ones((ORDERS.size, S.size), complex))
     v = system.tangential(w)
     for m in range(ORDERS.size):
@@ -63,7 +64,7 @@ def test_against_the_dense_system(problem: Problem, loaded: int) -> None:
 
 def test_maxwell_betti(problem: Problem) -> None:
     # R_i C_ij = R_j C_ji: work is per unit of angle, loads are per unit of area.
-    system = ModalSystem(problem, S, ORDERS)
+    system = ModalSystem(problem, S, Modes(ORDERS))
     radii = [shell.radius for shell in problem.shells]
     answers = [system.solve(j, np.ones((ORDERS.size, S.size), complex)) for j in range(3)]
     for i in range(3):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.errors import InputError
 from coaxshell.model import VACUUM, RigidShell, Shell, System
 from coaxshell.numerics.arrays import FloatArray
@@ -80,9 +80,10 @@ def rigid_pressure(system: System, resolution: Settings, modes: int, angles: lis
     if peak is None:
         raise InputError("source", "it has no peak pressure to which the surface pressure could be related", "give a shock")
     rigid = System(shells=[RigidShell(radius=system.shells[-1].radius)], fluids=[VACUUM, system.exterior], source=source.replace(angle=0.0))
-    problem, orders = dimensionless(rigid), all_orders(modes)
+    problem = dimensionless(rigid)
     grid = LaplaceGrid(resolution.time_step, round(resolution.duration / resolution.time_step))
-    load = SurfaceLoads(problem, grid, orders)(RadialFunctions(grid.nodes, 1.0, orders), slice(None))[0]
+    radial = RadialBasis(Modes.up_to(modes), grid.nodes)
+    load = SurfaceLoads(problem, grid, radial.modes)(radial, slice(None))[0]
     modal = grid.invert(load, grid.lanczos()) * (problem.scales.pressure / peak)
     number = np.arange(modes + 1)
     basis = np.sinc(number / (modes + 1.0)) * np.cos(np.radians(np.multiply.outer(angles, number)))

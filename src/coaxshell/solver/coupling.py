@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.operators import RadialFunctions, annulus
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.solver.ingredients import OWN, Radial
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import annulus
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 
@@ -39,14 +40,13 @@ class FluidMatrix:
         return sum(x.nbytes for row in (self.diagonal, self.upper, self.lower) for x in row if isinstance(x, np.ndarray))
 
 
-def fluid_matrix(problem: Problem, radial: Radial) -> FluidMatrix:
+def fluid_matrix(problem: Problem, radial: RadialBasis) -> FluidMatrix:
     """Return the added mass of interior, gaps and exterior.
 
     Parameters
     ----------
     problem : Problem
-    radial : callable
-        From slowness and radius to the Bessel ratios there.
+    radial : RadialBasis
     """
     count = len(problem.shells)
     matrix = FluidMatrix([0.0] * count, [0.0] * count, [0.0] * count)
@@ -75,47 +75,38 @@ class ModalSystem:
     ----------
     problem : Problem
     s : ndarray, shape (nodes,)
-    orders : ndarray, shape (M,)
-        Ascending circumferential orders.
+    modes : Modes
     like : ModalSystem, optional
-        One of the same fluids, radii, nodes and orders, whose Bessel ratios are shared.
+        One of the same fluids, radii, nodes and modes, whose Bessel ratios are shared.
     shared : SharedParts, optional
         Where the added mass of the fluids is found, or left for the next one.
 
     Attributes
     ----------
-    surface : RadialFunctions
-        Exterior fluid at r = 1, reused by the incident wave.
+    radial : RadialBasis
+        Bessel ratios of the fluids, reused by the incident wave.
     shells : list of WallOperator
     """
 
     def __init__(
-        self, problem: Problem, s: ComplexArray, orders: FloatArray, like: ModalSystem | None = None, shared: SharedParts | None = None
+        self, problem: Problem, s: ComplexArray, modes: Modes, like: ModalSystem | None = None, shared: SharedParts | None = None
     ) -> None:
-        self.problem, self.s, self.orders, self._shared = problem, s, orders, shared
-        self._radial: dict[tuple[float, float], RadialFunctions] = {} if like is None else like._radial
-        self.surface = self.radial(1.0, 1.0)
-        self.shells = [wall.operator(orders, s) for wall in problem.shells]
+        self.problem, self.s, self.modes, self._shared = problem, s, modes, shared
+        self.radial: RadialBasis = RadialBasis(modes, s) if like is None else like.radial
+        self.shells = [wall.operator(modes.orders, s) for wall in problem.shells]
         self._assemble()
         self._factor()
 
-    def radial(self, slowness: float, radius: float) -> RadialFunctions:
-        """Return the Bessel ratios at slowness * s * radius, evaluated once per pair."""
-        key = (slowness, radius)
-        if key not in self._radial:
-            self._radial[key] = RadialFunctions(slowness * self.s, radius, self.orders)
-        return self._radial[key]
-
     @property
     def _shape(self) -> tuple[int, int]:
-        return self.orders.size, self.s.size
+        return self.modes.count, self.s.size
 
     def _fluids(self) -> FluidMatrix:
-        """Return the added mass, shared where only fluids, radii, orders and nodes determine it."""
+        """Return the added mass, shared where only fluids, radii, modes and nodes determine it."""
         problem = self.problem
         if self._shared is None or problem.ingredients != OWN:
             return fluid_matrix(problem, self.radial)
-        key = ("fluids", problem.fluids, tuple(shell.radius for shell in problem.shells), self.orders.tobytes(), self.s.tobytes())
+        key = ("fluids", problem.fluids, tuple(shell.radius for shell in problem.shells), self.modes.key, self.s.tobytes())
         fluids: FluidMatrix = self._shared.get_or_make(key, lambda: fluid_matrix(problem, self.radial))
         return fluids
 

@@ -11,31 +11,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coaxshell.acoustics.incident import IncidentWave, LineGeometry, PlaneGeometry, SphericalGeometry
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
-from coaxshell.model.sources import Source
+from coaxshell.acoustics.basis import RadialBasis
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
     from coaxshell.solver.interface.absorbers import AbsorberSet
     from coaxshell.solver.scaling import Problem
 
-Radial = Callable[[float, float], RadialFunctions]
-"""From slowness and radius to the Bessel ratios there."""
+Radial = RadialBasis
 
 
 def wall_motion_factor(problem: Problem, region: int, wall: int, radial: Radial) -> ComplexArray | float:
     """Return 1: a fluid moves with its wall (Eq. 9)."""
     return 1.0
-
-
-def source_geometry(problem: Problem, source: Source) -> IncidentWave:
-    """Return the geometry of a source in units of the reference radius."""
-    distance = problem.system.source_distance(source)
-    if distance is None:
-        return PlaneGeometry()
-    geometry = LineGeometry if source.geometry == "line" else SphericalGeometry
-    return geometry(distance / problem.scales.length)
 
 
 def point_force_shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
@@ -54,14 +43,11 @@ class Ingredients:
     wall_motion_factor : callable
         From problem, number of the fluid, number of the shell beside it and Bessel ratios to the factor, a number or an array
         (M + 1, nodes), with which that fluid feels the acceleration of that shell.
-    source_geometry : callable
-        From problem and source to its incident wave.
     point_force_shares : callable
         From absorbers and M to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
     """
 
     wall_motion_factor: Callable[[Problem, int, int, Radial], ComplexArray | float] = wall_motion_factor
-    source_geometry: Callable[[Problem, Source], IncidentWave] = source_geometry
     point_force_shares: Callable[[AbsorberSet, int], FloatArray] = point_force_shares
 
 

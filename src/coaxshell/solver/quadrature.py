@@ -17,6 +17,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -60,7 +61,7 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
 
     def work(block: slice) -> None:
         s = np.asarray(nodes[block], dtype=np.complex128)
-        modal = ModalSystem(problem, s, orders)
+        modal = ModalSystem(problem, s, Modes(orders))
         for j in range(count):
             normal = modal.solve(j, 1.0)
             for i, w in enumerate(normal):

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
@@ -75,9 +76,10 @@ class SampledOrders:
     def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> SampledOrders:
         """Solve a problem at some ascending orders."""
         count, nodes = len(problem.shells), grid.nodes[NODES]
-        modal = ModalSystem(problem, nodes, orders, shared=shared)
+        modes = Modes(orders)
+        modal = ModalSystem(problem, nodes, modes, shared=shared)
         excited = np.zeros((count, orders.size, nodes.size))
-        for load in SurfaceLoads(problem, grid, orders, shared)(modal.surface, NODES):
+        for load in SurfaceLoads(problem, grid, modes, shared)(modal.radial, NODES):
             excited += np.abs(np.stack(modal.solve(count - 1, load))) ** 2
         strain = [np.abs(orders[:, None] * wall.tangential - 1.0) ** 2 for wall in modal.shells]
         weight = standing_for(orders)

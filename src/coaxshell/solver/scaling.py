@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from coaxshell.acoustics.sources import SourceGeometry, source_geometry
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.shells import RigidShell
+from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.solver.ingredients import OWN, Ingredients
 from coaxshell.structure.rigid import RigidWall
@@ -73,6 +75,8 @@ class Problem:
         The walls, from the inside out.
     fluids : tuple of FluidRegion or None
         From the inside out, one more than the shells; None is a vacuum.
+    sources : tuple of SourceGeometry
+        Where the system's sources are, one each.
     ingredients : Ingredients
         Formulas by their place, the theory manual's unless a study changes one.
     """
@@ -81,6 +85,7 @@ class Problem:
     scales: Scales
     shells: tuple[ShellModel, ...]
     fluids: tuple[FluidRegion | None, ...]
+    sources: tuple[SourceGeometry, ...]
     ingredients: Ingredients = OWN
 
     @property
@@ -96,7 +101,12 @@ def dimensionless(system: System) -> Problem:
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
     shells = tuple(_wall(system, i, scales) for i in range(len(system.shells)))
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
-    return Problem(system, scales, shells, fluids)
+    return Problem(system, scales, shells, fluids, tuple(_geometry(system, source) for source in system.sources))
+
+
+def _geometry(system: System, source: Source) -> SourceGeometry:
+    distance = system.source_distance(source)
+    return source_geometry(source.geometry, None if distance is None else distance / system.reference_radius)
 
 
 def _wall(system: System, index: int, scales: Scales) -> ShellModel:

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from coaxshell.acoustics.operators import all_orders
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import Progress
@@ -74,19 +74,19 @@ def linear_spectra(
     shared: SharedParts | None = None,
 ) -> LinearSpectra:
     """Return the transforms of W and V of every shell under the sources, and the modal compliance if asked for."""
-    orders = all_orders(max_order)
-    loads = SurfaceLoads(problem, grid, orders, shared)
-    count, modes, nodes = len(problem.shells), max_order + 1, grid.nodes.size
+    modes = Modes.up_to(max_order)
+    loads = SurfaceLoads(problem, grid, modes, shared)
+    count, orders, nodes = len(problem.shells), max_order + 1, grid.nodes.size
     spectra = LinearSpectra(
-        np.empty((count, loads.parities, modes, nodes), np.complex128),
-        np.empty((count, loads.parities, modes, nodes), np.complex128),
-        np.empty((count, count, modes, nodes), np.complex128) if compliance else None,
-        np.empty((count, modes, nodes), np.complex128) if compliance else None,
+        np.empty((count, loads.parities, orders, nodes), np.complex128),
+        np.empty((count, loads.parities, orders, nodes), np.complex128),
+        np.empty((count, count, orders, nodes), np.complex128) if compliance else None,
+        np.empty((count, orders, nodes), np.complex128) if compliance else None,
     )
 
     def work(block: slice) -> None:
-        modal = ModalSystem(problem, grid.nodes[block], orders, shared=shared)
-        for parity, load in enumerate(loads(modal.surface, block)):
+        modal = ModalSystem(problem, grid.nodes[block], modes, shared=shared)
+        for parity, load in enumerate(loads(modal.radial, block)):
             normal = modal.solve(count - 1, load)
             for shell, (w, v) in enumerate(zip(normal, modal.tangential(normal), strict=True)):
                 spectra.normal[shell, parity, :, block], spectra.tangential[shell, parity, :, block] = w, v

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -63,7 +64,7 @@ class OpenLoop:
     @classmethod
     def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, shared: SharedParts | None) -> OpenLoop:
         """Return it for a problem, whose gains only tell which shells are controlled."""
-        system = ModalSystem(problem.open_loop, nodes, orders, shared=shared)
+        system = ModalSystem(problem.open_loop, nodes, Modes(orders), shared=shared)
         fed_back = {
             i: wall.fed_back(operator.tangential, orders)
             for i, (wall, operator) in enumerate(zip(problem.shells, system.shells, strict=True))

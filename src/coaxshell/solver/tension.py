@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import annulus
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.circle import circle_angles, on_circle
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
@@ -116,19 +117,18 @@ def spectra_of_motion(grid: LaplaceGrid, histories: FloatArray) -> ComplexArray:
 
 def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> Iterator[tuple[int, int, ComplexArray]]:
     """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (parities, M + 1, nodes)."""
-    orders, s = all_orders(normal.shape[2] - 1), grid.nodes
-    acceleration = s**2 * normal
+    radial = RadialBasis(Modes.up_to(normal.shape[2] - 1), grid.nodes)
+    acceleration = grid.nodes**2 * normal
     count = len(problem.shells)
     for region, fluid in enumerate(problem.fluids):
         if fluid is None:
             continue
-        kappa = fluid.slowness * s
-        outer = RadialFunctions(kappa, problem.shells[region].radius, orders) if region < count else None
-        inner = RadialFunctions(kappa, problem.shells[region - 1].radius, orders) if region else None
+        outer = radial(fluid.slowness, problem.shells[region].radius) if region < count else None
+        inner = radial(fluid.slowness, problem.shells[region - 1].radius) if region else None
         if inner is None and outer is not None:
             yield region, region, fluid.density * outer.disc * acceleration[region]
         elif outer is None and inner is not None:
-            incident, slope = incident_on_surface(problem, grid, inner)
+            incident, slope = incident_on_surface(problem, grid, radial)
             total = inner.exterior * acceleration[-1]
             total[: len(incident)] += incident - inner.exterior * slope
             yield region, region - 1, total

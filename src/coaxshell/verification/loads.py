@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.model.fluids import VACUUM
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import Source
@@ -17,6 +17,6 @@ from coaxshell.verification.systems import WATER
 def surface_pressure(source: Source, grid: LaplaceGrid, modes: int, unit: float) -> ComplexArray:
     """Return the modal pressure on a rigid cylinder of 1 m in water, in units of ``unit`` (Pa), shape (modes + 1, nodes)."""
     problem = dimensionless(System(shells=[RigidShell(radius=1.0)], fluids=[VACUUM, WATER], source=source))
-    orders = all_orders(modes)
-    load = SurfaceLoads(problem, grid, orders)(RadialFunctions(grid.nodes, 1.0, orders), slice(None))
+    basis = RadialBasis(Modes.up_to(modes), grid.nodes)
+    load = SurfaceLoads(problem, grid, basis.modes)(basis, slice(None))
     return load[0] * (problem.scales.pressure / unit)

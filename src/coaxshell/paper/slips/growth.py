@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.winding import turning
@@ -75,7 +76,7 @@ def growth(system: System, slips: frozenset[str], modes: int, slowest: float = 0
 def _root(problem: Problem, reference: Problem, order: float, shift: float) -> float:
     """Return the real part of the zero of one order's determinant next to a contour, at least *shift* itself."""
     frequencies = _contour(problem, int(order), shift)
-    only = np.array([order])
+    only = Modes(np.array([order]))
 
     def determinant(s: complex) -> complex:
         nodes = np.array([s], np.complex128)
@@ -117,8 +118,8 @@ def _unstable(problem: Problem, reference: Problem, orders: FloatArray, shift: f
     turned = np.zeros(orders.size)
     for start in range(0, frequencies.size - 1, _BLOCK):
         nodes = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
-        without = ModalSystem(reference, nodes, orders)
-        ratio = ModalSystem(problem, nodes, orders, like=without).determinant() / without.determinant()
+        without = ModalSystem(reference, nodes, Modes(orders))
+        ratio = ModalSystem(problem, nodes, Modes(orders), like=without).determinant() / without.determinant()
         turned += turning(ratio)
     turned += np.angle(1.0 / ratio[:, -1])
     unstable: np.ndarray = np.rint(-turned / np.pi) > 0

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.excitation import projection
 from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.interface.absorbers import AbsorberSet
 
@@ -34,7 +34,7 @@ def outside_sum(ingredients: Ingredients, which: int) -> Ingredients:
     def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
         own = absorbers.shapes(max_order)
         orders, angle = all_orders(max_order), float(absorbers.every_angle[which])
-        there = np.stack([projection(orders, angle, parity)[:, 0] for parity in range(absorbers.parities)])
+        there = np.stack([Modes(orders).projection(angle, parity)[:, 0] for parity in range(absorbers.parities)])
         beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
         found: FloatArray = np.broadcast_to(there[:, None, :], own.shape) * absorbers.multiplicity[:, None] / beta_pi
         return found

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
-from coaxshell.acoustics.incident import SphericalGeometry
+from coaxshell.acoustics.sources import SourceGeometry, SphericalGeometry
 from coaxshell.errors import InputError
 from coaxshell.model.pulses import Exponential
-from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.scaling import Problem
 
 
@@ -44,29 +41,24 @@ class PrintedPotential(SphericalGeometry):
         return s * (self.decay * afterflow - front)
 
 
-def reversed_diffraction(ingredients: Ingredients) -> Ingredients:
-    """Return the ingredients with psi_d = +B Xi_e and Xi_e = K_m/(s K_m') as printed: the diffracted pressure changes its sign."""
-
-    def geometry(problem: Problem, source: Source) -> SphericalGeometry:
-        wave = _spherical(ingredients.source_geometry(problem, source))
-        return ReversedDiffraction(wave.distance, wave)
-
-    return replace(ingredients, source_geometry=geometry)
+def reversed_diffraction(problem: Problem) -> Problem:
+    """Return the problem with psi_d = +B Xi_e and Xi_e = K_m/(s K_m') as printed: the diffracted pressure changes its sign."""
+    waves = (_spherical(geometry) for geometry in problem.sources)
+    return replace(problem, sources=tuple(ReversedDiffraction(wave.distance, wave) for wave in waves))
 
 
-def printed_potential(ingredients: Ingredients, impulse: bool) -> Ingredients:
-    """Return the ingredients with the printed potential of the incident wave (Eq. 2), with or without the impulse at its front."""
-
-    def geometry(problem: Problem, source: Source) -> SphericalGeometry:
-        wave = _spherical(ingredients.source_geometry(problem, source))
+def printed_potential(problem: Problem, impulse: bool) -> Problem:
+    """Return the problem with the printed potential of the incident wave (Eq. 2), with or without the impulse at its front."""
+    sources = []
+    for source, geometry in zip(problem.system.sources, problem.sources, strict=True):
+        wave = _spherical(geometry)
         if not isinstance(source.pulse, Exponential):
             raise InputError("source", "has no decay time, and the printed potential is that of a decaying exponential", "give a shock")
-        return PrintedPotential(wave.distance, source.pulse.decay_time / problem.scales.time, impulse)
+        sources.append(PrintedPotential(wave.distance, source.pulse.decay_time / problem.scales.time, impulse))
+    return replace(problem, sources=tuple(sources))
 
-    return replace(ingredients, source_geometry=geometry)
 
-
-def _spherical(wave: Any) -> SphericalGeometry:
+def _spherical(wave: SourceGeometry) -> SphericalGeometry:
     if not isinstance(wave, SphericalGeometry):
         raise InputError("source", "is not the paper's spherical shock, whose printed formulas are in question", "use SphericalShock")
     return wave

@@ -28,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
+from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.operators import RadialFunctions, annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -141,7 +142,7 @@ class FluidEnergy(NamedTuple):
 
 class _Block(NamedTuple):
     nodes: slice
-    s: ComplexArray
+    radial: RadialBasis
     field: Field
 
 
@@ -184,8 +185,8 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
 
 def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: FloatArray, nodes: slice) -> _Block:
     """Return what the fields at a block of nodes share: functions and weighted slopes at the walls."""
-    s, orders = motion.grid.nodes[nodes], motion.orders
-    at_walls = [RadialFunctions(fluid.slowness * s, motion.problem.shells[wall].radius, orders) for wall in walls]
+    radial = RadialBasis(Modes(motion.orders), motion.grid.nodes[nodes])
+    at_walls = [radial(fluid.slowness, motion.problem.shells[wall].radius) for wall in walls]
     # Slope of Pi at a wall: rho s w.
     slopes = [fluid.density * motion.normal_velocity[wall, :, :, nodes] * window[nodes] for wall in walls]
     inner, outer = at_walls[0], at_walls[-1]
@@ -199,26 +200,28 @@ def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: F
             for part in ("pressure", "slope")
         )
 
-    return _Block(nodes, fluid.slowness * s, field)
+    return _Block(nodes, radial, field)
 
 
 def _circle_energy(motion: Motion, fluid: FluidRegion, blocks: list[_Block], sampler: Sampler, r: float) -> FloatArray:
     """Return kinetic and compression energy per unit of r dr at a radius, shape (2, kept instants)."""
-    parities, orders = motion.spectra.normal.shape[1], motion.orders
-    sums = np.zeros((3, parities, orders.size, sampler.length), np.complex128)
+    parities, modes = motion.spectra.normal.shape[1], Modes(motion.orders)
+    sums = np.zeros((3, parities, modes.count, sampler.length), np.complex128)
     for block in blocks:
-        here = RadialFunctions(block.s, r, orders)
+        here = block.radial.passing(fluid.slowness, r)
         impulse, slope = block.field(here)
         for parity in range(parities):
             sampler.add(sums[0, parity], slope[parity], block.nodes)
             sampler.add(sums[1, parity], impulse[parity], block.nodes)
-            impulse[parity] *= block.s / fluid.slowness
+            impulse[parity] *= block.radial.s
             sampler.add(sums[2, parity], impulse[parity], block.nodes)
     weights = motion.circle / (2.0 * fluid.density)
     energies = [
         np.einsum("m,hmt,hmt->t", weight, history, history)
         for weight, history in zip(
-            (weights, weights * (orders / r) ** 2, weights * fluid.slowness**2), (sampler.finish(part) for part in sums), strict=True
+            (weights, weights * modes.gradient_squared(r), weights * fluid.slowness**2),
+            (sampler.finish(part) for part in sums),
+            strict=True,
         )
     ]
     return np.stack([energies[0] + energies[1], energies[2]])

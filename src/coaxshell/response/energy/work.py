@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.solver.excitation import incident_on_surface
@@ -41,9 +41,10 @@ class SurfacePressures(NamedTuple):
 
 def surface_pressures(spectra: SolvedSpectra) -> SurfacePressures:
     """Return the three parts of the pressure on the outermost surface of a finished run."""
-    orders, s = all_orders(spectra.max_order), spectra.grid.nodes
-    surface = RadialFunctions(s, 1.0, orders)
-    incident, slope = incident_on_surface(spectra.problem, spectra.grid, surface)
+    s = spectra.grid.nodes
+    radial = RadialBasis(Modes.up_to(spectra.max_order), s)
+    surface = radial.surface
+    incident, slope = incident_on_surface(spectra.problem, spectra.grid, radial)
     return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * spectra.normal[-1])
 
 

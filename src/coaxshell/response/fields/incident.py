@@ -1,7 +1,4 @@
-"""The incident waves of a system at points of its own frame, summed over its sources, their fronts as steep as the scattered ones.
-
-Pulses under the window of a band rise as the scattered waves do.
-"""
+"""The incident waves of a system at points of its own frame, summed over its sources, their fronts as steep as the scattered ones."""
 
 from __future__ import annotations
 
@@ -10,15 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from coaxshell.acoustics.free_field import FreeField, LineField, PlaneField, SphericalField, TimeFunction
-from coaxshell.acoustics.incident import LineGeometry, SphericalGeometry
 from coaxshell.acoustics.pulse_histories import pulse_history, pulse_impulse
 from coaxshell.acoustics.pulse_transforms import pulse_transform
+from coaxshell.acoustics.sources import FreeField, SourceGeometry, TimeFunction
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.fields.inversion import window
-from coaxshell.solver.excitation import incident_wave
 from coaxshell.solver.scaling import Problem
 
 _REACH = 12
@@ -56,7 +51,8 @@ class Incident:
 
     def __init__(self, problem: Problem, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None = None) -> None:
         self._size = x.size
-        self._waves = [_wave(problem, source, x, y, latest, smooth) for source in problem.system.sources] if x.size else []
+        sources = zip(problem.system.sources, problem.sources, strict=True)
+        self._waves = [_wave(problem, source, geometry, x, y, latest, smooth) for source, geometry in sources] if x.size else []
 
     def pressure(self, time: float) -> FloatArray:
         """Return the pressure at an instant, shape (points,)."""
@@ -76,7 +72,7 @@ class Incident:
 
 
 def _wave(
-    problem: Problem, source: Source, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None
+    problem: Problem, source: Source, geometry: SourceGeometry, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None
 ) -> tuple[FreeField, tuple[float, float], float]:
     scales, pulse = problem.scales, source.pulse
     angle = np.radians(source.angle)
@@ -89,12 +85,4 @@ def _wave(
     )
     if smooth is not None:
         history = replace(history, history=banded(history, smooth))
-    geometry = incident_wave(problem, source)
-    field: FreeField
-    if isinstance(geometry, LineGeometry):
-        field = LineField(history, geometry.distance, along, across, latest)
-    elif isinstance(geometry, SphericalGeometry):
-        field = SphericalField(history, geometry.distance, along, across)
-    else:
-        field = PlaneField(history, along, across)
-    return field, (cos, sin), source.delay / scales.time
+    return geometry.free_field(history, along, across, latest), (cos, sin), source.delay / scales.time

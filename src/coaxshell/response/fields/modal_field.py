@@ -23,7 +23,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import ive, kve
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus_amplitudes
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import annulus_amplitudes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_ratios import i_ratios
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
@@ -50,11 +51,8 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
         return None
     nodes = grid.nodes
-    problem, orders = spectra.problem, all_orders(spectra.max_order)
+    problem, radial = spectra.problem, RadialBasis(Modes.up_to(spectra.max_order), nodes)
     acceleration = region.fluid.density * nodes * nodes
-
-    def radial(slowness: float, radius: float) -> RadialFunctions:
-        return RadialFunctions(slowness * nodes, radius, orders)
 
     def radiated(shell: int) -> ComplexArray:
         motion = spectra.normal[shell, ..., : nodes.size] * acceleration
@@ -68,7 +66,7 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
         if not region.exterior:
             outer = radiated(region.index)
     if "diffracted" in parts and region.exterior:
-        rigid = -incident_on_surface(problem, grid, radial(1.0, 1.0))[1]
+        rigid = -incident_on_surface(problem, grid, radial)[1]
         inner = rigid if inner is None else _sum_of_parities(inner, rigid)
     return WallSlopes(inner, outer)
 
@@ -103,10 +101,10 @@ class Transfer:
     def __init__(self, region: Region, slopes: WallSlopes, nodes: ComplexArray, max_order: int) -> None:
         assert region.fluid is not None
         self.region, self.max_order = region, max_order
-        self.kappa = np.asarray(region.fluid.slowness * nodes, dtype=np.complex128)
-        orders = all_orders(max_order + 1)  # one more: slopes need the next order
-        self._inner = RadialFunctions(self.kappa, region.inner, orders) if region.index > 0 else None
-        self._outer = RadialFunctions(self.kappa, region.outer, orders) if not region.exterior else None
+        radial = RadialBasis(Modes.up_to(max_order + 1), nodes)  # one more: slopes need the next order
+        self.kappa = radial.modes.kappa(region.fluid.slowness, nodes)
+        self._inner = radial(region.fluid.slowness, region.inner) if region.index > 0 else None
+        self._outer = radial(region.fluid.slowness, region.outer) if not region.exterior else None
         self.standing, self.outgoing = self._amplitudes(slopes)
         driven = self.standing if self.standing is not None else self.outgoing
         assert driven is not None

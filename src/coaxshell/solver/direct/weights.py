@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import RadialFunctions
+from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import fluid_matrix
@@ -31,13 +31,7 @@ def fluid_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> Fl
     spectrum = np.zeros((count, count, orders.size, grid.nodes.size), np.complex128)
 
     def work(block: slice) -> None:
-        cache: dict[tuple[float, float], RadialFunctions] = {}
-
-        def radial(slowness: float, radius: float) -> RadialFunctions:
-            key = (slowness, radius)
-            return cache.setdefault(key, RadialFunctions(slowness * grid.nodes[block], radius, orders))
-
-        fluids = fluid_matrix(problem, radial)
+        fluids = fluid_matrix(problem, RadialBasis(Modes(orders), grid.nodes[block]))
         for i in range(count):
             spectrum[i, i, :, block] = fluids.diagonal[i]
             if i + 1 < count:
@@ -53,13 +47,13 @@ def fluid_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> Fl
     return weights
 
 
-def scattering_weights(grid: LaplaceGrid, orders: FloatArray) -> FloatArray:
+def scattering_weights(grid: LaplaceGrid, modes: Modes) -> FloatArray:
     """Return the weights of past modal velocities b_m in the rigidly scattered pressure, p_d = s b K_m/(s K_m'), (M + 1, T).
 
     K_m/K_m' tends to -1 at once (a plane wave reflects); only the rest has a memory.
     """
-    memory = grid.nodes * RadialFunctions(grid.nodes, 1.0, orders).exterior + 1.0
-    weights = front_weights(grid, memory, np.full((orders.size, 1), 0.5))
+    memory = grid.nodes * RadialBasis(modes, grid.nodes).surface.exterior + 1.0
+    weights = front_weights(grid, memory, np.full((modes.count, 1), 0.5))
     weights[:, 0] -= 1.0
     return weights
 

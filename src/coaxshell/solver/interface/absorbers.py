@@ -17,10 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.operators import all_orders
+from coaxshell.acoustics.basis import Modes
 from coaxshell.model.absorbers import Absorber
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.solver.excitation import projection
 from coaxshell.solver.scaling import Problem, Scales
 
 Array = npt.NDArray[Any]
@@ -91,10 +90,10 @@ class AbsorberSet:
         return not np.any(self.cubic)
 
     def shapes(self, max_order: int) -> FloatArray:
-        """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
-        orders = all_orders(max_order)
-        rows = [projection(orders, float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
-        return np.array(rows).reshape(self.parities, self.count, orders.size)
+        """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (parities, N, M + 1)."""
+        modes = Modes.up_to(max_order)
+        rows = [modes.projection(float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
+        return np.array(rows).reshape(self.parities, self.count, modes.count)
 
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import h1vp, hankel1, jv, jvp
 
-from coaxshell.acoustics.incident import PlaneGeometry
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.basis import Modes
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.acoustics.radial_fields import outgoing
+from coaxshell.acoustics.sources import PlaneGeometry
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
@@ -55,12 +56,12 @@ def _ours(ka: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return |f| of the rigid cylinder and of the shell from the package's own operators, far away and next to the imaginary axis."""
     s = np.asarray(SHIFT + 1j * ka, dtype=np.complex128)
     problem = dimensionless(evacuated())
-    modal = ModalSystem(problem, s, ORDERS)
-    surface = modal.surface
-    load = PlaneGeometry().prepare(LaplaceGrid(0.1, 8), ORDERS)(surface, slice(None))
+    modal = ModalSystem(problem, s, Modes(ORDERS))
+    surface = modal.radial.surface
+    load = PlaneGeometry().prepare(LaplaceGrid(0.1, 8), modal.modes)(modal.radial, slice(None))
     slope = load / (surface.disc - surface.exterior)  # of the incident wave
     moved = s * s * modal.solve(0, load)[0]
-    away = surface.exterior * outgoing(RadialFunctions(s, FAR, ORDERS), surface) * (np.sqrt(2 * FAR) * np.exp(SHIFT * FAR))
+    away = surface.exterior * outgoing(modal.radial(1.0, FAR), surface) * (np.sqrt(2 * FAR) * np.exp(SHIFT * FAR))
     return np.abs((-slope * away).sum(axis=0)), np.abs(((moved - slope) * away).sum(axis=0))
 
 

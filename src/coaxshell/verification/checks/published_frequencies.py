@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.optimize import brentq
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import RadialFunctions, annulus
 from coaxshell.model.elastic import Elastic
 from coaxshell.model.fluids import VACUUM, Fluid
@@ -69,7 +70,7 @@ def natural_frequency(radius: float, thickness: float, modulus: float, density: 
 
     def determinant(frequency: float) -> float:
         s = np.array([1e-12 + 1j * frequency * per_unit])
-        return float(ModalSystem(problem, s, np.array([float(order)])).determinant()[0, 0].real)
+        return float(ModalSystem(problem, s, Modes(np.array([float(order)]))).determinant()[0, 0].real)
 
     return float(brentq(determinant, (1 - SEARCH) * near, (1 + SEARCH) * near, xtol=1e-9))
 

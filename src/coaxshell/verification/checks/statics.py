@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.model import presets
 from coaxshell.model.fluids import VACUUM, Fluid
 from coaxshell.model.shells import Shell
@@ -69,5 +70,5 @@ def _double() -> Iterator[Finding]:
 def _compliance(system: System, m: int) -> list[float]:
     """Return W of all shells (m) per modal pressure (Pa) on the outermost, at s -> 0."""
     problem = dimensionless(system)
-    modal = ModalSystem(problem, SLOW, np.array([float(m)]))
+    modal = ModalSystem(problem, SLOW, Modes(np.array([float(m)])))
     return [float(w[0, 0].real) * problem.scales.length / problem.scales.pressure for w in modal.solve(len(problem.shells) - 1, 1.0)]

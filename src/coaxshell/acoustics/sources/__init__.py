@@ -1,0 +1,29 @@
+"""Sources: each a file with its load on the outermost surface, its field where nothing stands in its way, and its load in time."""
+
+from __future__ import annotations
+
+from coaxshell.acoustics.sources.line import LineGeometry
+from coaxshell.acoustics.sources.plane import PlaneGeometry
+from coaxshell.acoustics.sources.source import FreeField, SourceGeometry, SurfaceLoad, TimeFunction
+from coaxshell.acoustics.sources.spherical import SphericalGeometry
+
+__all__ = [
+    "FreeField",
+    "LineGeometry",
+    "PlaneGeometry",
+    "SourceGeometry",
+    "SphericalGeometry",
+    "SurfaceLoad",
+    "TimeFunction",
+    "source_geometry",
+]
+
+
+def source_geometry(kind: str, distance: float | None) -> SourceGeometry:
+    """Return the geometry of a kind of source, "plane", "line" or "spherical", at a distance from the axis in units of a.
+
+    A source of any kind at no distance is a plane wave from infinitely far away.
+    """
+    if distance is None:
+        return PlaneGeometry()
+    return LineGeometry(distance) if kind == "line" else SphericalGeometry(distance)

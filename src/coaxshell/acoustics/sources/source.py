@@ -1,0 +1,93 @@
+"""What a source must tell: the modal load of a unit pulse on the surface r = 1, and the wave itself where nothing stands in its way.
+
+Each geometry is normalised so that the free-field pressure at the head (r = 1, theta = 0) is the pulse itself, whose front
+arrives there at t = 0. In the Laplace domain the load of a pulse f, incident plus rigidly scattered, is f(s) L_m(s); the rigid
+scattering cancels the incident normal velocity, p_d = s B_m K_m/(kappa K_m'), B_m the modal radial velocity of the incident wave at
+r = 1. At an axial wavenumber k the free field at the head is the pulse times cos kz.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+
+NEAREST = 1e-3
+"""Least distance from a source at which it is evaluated; nearer points get the value there: fields stay finite."""
+
+SurfaceLoad = Callable[[RadialBasis, slice], ComplexArray]
+"""From the radial functions at some nodes, and the slice of the grid's nodes that they are, to L_m, shape (orders, nodes)."""
+
+
+@dataclass(frozen=True, eq=False)
+class TimeFunction:
+    """A pulse in dimensionless form: its history, its integral from 0, both zero before 0, and its transform."""
+
+    history: Callable[[FloatArray], FloatArray]
+    impulse: Callable[[FloatArray], FloatArray]
+    transform: Callable[[ComplexArray], ComplexArray]
+
+
+class FreeField(Protocol):
+    """An incident wave at points: the source lies on the positive x axis, its front reaches x = 1, y = 0 at t = 0.
+
+    Velocities are in units of c_e, pressures in rho_e c_e^2.
+    """
+
+    def pressure(self, time: float) -> FloatArray:
+        """Return the pressure at all points at an instant."""
+        ...
+
+    def velocity(self, time: float) -> tuple[FloatArray, FloatArray]:
+        """Return the particle velocity along x and y at all points at an instant."""
+        ...
+
+
+class SourceGeometry(Hashable, Protocol):
+    """A kind of source at its place; equal ones share their modal load."""
+
+    @property
+    def distance(self) -> float | None:
+        """Distance from the axis, in units of a; None for a plane wave."""
+        ...
+
+    @property
+    def along_rays(self) -> bool:
+        """Whether the wave is its pulse carried along rays, so that its load in time is an integral over the wetted arc."""
+        ...
+
+    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+        """Return the load function for some modes on a Laplace grid."""
+        ...
+
+    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+        """Return the modal pressure and slope dp/dr at r = 1 of a unit pulse without any scattering, at all nodes of a grid."""
+        ...
+
+    def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> FreeField:
+        """Return the wave at points; *latest* is the last instant that will be asked for."""
+        ...
+
+
+def incident_of_regular(geometry: SourceGeometry, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    """Return the modal pressure P0 and slope dp0/dr at r = 1 of a wave that is regular inside r = 1, each (orders, nodes).
+
+    It has P0 = D dp0/dr with D = I_m/(kappa I_m'), and its load is L = P0 - E dp0/dr with E = K_m/(kappa K_m'), so dp0/dr = L/(D - E).
+    """
+    surface = basis.surface
+    slope = geometry.prepare(grid, basis.modes)(basis, slice(0, grid.nodes.size)) / (surface.disc - surface.exterior)
+    return surface.disc * slope, slope
+
+
+def rays(distance: float, x: FloatArray, y: FloatArray) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+    """Return the distance of points from a source at (distance, 0) and the unit vector from the source to them."""
+    along, across = x - distance, y
+    range_ = np.hypot(along, across)
+    clear = np.maximum(range_, NEAREST)
+    return clear, (along / clear, across / clear)
