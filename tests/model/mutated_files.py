@@ -15,6 +15,8 @@ from coaxshell.model.base import Described
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
 PRESSURE_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "bar": 1e5, "psi": 6894.757293168361}
+_TIMES, _PRESSURES = TIME_UNITS | {"": 1.0}, PRESSURE_UNITS | {"": 1.0, "mPa": 1e-3}
+"""Those that a spoilt heading may come to name as well."""
 SEPARATORS = (",", ";", "\t", " ")
 UNITS = pint.UnitRegistry(cache_folder=None)
 
@@ -108,10 +110,10 @@ def loose_reading(content, separator, decimal):
     first = next((k for k, row in enumerate(rows) if len(row) == 2 and None not in row), len(rows))
     if any(line[0] in "+-.0123456789" for line in lines[:first]) or any(len(row) != 2 or None in row for row in rows[first:]):
         return None
-    units = re.findall(r"\(([^()\s]+)\)", text[: text.find(lines[first])].replace("\xa0", "").replace("\ufeff", "")) if first else []
+    units = re.findall(r"\(\s*([^()\s]*)\s*\)", text[: text.find(lines[first])].replace("\xa0", "").replace("\ufeff", "")) if first else []
     if len(units) not in (0, 2):
         return None
-    factors = (TIME_UNITS.get(units[0]), PRESSURE_UNITS.get(units[1])) if units else (1.0, 1.0)
+    factors = (_TIMES.get(units[0]), _PRESSURES.get(units[1])) if units else (1.0, 1.0)
     if None in factors:
         return None
     return [[value[0] * factor for value in column] for column, factor in zip(zip(*rows[first:], strict=True), factors, strict=True)]

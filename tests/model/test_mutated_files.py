@@ -10,7 +10,7 @@ from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.model.records.reader import read_record
 
-COUNTS = [pytest.param(60, id="60"), pytest.param(1000, id="1000", marks=pytest.mark.slow)]
+COUNTS = [pytest.param(60, id="60"), pytest.param(2000, id="2000", marks=pytest.mark.slow)]
 
 
 def _read(content):

@@ -58,6 +58,9 @@ REFUSED = {
     "a missing value": ("t (s),p (Pa)\n0,1\n1,\n2,3\n", "line 3: the p (Pa) is missing"),
     "no number": ("t,p\n0,nan\n1,2\n", "line 2"),
     "underscores in numbers": ("t,p\n0,1\n1_0,2\n", "line 3"),
+    "a semicolon within a number": ("t (ms) p (kPa)\n0,0 1,5\n0,1;2 2,5\n0,3 1,0\n", "line 3: t (ms) '0,1;2'"),
+    "a control character within a number": ("t (ms),p (kPa)\n0,1\n0.1,\x1e89\n0.3,1\n", "line 3: '\\x1e' is no part of a text"),
+    "a spoilt prefix": ("t (ms) p (\x91Pa)\n0.0 1.5\n0.1 2.5\n", "is no unit of pressure"),
     "times that fall": ("t (ms),p\n0,1\n# c\n2,2\n1,3\n", "line 5: time 0.001 s does not follow 0.002 s"),
 }
 

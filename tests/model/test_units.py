@@ -70,6 +70,7 @@ def test_radians_become_degrees() -> None:
         ("3 deg", "number"),
         ("3 m/m", "angle"),
         ("6 mm mm", "length"),
+        *((f"6 {mark}m", "length") for mark in "‘’“”´¿¡\x91¨¬¦"),  # the parser of units passes over all of these
         ("six mm", "length"),
         ("", "length"),
         ("nan", "length"),

@@ -173,8 +173,8 @@ _LONGEST_UNIT = 64
 # pint computes the numbers in a unit exactly: "9**9**9**9" would take it for ever. Units need no powers of numbers, nor large exponents.
 _ENDLESS = re.compile(r"[\d⁰¹²³⁴-⁹]{3,}|[\d⁰¹²³⁴-⁹]\s*\)*\s*(\*\*|\^)")
 
-# The parser of units passes over some of these, and takes "mm0" for 1.
-_STRANGE = re.compile(r"[,;:=!?@#$&|~<>{}\[\]\"'\\`]|[A-Za-zµ)][-^*\s]*0")
+# The parser of units passes over what it does not know, quotation marks and control characters among it, and takes "mm0" for 1.
+_STRANGE = re.compile(r"[^\w \t*/^().+\-·⋅×°%⁺⁻]|[A-Za-zµ)][-^*\s]*0")
 
 
 def _parsed(unit: str) -> Any | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -24,6 +25,7 @@ from coaxshell.numerics.reading import decoded
 COMMENTS = ("#", "%", "//", "!")
 PREAMBLE = 2000
 """Lines before the first number."""
+_CONTROL = re.compile(r"[\x01-\x08\x0b\x0e-\x1f\x7f]")
 REMEDY = "give a text file with columns of time and pressure, units in their headings, as in: time (ms), pressure (kPa)"
 
 
@@ -73,7 +75,8 @@ def text_table(content: bytes, name: str, most: Limit = RECORD_COLUMNS) -> Table
         raise InputError(name, "cannot be read (not a text file)", REMEDY) from None
     if "\0" in text or (text and not text.isprintable() and sum(c < " " and c not in "\t\n\f" for c in text[:2000]) > 3):
         raise InputError(name, "cannot be read (not a text file)", REMEDY)
-    lines = text.removeprefix("\ufeff").split("\n")
+    lines = text.removeprefix("\ufeff").removesuffix("\x1a").split("\n")  # a mark of old systems for the end of a file
+    _refuse_controls(lines, name)
     RECORD_SAMPLES.check(len(lines), name)
     first, dialect = _first_numbers(lines)
     if first is None:
@@ -88,6 +91,16 @@ def text_table(content: bytes, name: str, most: Limit = RECORD_COLUMNS) -> Table
     most.check(table.shape[1], name)
     columns = tuple(_column(heading, unit, values) for (heading, unit), values in zip(headings, table.T, strict=True))
     return Table(columns, numbers)
+
+
+def _refuse_controls(lines: Sequence[str], name: str) -> None:
+    """Raise InputError for a control character outside comments: Python takes some for spaces, and would pass over a spoilt digit."""
+    if _CONTROL.search("\n".join(lines)) is None:
+        return
+    for number, line in enumerate(lines, start=1):
+        control = None if is_comment(line) else _CONTROL.search(line)
+        if control is not None:
+            raise InputError(f"{name}, line {number}", f"{control[0]!r} is no part of a text", "write the file again")
 
 
 def _column(heading: str, unit: str, values: FloatArray) -> Column:
@@ -186,7 +199,7 @@ def _fast(body: Sequence[str], dialect: Dialect) -> FloatArray | None:
     if len(counts) != 1:
         return None
     if dialect.decimal == ",":
-        cells = ";".join(cells).replace(",", ".").split(";")
+        cells = [cell.replace(",", ".") for cell in cells]
     try:
         values = np.fromiter(map(float, cells), float, len(cells))
     except ValueError:

@@ -4,7 +4,7 @@ import { SETTINGS, frame } from "./curves.js";
 import { el, toast } from "./dom.js";
 import { spelt } from "./study_fields.js";
 import { colour } from "./theme.js";
-import { percent, prefixed, show as text, showPercent } from "./units.js";
+import { inComparison, percent, prefixed, show as text } from "./units.js";
 import { told } from "./words.js";
 
 const NAMES = { "cma-es": "CMA-ES", "differential-evolution": "differential evolution", nsga2: "NSGA-II" };
@@ -60,7 +60,7 @@ function comparison({ targets, variables }, baseline, chosen, isFront) {
   const line = (one, before, after) => {
     const change = typeof after === "number" && typeof before === "number" ? percent(after, before) : null;
     const better = one.goal && change !== null && Math.abs(change) >= 0.05 ? ((change < 0) === (one.goal === "minimise") ? "better" : "worse") : "";
-    return el("tr", { title: one.label }, el("th", { scope: "row" }, spelt(one.name).replaceAll(".", ".\u200b"), ...words(one).map((word) => el("small", {}, word))), number(before, one.unit), number(after, one.unit), el("td", { class: `number ${better}` }, showPercent(change)));
+    return el("tr", { title: one.label }, el("th", { scope: "row" }, spelt(one.name).replaceAll(".", ".\u200b"), ...words(one).map((word) => el("small", {}, word))), number(before, one.unit), number(after, one.unit), el("td", { class: `number ${better}` }, inComparison(change)));
   };
   const rows = (title, list, key) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 4 }, title)), ...list.map((one, k) => line(one, baseline[key][k], chosen[key][k])));
   return el("table", { class: "peaks optimum" }, el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), ...["Baseline", isFront ? "Chosen" : "Best", "Change"].map((word) => el("th", { scope: "col", class: "number" }, word)))),

@@ -1,7 +1,7 @@
-// Peak and RMS values as bars, with the change in per cent; warnings in plain words above them.
+// Peak and RMS values as bars, with how they stand to others; warnings in plain words above them.
 import { el, by, svg } from "./dom.js";
 import { RUNS } from "./curves.js";
-import { percent, show, showPercent } from "./units.js";
+import { inComparison, percent, show } from "./units.js";
 import { capital, inWords, shellPhrase } from "./words.js";
 
 export function draw(runs) {
@@ -42,7 +42,7 @@ function line(bar, runs, others, most) {
   return el("tr", { title: where }, el("th", { scope: "row" }, bar.label), el("td", { class: "bars" }, picture), el("td", { class: "number", "data-bar": `${bar.name}/${bar.shell ?? ""}` }, show(bar.value, bar.unit)),
     ...values.flatMap(([, value]) => {
       const change = value === undefined ? null : percent(bar.value, value);
-      return [el("td", { class: "number" }, show(value ?? null, bar.unit)), el("td", { class: `number ${change === null || Math.abs(change) < 0.05 ? "" : change < 0 ? "better" : "worse"}` }, showPercent(change))];
+      return [el("td", { class: "number" }, show(value ?? null, bar.unit)), el("td", { class: `number ${change === null || Math.abs(change) < 0.05 ? "" : change < 0 ? "better" : "worse"}` }, inComparison(change))];
     }));
 }
 

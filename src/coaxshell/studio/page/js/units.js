@@ -61,8 +61,11 @@ export function percent(value, reference) {
   return 100 * (value / reference - 1);
 }
 
-export function showPercent(change) {
+// In the words of the command line: a reduction is no negative number.
+export function inComparison(change) {
   if (change === null) return "–";
-  const text = Math.abs(change) < 0.05 ? "0.0" : Math.abs(change) >= 1000 ? String(Math.round(Math.abs(change))) : Math.abs(change).toFixed(1);
-  return `${change < -0.05 ? "−" : change > 0.05 ? "+" : ""}${text}\u202f%`;
+  const ratio = 1 + change / 100;
+  if (ratio >= 2) return `${ratio < 999.5 ? ratio.toPrecision(3) : Math.round(ratio)} times as large`;
+  if (Math.abs(change) < 0.05) return "the same";
+  return `${change < 0 ? "smaller" : "larger"} by ${Math.abs(change).toFixed(1)}\u202f%`;
 }
