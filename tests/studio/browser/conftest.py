@@ -23,8 +23,9 @@ FLAGS = [
 ]
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Keep all of these in one test process: a server and a browser take seconds and memory."""
+    """Keep all of these in one test process, since a server and a browser take seconds and memory: before xdist reads the marks."""
     for item in items:
         if HERE in Path(item.path).parents:
             item.add_marker(pytest.mark.xdist_group("browser"))
@@ -109,11 +110,20 @@ class Watched:
         self.forgiven: list[str] = []
         """Pieces of console messages that a test expects, such as a refused connection while the server is down."""
 
+        self._heard = {
+            "request": self._request,
+            "console": lambda message: message.type == "error" and self._fault(f"console: {message.text}"),
+            "response": lambda response: response.status >= 400 and self._fault(f"{response.status}: {response.url}"),
+            "pageerror": lambda error: self._fault(f"exception: {error}"),
+        }
+
     def watch(self, page) -> None:
-        page.on("request", self._request)
-        page.on("console", lambda message: message.type == "error" and self._fault(f"console: {message.text}"))
-        page.on("response", lambda response: response.status >= 400 and self._fault(f"{response.status}: {response.url}"))
-        page.on("pageerror", lambda error: self._fault(f"exception: {error}"))
+        for event, hear in self._heard.items():
+            page.on(event, hear)
+
+    def leave(self, page) -> None:
+        for event, hear in self._heard.items():
+            page.remove_listener(event, hear)
 
     def _request(self, request) -> None:
         parts = urlsplit(request.url)
@@ -132,25 +142,47 @@ def watched():
     assert watched.faults == []
 
 
+@pytest.fixture(scope="session")
+def kept_page(browser):
+    """One page for one test after another: every other compiles plotly's script once more, which takes two seconds of a processor."""
+    context = browser.new_context(accept_downloads=True)
+    context.set_default_timeout(1e3 * PATIENCE)
+    yield context.new_page()
+    context.close()
+
+
 @pytest.fixture
-def open_page(browser, server, watched):
-    """Give what opens the page in a fresh window of its own and waits for the first answer."""
-    contexts = []
+def open_page(browser, kept_page, server, watched):
+    """Give what opens the page as one who comes for the first time and waits for its first answer; the second one has a window apart."""
+    opened = []
 
     def start(address: str | None = None, *, width=1280, height=720, theme="light", wait=True):
-        context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme, accept_downloads=True)
-        context.set_default_timeout(1e3 * PATIENCE)
-        contexts.append(context)
-        page = context.new_page()
+        address = address or server.address
+        if not opened and address.startswith(server.address):
+            page = kept_page
+            page.set_viewport_size({"width": width, "height": height})
+            page.emulate_media(color_scheme=theme)
+        else:
+            context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=theme, accept_downloads=True)
+            context.set_default_timeout(1e3 * PATIENCE)
+            page = context.new_page()
+        opened.append(page)
         watched.watch(page)
-        page.goto(address or server.address)
+        page.goto(address)
         if wait:
             until(page, "window.coaxshell?.state.runs.current && window.coaxshell.state.runs.bare")
         return page
 
     yield start
-    for context in contexts:
-        context.close()
+    for page in opened:
+        watched.leave(page)
+        if page is not kept_page:
+            page.context.close()
+            continue
+        page.unroute_all()
+        page.mouse.move(0, 0)
+        page.evaluate("() => localStorage.clear()")
+        page.goto(f"{server.address}/page/icon.svg")  # of the same origin, or Chromium would give its next page a process of its own
 
 
 @pytest.fixture

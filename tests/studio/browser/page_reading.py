@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import time
 
 import numpy as np
+from axe_playwright_python.sync_playwright import Axe
 
 import coaxshell as cx
 from coaxshell.studio.links import fragment
@@ -14,12 +16,27 @@ PATIENCE = 90
 
 PREVIEW = {"duration": 5.0, "time_step": 4e-3, "modes": 60}
 
-RUN = """slot => {
+PACKED = """const packed = values => {
+  const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+  let text = '';
+  for (let k = 0; k < bytes.length; k += 32768) text += String.fromCharCode(...bytes.subarray(k, k + 32768));
+  return btoa(text);
+};"""
+"""What makes a text of a typed array: a million numbers one by one would take seconds."""
+
+RUN = f"""slot => {{
+  {PACKED}
   const run = window.coaxshell.state.runs[slot];
-  const plain = ([name, array]) => [name, {values: Array.from(array.values), shape: array.shape}];
+  const plain = ([name, array]) => [name, {{kind: array.values.constructor.name, values: packed(array.values), shape: array.shape}}];
   const arrays = Object.fromEntries(Object.entries(run.arrays).map(plain));
-  return {arrays, bars: run.bars, resolution: run.resolution, run: run.run};
-}"""
+  return {{arrays, bars: run.bars, resolution: run.resolution, run: run.run}};
+}}"""
+KINDS = {"Float32Array": "<f4", "Float64Array": "<f8", "Uint8Array": "u1", "Uint8ClampedArray": "u1"}
+
+
+def unpacked(text, kind):
+    """Return the numbers of a packed array of a kind."""
+    return np.frombuffer(base64.b64decode(text), KINDS[kind])
 
 
 def open_preset(open_page, server, resolution, preset="absorbers", **options):
@@ -44,7 +61,8 @@ def until(page, expression, argument=None):
 def run_of(page, slot="current"):
     """Return arrays, bars, resolution and system of a run on the page."""
     found = page.evaluate(RUN, slot)
-    found["arrays"] = {name: np.array(array["values"]).reshape(array["shape"]) for name, array in found["arrays"].items()}
+    arrays = found["arrays"].items()
+    found["arrays"] = {name: unpacked(one["values"], one["kind"]).astype(float).reshape(one["shape"]) for name, one in arrays}
     return found
 
 
@@ -74,3 +92,9 @@ def shown_curves(page):
         "document.getElementById('curves').data.map(trace => [trace.name, trace.xaxis ?? 'x', Array.from(trace.y), Array.from(trace.x)])"
     )
     return [(name, axis, np.array(y, dtype=float), np.array(x, dtype=float)) for name, axis, y, x in found]
+
+
+def violations(page):
+    """Return what axe-core finds wrong with the page, in words."""
+    found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
+    return [f"{one['id']}: {one['help']} ({', '.join(node['html'][:120] for node in one['nodes'][:3])})" for one in found]

@@ -7,9 +7,8 @@ import tomllib
 import numpy as np
 import pytest
 from asking import SMALL
-from axe_playwright_python.sync_playwright import Axe
 from numpy.testing import assert_allclose
-from page_reading import open_preset, rest, run_of, solved, system_of, until
+from page_reading import open_preset, rest, run_of, solved, system_of, until, violations
 
 import coaxshell as cx
 
@@ -54,11 +53,6 @@ def describe(page, evaluations="12"):
 
 def start(page):
     page.get_by_role("button", name="Start optimisation").click()
-
-
-def violations(page):
-    found = Axe().run(page).response["violations"]
-    return [f"{one['id']}: {one['help']} ({', '.join(node['html'][:120] for node in one['nodes'][:3])})" for one in found]
 
 
 def number(text):

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
-from page_reading import until
+from asking import SMALL
+from page_reading import open_preset, until, violations
 
 from coaxshell.model.places import region_side, shell_name, shell_phrase
 
 TABS = ("peaks", "wave", "energy", "studies")
 
 
-def violations(page):
-    found = Axe().run(page).response["violations"]
-    return [f"{one['id']}: {one['help']} ({', '.join(node['html'][:120] for node in one['nodes'][:3])})" for one in found]
-
-
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_axe_finds_nothing_wrong(open_page, theme):
-    page = open_page(theme=theme)
+def test_axe_finds_nothing_wrong(open_page, server, theme):
+    page = open_preset(open_page, server, SMALL, preset="hybrid", theme=theme)
     for tab in TABS:
         page.locator(f"#tab-{tab}").click()
         assert violations(page) == [], f"{tab}, {theme}"
@@ -26,8 +21,8 @@ def test_axe_finds_nothing_wrong(open_page, theme):
     assert violations(page) == [], f"the whole form, {theme}"
 
 
-def test_axe_finds_nothing_wrong_with_a_problem_shown_on_a_phone(open_page):
-    page = open_page(width=390, height=844)
+def test_axe_finds_nothing_wrong_with_a_problem_shown_on_a_phone(open_page, server):
+    page = open_preset(open_page, server, SMALL, preset="hybrid", width=390, height=844)
     field = page.locator('input[type="text"][data-path="absorbers.mass"]')
     field.fill("heavy")
     field.press("Enter")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from asking import SMALL
-from axe_playwright_python.sync_playwright import Axe
 from numpy.testing import assert_allclose
-from page_reading import open_preset, rest, run_of, solved, system_of, until
+from page_reading import open_preset, rest, run_of, solved, system_of, until, violations
 
 import coaxshell as cx
 
@@ -82,4 +81,4 @@ def test_a_text_that_is_no_record_is_told_in_words(server, open_page):
     page.get_by_role("button", name="Read", exact=True).click()
     page.locator(".record .problem").wait_for()
     assert "Not read. " in page.locator(".record .problem").inner_text()
-    assert Axe().run(page).response["violations"] == []
+    assert violations(page) == []

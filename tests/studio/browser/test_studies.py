@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from asking import SMALL
 from numpy.testing import assert_allclose
-from page_reading import PREVIEW, until
+from page_reading import open_preset, until
 
 import coaxshell as cx
 
@@ -20,15 +21,12 @@ def start(page, **entries):
     page.locator("#sweep button.main").click()
 
 
-def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(page):
-    page.locator("#preset").select_option(label="absorbers")
-    until(page, "window.coaxshell.state.system.control === null")
+def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(server, open_page):
+    page = open_preset(open_page, server, SMALL)
     start(page, path="absorbers.count", from_=10, to=14, count=3, scale="linear", metric="inner.peak_stress")
     until(page, "document.getElementById('study-plot')?.data?.length")
     shown = np.array(page.evaluate("Array.from(document.getElementById('study-plot').data[0].y)"), dtype=float)
-    ours = cx.sweep(
-        cx.presets.load("absorbers"), over={"absorbers.count": [10, 12, 14]}, metrics=["inner.peak_stress"], workers=1, **PREVIEW
-    )
+    ours = cx.sweep(cx.presets.load("absorbers"), {"absorbers.count": [10, 12, 14]}, ["inner.peak_stress"], workers=1, **SMALL)
     values = np.asarray(ours["inner.peak_stress"], dtype=float)
     assert_allclose(shown / shown[0], values / values[0], rtol=1e-6)
     with page.expect_download() as saved:
@@ -49,7 +47,8 @@ def again(page):
     page.locator("#tab-studies").click()
 
 
-def test_a_sweep_outlives_its_page_being_loaded_anew(page):
+def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page):
+    page = open_preset(open_page, server, {"duration": 4.0, "time_step": 0.01, "modes": 20}, preset="hybrid")  # it takes seconds
     start(page, path="absorbers.mass", from_=2, to=90, count=60, scale="linear", metric="outer.peak_stress")
     mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
     mine.wait_for()
@@ -62,7 +61,8 @@ def test_a_sweep_outlives_its_page_being_loaded_anew(page):
     until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
 
 
-def test_a_plot_drawn_while_another_tab_is_shown_fits(page):
+def test_a_plot_drawn_while_another_tab_is_shown_fits(server, open_page):
+    page = open_preset(open_page, server, SMALL)
     start(page, path="absorbers.mass", from_=2, to=60, count=8, scale="linear", metric="inner.rms_stress")
     page.locator("#tab-peaks").click()
     until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 8")

@@ -6,19 +6,20 @@ import re
 
 import numpy as np
 from numpy.testing import assert_allclose
-from page_reading import open_preset, run_of, system_of, until
+from page_reading import PACKED, open_preset, run_of, system_of, unpacked, until
 
 import coaxshell as cx
 
-PIXELS = """id => {
+PIXELS = f"""id => {{
+  {PACKED}
   const canvas = document.getElementById(id);
-  return Array.from(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data);
-}"""
+  return packed(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data);
+}}"""
 PREFIX = {"": 1.0, "k": 1e3, "M": 1e6, "m": 1e-3}
 
 
 def pixels(page, name):
-    return np.array(page.evaluate(PIXELS, f"field-{name}"))
+    return unpacked(page.evaluate(PIXELS, f"field-{name}"), "Uint8ClampedArray")
 
 
 SMALL = {"duration": 2.0, "time_step": 0.01, "modes": 20, "refinement": 1}
