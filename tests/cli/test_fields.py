@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from coaxshell import InputError
-from coaxshell.cli.times import times
+from coaxshell.cli.options import times
 
 FAST = ("--quiet", "--width", "4")
 

@@ -7,7 +7,7 @@ import json
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli.solving import Request
+from coaxshell.cli.running import Request
 from coaxshell.solver.settings import Settings
 from coaxshell.studies import SweepStudy
 from coaxshell.studies.optimisation.confirmation import finer

@@ -7,19 +7,17 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.cli import field_options, options, values
-from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs
+from coaxshell.cli import options
+from coaxshell.cli.output import Outputs, echo
 from coaxshell.cli.progress import progress, tell_time
-from coaxshell.cli.solving import Request, with_resolution
-from coaxshell.cli.streams import echo
+from coaxshell.cli.running import Request, answers, tell_all_warnings, with_resolution
 
 
 @with_resolution
 def animate(
     context: typer.Context,
-    source: field_options.SourceArgument,
-    compare: field_options.CompareOption = None,
+    source: options.SourceArgument,
+    compare: options.CompareOption = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .mp4 (needs the extra 'video') or .webp.")
     ] = Path("film.mp4"),
@@ -29,10 +27,10 @@ def animate(
     until: Annotated[
         str | None, typer.Option("--until", metavar="TIME", help="Last instant, transits.", show_default="the end of the shortest run")
     ] = None,
-    width: field_options.WidthOption = "6",
-    units: field_options.UnitsOption = "auto",
-    pressure_limit: field_options.PressureLimitOption = None,
-    stress_limit: field_options.StressLimitOption = None,
+    width: options.WidthOption = "6",
+    units: options.UnitsOption = "auto",
+    pressure_limit: options.PressureLimitOption = None,
+    stress_limit: options.StressLimitOption = None,
     changes: options.SetOption = None,
     *,
     request: Request,
@@ -47,18 +45,18 @@ def animate(
     from coaxshell.plotting.film import film_cost, require_room
 
     target = Outputs(force).file(output, "--output", FILM_SUFFIXES)
-    last = None if until is None else values.number("--until", until)
-    highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
-    highest_stress = field_options.limit("--stress-limit", stress_limit)
-    with values.named_as_options(pixels="size"):
-        view = FieldView(0.5 * values.number("--width", width), size)
+    last = None if until is None else options.number("--until", until)
+    highest_pressure = options.limit("--pressure-limit", pressure_limit)
+    highest_stress = options.limit("--stress-limit", stress_limit)
+    with options.named_as_options(pixels="size"):
+        view = FieldView(0.5 * options.number("--width", width), size)
         check_units(units)
         check_film(target, frames, fps)
         cost = film_cost(2 if compare else 1, frames, view)
         require_room(cost, frames, view)
     tell_time(cost, "the film", quiet)
     responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
-    with values.named_as_options(path="output"), progress(quiet) as report:
+    with options.named_as_options(path="output"), progress(quiet) as report:
         save_film(
             *responses,
             path=target,

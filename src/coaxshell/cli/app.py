@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from coaxshell._version import __version__
-from coaxshell.cli.streams import echo
+from coaxshell.cli.output import echo
 
 COMMANDS = (
     *("run", "presets", "init", "info", "record", "plot", "figure", "reproduce", "snapshots", "animate", "export"),

@@ -7,13 +7,11 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.cli import field_options, options, values
-from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs
+from coaxshell.cli import options
+from coaxshell.cli.options import times as read_times
+from coaxshell.cli.output import Outputs, echo
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request, with_resolution
-from coaxshell.cli.streams import echo
-from coaxshell.cli.times import times as read_times
+from coaxshell.cli.running import Request, answers, tell_all_warnings, with_resolution
 from coaxshell.errors import InputError
 
 _KINDS = ("paraview", "csv", "mat")
@@ -22,7 +20,7 @@ _KINDS = ("paraview", "csv", "mat")
 @with_resolution
 def export(
     context: typer.Context,
-    source: field_options.SourceArgument,
+    source: options.SourceArgument,
     to: Annotated[str, typer.Option("--to", metavar="paraview|csv|mat", help="ParaView gets a folder, the others a file.")],
     output: Annotated[
         Path | None,
@@ -32,7 +30,7 @@ def export(
         str | None,
         typer.Option("--times", metavar="TIME,...", help="ParaView: instants in transits, as in 0:5:0.05.", show_default="101, evenly"),
     ] = None,
-    width: field_options.WidthOption = "6",
+    width: options.WidthOption = "6",
     points: Annotated[int, typer.Option("--points", metavar="N", help="ParaView: points along a side of the square.")] = 301,
     displaced: Annotated[
         str,
@@ -51,11 +49,11 @@ def export(
         raise InputError("--to", f"{to!r} is unknown", f"allowed: {', '.join(_KINDS)}")
     target = _target(source, to, output, force)
     chosen = None if times is None else read_times(times)
-    half_width, factor = 0.5 * values.number("--width", width), values.number("--displaced", displaced)
-    with values.named_as_options():
+    half_width, factor = 0.5 * options.number("--width", width), options.number("--displaced", displaced)
+    with options.named_as_options():
         check_grid(half_width, points, factor)
     (response,) = answers(context, [source], changes, request, quiet=quiet)
-    with values.named_as_options(folder="output", path="output"), progress(quiet) as report:
+    with options.named_as_options(folder="output", path="output"), progress(quiet) as report:
         if to == "paraview":
             export_paraview(
                 response, target, times=chosen, half_width=half_width, points=points, displaced=factor, force=force, progress=report

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs, write_figure
+from coaxshell.cli.options import named_as_options
+from coaxshell.cli.output import Outputs, echo, write_figure
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request, with_resolution
-from coaxshell.cli.streams import echo
+from coaxshell.cli.running import Request, answers, tell_all_warnings, with_resolution
 from coaxshell.cli.tables import tell_warnings
-from coaxshell.cli.values import named_as_options
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -77,7 +75,7 @@ def _draw_study(
     recipe: StudyRecipe, sources: Sequence[str], changes: Sequence[str] | None, request: Request, target: Path, *, quiet: bool
 ) -> tuple[str, ...]:
     """Solve, draw and save a figure of many runs, and return their warnings."""
-    from coaxshell.cli.scenario import load_system
+    from coaxshell.cli.running import load_system
     from coaxshell.paper import Runs
     from coaxshell.studies.executors import worker_count
 

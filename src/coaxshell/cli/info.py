@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli.documents import JsonOption, print_document, runs_document
-from coaxshell.cli.streams import echo
+from coaxshell.cli.output import echo
 
 
 def info(

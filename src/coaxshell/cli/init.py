@@ -8,9 +8,8 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import Outputs
-from coaxshell.cli.streams import echo
-from coaxshell.cli.values import named_as_options
+from coaxshell.cli.options import named_as_options
+from coaxshell.cli.output import Outputs, echo
 from coaxshell.numerics.files import write_text
 
 

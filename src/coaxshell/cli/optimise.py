@@ -10,11 +10,10 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.files import Outputs, write_figure
-from coaxshell.cli.interruption import Interrupted
-from coaxshell.cli.streams import echo
-from coaxshell.cli.studying import study_options, tell_code, tell_study_time
-from coaxshell.cli.values import named_as_options
+from coaxshell.cli.entry import Interrupted
+from coaxshell.cli.options import named_as_options
+from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.running import study_options, tell_code, tell_study_time
 
 
 def optimise(

@@ -1,11 +1,16 @@
-"""Options that several commands share. Values come as text; :mod:`coaxshell.cli.values` turns them into numbers."""
+"""Options that several commands share, and from their texts to values; every problem is an InputError that names the option."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+
+from coaxshell.errors import InputError
 
 DURATION, TIME_STEP, MODES = "5", "1e-3", "150"
 """The paper's resolution, as the help shows it."""
@@ -47,3 +52,125 @@ StoreOption = Annotated[
 ]
 AllowCodeOption = Annotated[bool, typer.Option("--allow-code", help="Run Python files that the study names outside its folder too.")]
 ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with what has been kept.")]
+
+
+SourceArgument = Annotated[
+    str, typer.Argument(metavar="SOURCE", help="A preset, a .toml file, or a run saved by coaxshell run --output (.nc).")
+]
+CompareOption = Annotated[
+    str | None, typer.Option("--compare", metavar="SOURCE", help="Second system, shown beside the first on the same scales.")
+]
+WidthOption = Annotated[str, typer.Option("--width", metavar="LENGTH", help="Side of the square that is seen, in outermost radii a.")]
+UnitsOption = Annotated[str, typer.Option("--units", metavar="auto|Pa|kPa|MPa|relative", help="Of the pressure; relative is p/(rho c^2).")]
+PressureLimitOption = Annotated[
+    str | None,
+    typer.Option("--pressure-limit", metavar="PRESSURE", help="End of the pressure's colour scale in Pa.", show_default="from the fields"),
+]
+StressLimitOption = Annotated[
+    str | None,
+    typer.Option("--stress-limit", metavar="PRESSURE", help="End of the stress's colour scale in Pa.", show_default="from the fields"),
+]
+
+
+def limit(option: str, text: str | None) -> float | None:
+    """Return the end of a colour scale in Pa, None if it is left to the fields; InputError if it is not positive."""
+    if text is None:
+        return None
+    value = number(option, text)
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(option, f"{value:g} is not allowed", "give a positive number, in Pa")
+    return value
+
+
+_OF_SETTINGS = ("duration", "time_step", "modes", "tolerance", "engine", "refinement")
+_OF_FIELDS = ("times", "until", "frames", "fps", "pixels", "width", "units", "points", "displaced", "output", "folder", "path")
+
+
+def number(option: str, text: str) -> float:
+    """Return the number written in an option."""
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(option, f"{text!r} is not a number", "give a number such as 5 or 1e-3") from None
+
+
+def whole(option: str, text: str) -> int:
+    """Return the whole number written in an option."""
+    try:
+        return int(text)
+    except ValueError:
+        raise InputError(option, f"{text!r} is not a whole number", "give one such as 1 or 4") from None
+
+
+def overrides(texts: Sequence[str], option: str = "--set") -> dict[str, Any]:
+    """Return {path: value} from ``path=value`` texts; the value is read as TOML, or else as text such as ``6 mm``."""
+    found: dict[str, Any] = {}
+    for text in texts:
+        path, equals, value = text.partition("=")
+        path = path.strip()
+        if not path or not equals or not value.strip():
+            raise InputError(option, f"{text!r} is not an assignment", 'write path=value, as in "source.peak_pressure=50 kPa"')
+        if path in found:
+            raise InputError(option, f"{path!r} is given twice", "give each path once")
+        found[path] = _value(value.strip())
+    return found
+
+
+def _value(text: str) -> Any:
+    from coaxshell.model.toml_text import parsed
+
+    try:
+        found = parsed(f"value = {text}")
+    except InputError:
+        return text
+    return found["value"] if len(found) == 1 else text
+
+
+@contextmanager
+def named_as_options(**names: str) -> Iterator[None]:
+    """Let errors about arguments name the option instead: ``time_step`` becomes ``--time-step``, or what *names* says of it."""
+    try:
+        yield
+    except InputError as error:
+        if error.where in names or error.where in _OF_SETTINGS + _OF_FIELDS:
+            option = names.get(error.where, error.where).replace("_", "-")
+            raise InputError(f"--{option}", error.problem, error.remedy) from None
+        raise
+
+
+_MOST = 100_000
+
+
+def times(text: str, option: str = "--times") -> list[float]:
+    """Return the instants of "0.2,1.2,3.6", "0:5:0.1", or both mixed, in the order written.
+
+    Raises
+    ------
+    InputError
+        An item is neither a number nor a range.
+    """
+    found: list[float] = []
+    for item in text.split(","):
+        found += _range(item, option) if ":" in item else [_number(item, option)]
+    return found
+
+
+def _range(item: str, option: str) -> list[float]:
+    parts = [_number(part, option) for part in item.split(":")]
+    if len(parts) != 3 or parts[2] <= 0 or parts[1] < parts[0]:
+        raise InputError(option, f"{item.strip()!r} is not a range", "write start:stop:step, as in 0:5:0.1")
+    start, stop, step = parts
+    count = math.floor((stop - start) / step * (1 + 1e-12) + 1e-9) + 1
+    if count > _MOST:
+        raise InputError(option, f"{item.strip()!r} asks for {count} instants", f"at most {_MOST} are allowed")
+    return [round(start + i * step, 12) for i in range(count)]
+
+
+def _number(text: str, option: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(option, f"{text.strip()!r} is not a time", "give transits, as in 0.2,1.2,3.6 or 0:5:0.1")
+    return value

@@ -7,17 +7,15 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.cli import field_options, options, values
-from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs, write_figure
-from coaxshell.cli.solving import Request, with_resolution
-from coaxshell.cli.streams import echo
+from coaxshell.cli import options
+from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.running import Request, answers, tell_all_warnings, with_resolution
 
 
 @with_resolution
 def plot(
     context: typer.Context,
-    source: field_options.SourceArgument,
+    source: options.SourceArgument,
     quantity: Annotated[
         str,
         typer.Option(
@@ -31,7 +29,7 @@ def plot(
         typer.Option("--shell", metavar="NAME", help="inner, outer or a number from 0 inside. May be repeated.", show_default="all"),
     ] = None,
     angle: Annotated[str, typer.Option("--angle", metavar="ANGLE,...", help="Degrees from the source, as in 0,90,180.")] = "0,180",
-    compare: field_options.CompareOption = None,
+    compare: options.CompareOption = None,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="QUANTITY.png")
     ] = None,
@@ -52,11 +50,11 @@ def plot(
 
     chosen = one_of("--quantity", quantity.replace("-", "_"), QUANTITIES)
     target = Outputs(force).file(output or Path(f"{chosen}.png"), "--output", FIGURE_SUFFIXES)
-    angles = [values.number("--angle", each) for each in angle.split(",")]
+    angles = [options.number("--angle", each) for each in angle.split(",")]
     sources = [source, *([compare] if compare else [])]
     responses = answers(context, sources, changes, request, quiet=quiet)
     names = labels(*(response.system for response in responses)) if compare else (responses[0].system.name or Path(source).stem,)
-    with values.named_as_options(shells="shell", responses="compare"):
+    with options.named_as_options(shells="shell", responses="compare"):
         drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)
     write_figure(drawn, target, "--output")
     tell_all_warnings(responses)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.streams import echo
+from coaxshell.cli.output import echo
 
 
 def presets(as_json: JsonOption = False) -> None:

@@ -13,7 +13,7 @@ from coaxshell.numerics.progress import Progress
 if TYPE_CHECKING:
     from coaxshell.numerics.cost import Cost
 
-from coaxshell.cli.streams import printable
+from coaxshell.cli.output import printable
 
 _LINES = 10
 

@@ -10,7 +10,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.files import Outputs, write_figure
+from coaxshell.cli.output import Outputs, write_figure
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from coaxshell.cli import options, values
-from coaxshell.cli.interruption import Interrupted
+from coaxshell.cli import options
+from coaxshell.cli.entry import Interrupted
+from coaxshell.cli.output import echo
 from coaxshell.cli.progress import progress, tell_time
-from coaxshell.cli.solving import settings_of
-from coaxshell.cli.streams import echo
+from coaxshell.cli.running import settings_of
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -50,12 +50,12 @@ def reproduce(
     for name in sorted(wanted - set(TOPICS)):
         raise InputError("--only", f"there is no topic {name!r}", f"allowed: {', '.join(TOPICS)}")
     resolution = _resolution(quick, duration, time_step, modes)
-    count = None if workers is None else values.whole("--workers", workers)
+    count = None if workers is None else options.whole("--workers", workers)
     prepare(output)
     told = partial(tell_time, what="what is left to do", quiet=quiet)
     suffix = (".mp4" if find_spec("imageio_ffmpeg") else ".webp") if film else None
     try:
-        with values.named_as_options(), progress(quiet, left=True) as report:
+        with options.named_as_options(), progress(quiet, left=True) as report:
             found = compute(output, resolution, only=wanted, film_suffix=suffix, workers=count, progress=report, tell=told)
     except KeyboardInterrupt:
         raise Interrupted(f"interrupted; finished parts are kept in {str(output)!r}: the same command goes on") from None

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.files import Outputs, write_figure
-from coaxshell.cli.streams import echo
-from coaxshell.cli.values import named_as_options, number
+from coaxshell.cli.options import named_as_options, number
+from coaxshell.cli.output import Outputs, echo, write_figure
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:

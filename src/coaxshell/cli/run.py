@@ -10,10 +10,9 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.documents import JsonOption, print_document, runs_document
-from coaxshell.cli.files import Outputs, write_figure
-from coaxshell.cli.solving import Request, with_resolution
-from coaxshell.cli.streams import echo
-from coaxshell.cli.values import named_as_options
+from coaxshell.cli.options import named_as_options
+from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.running import Request, with_resolution
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -58,7 +57,7 @@ def run(
     --output saves the first run.
     """
     from coaxshell.cli.comparison import labels, load_reference, print_comparison
-    from coaxshell.cli.scenario import load_system
+    from coaxshell.cli.running import load_system
     from coaxshell.cli.tables import print_summary, tell_warnings
 
     outputs = Outputs(force)

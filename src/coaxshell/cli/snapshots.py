@@ -7,32 +7,29 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.cli import field_options, options, values
-from coaxshell.cli.answers import answers, tell_all_warnings
-from coaxshell.cli.files import Outputs, write_figure
+from coaxshell.cli import options
+from coaxshell.cli.output import Outputs, echo, write_figure
 from coaxshell.cli.progress import progress
-from coaxshell.cli.solving import Request, with_resolution
-from coaxshell.cli.streams import echo
-from coaxshell.cli.times import times as read_times
+from coaxshell.cli.running import Request, answers, tell_all_warnings, with_resolution
 from coaxshell.errors import InputError
 
 
 @with_resolution
 def snapshots(
     context: typer.Context,
-    source: field_options.SourceArgument,
-    compare: field_options.CompareOption = None,
+    source: options.SourceArgument,
+    compare: options.CompareOption = None,
     times: Annotated[
         str | None,
         typer.Option("--times", metavar="TIME,...", help="Instants in transits, as in 0.2,1.2,3.6 or 0:5:0.5.", show_default="the paper's"),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.")] = Path("snapshots.png"),
     columns: Annotated[int, typer.Option("--columns", metavar="N", help="Instants in a row, 1 to 20.")] = 4,
-    width: field_options.WidthOption = "6",
+    width: options.WidthOption = "6",
     pixels: Annotated[int, typer.Option("--pixels", metavar="N", help="Pixels along a side of each field.")] = 450,
-    units: field_options.UnitsOption = "auto",
-    pressure_limit: field_options.PressureLimitOption = None,
-    stress_limit: field_options.StressLimitOption = None,
+    units: options.UnitsOption = "auto",
+    pressure_limit: options.PressureLimitOption = None,
+    stress_limit: options.StressLimitOption = None,
     changes: options.SetOption = None,
     *,
     request: Request,
@@ -48,14 +45,14 @@ def snapshots(
     target = Outputs(force).file(output, "--output", FIGURE_SUFFIXES)
     if not 1 <= columns <= 20:
         raise InputError("--columns", f"{columns} is not allowed", "give a whole number from 1 to 20")
-    chosen = None if times is None else read_times(times)
-    highest_pressure = field_options.limit("--pressure-limit", pressure_limit)
-    highest_stress = field_options.limit("--stress-limit", stress_limit)
-    with values.named_as_options():
-        view = FieldView(0.5 * values.number("--width", width), pixels)
+    chosen = None if times is None else options.times(times)
+    highest_pressure = options.limit("--pressure-limit", pressure_limit)
+    highest_stress = options.limit("--stress-limit", stress_limit)
+    with options.named_as_options():
+        view = FieldView(0.5 * options.number("--width", width), pixels)
         check_units(units)
     responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
-    with values.named_as_options(), progress(quiet) as report:
+    with options.named_as_options(), progress(quiet) as report:
         figure = figure_snapshots(
             *responses,
             times=chosen,

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.cli.streams import echo
+from coaxshell.cli.output import echo
 from coaxshell.errors import InputError
 
 PORT = 8765

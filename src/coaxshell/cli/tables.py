@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
-from coaxshell.cli.streams import echo, printable
+from coaxshell.cli.output import echo, printable
 from coaxshell.errors import PhysicsWarning
 
 if TYPE_CHECKING:

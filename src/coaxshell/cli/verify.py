@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from coaxshell.cli import options, values
-from coaxshell.cli.solving import settings_of
-from coaxshell.cli.streams import echo
+from coaxshell.cli import options
+from coaxshell.cli.output import echo
+from coaxshell.cli.running import settings_of
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def verify(
             raise InputError("--case", "is for --against or --template", "give one of them, or leave --case out")
         return _suite(only, quick, output, force, quiet)
 
-    from coaxshell.cli.scenario import load_system
+    from coaxshell.cli.running import load_system
 
     if case is None:
         raise InputError("--case", "is missing", "name the preset or .toml file that the other code solved")
@@ -69,7 +69,7 @@ def verify(
     if template is not None:
         _template(system, template, resolution.modes, force)
     if against is not None:
-        limit = values.number("--tolerance", tolerance)
+        limit = options.number("--tolerance", tolerance)
         _against(against, system, _folder(output, force), limit, (resolution.time_step, resolution.modes), quiet)
     return None
 
@@ -99,13 +99,13 @@ def _against(path: Path, system: System, output: Path, limit: float, resolution:
     from coaxshell.cli.progress import progress
     from coaxshell.verification.against import against
 
-    with values.named_as_options(), progress(quiet) as report:
+    with options.named_as_options(), progress(quiet) as report:
         found = against(path, system, time_step=resolution[0], modes=resolution[1], tolerance=limit, progress=report)
     _tell(found, output)
 
 
 def _template(system: System, path: Path, modes: int, force: bool) -> None:
-    from coaxshell.cli.files import Outputs
+    from coaxshell.cli.output import Outputs
     from coaxshell.verification.against import template
 
     Outputs(force).file(path, "--template", (".csv",))
@@ -115,7 +115,7 @@ def _template(system: System, path: Path, modes: int, force: bool) -> None:
 
 def _folder(output: Path, force: bool) -> Path:
     """Return the report's folder, found free."""
-    from coaxshell.cli.files import Outputs
+    from coaxshell.cli.output import Outputs
     from coaxshell.verification.files import NAMES
 
     outputs = Outputs(force)
