@@ -1,4 +1,4 @@
-"""Pages that the package writes itself: the conformance report, the commands, the licences, the limits. Made anew at every build."""
+"""Pages that the package writes itself at every build: conformance report, commands, licences, limits, quantities."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 from cli_pages import command_reference
 from licence_pages import licence_table
 from limit_pages import limit_table
+from quantity_pages import quantity_table
 from sphinx.application import Sphinx
 from verification_pages import verification_report
 
@@ -15,7 +16,8 @@ def write_pages(app: Sphinx) -> None:
     """Write the pages into docs/generated, where Sphinx finds them."""
     folder = Path(app.srcdir) / "generated"
     folder.mkdir(exist_ok=True)
-    for name, page in (("commands", command_reference), ("licences", licence_table), ("limits", limit_table)):
+    pages = {"commands": command_reference, "licences": licence_table, "limits": limit_table, "quantities": quantity_table}
+    for name, page in pages.items():
         _replace_if_changed(folder / f"{name}.md", page())
     verification_report(folder)
 

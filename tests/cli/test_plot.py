@@ -8,7 +8,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.plotting import QUANTITIES, figure_curves
-from coaxshell.response.summary_text import ROWS
+from coaxshell.response.quantities import summary_rows
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_dataframe(hybrid):
 
 def test_summary_in_a_notebook_is_a_table(hybrid):
     html = hybrid.summary()._repr_html_()
-    values = [getattr(shell, key) for shell in hybrid.summary().shells for key, _, _ in ROWS]
+    values = [getattr(shell, key) for shell in hybrid.summary().shells for key, _, _ in summary_rows()]
     assert html.count("<tr>") == 1 + sum(value is not None for value in values)
     for words in ("relative displacement at head", "t [a/c_e]", "voltages: means over"):
         assert words in html

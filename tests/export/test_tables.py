@@ -43,13 +43,12 @@ def test_head_follows_the_source(hybrid):
 
     class Turned:
         system, time, time_seconds = turned, hybrid.time, hybrid.time_seconds
-        sensor_voltage, actuator_voltage = hybrid.sensor_voltage, hybrid.actuator_voltage
-        absorber_displacement, displacement = hybrid.absorber_displacement, hybrid.displacement
+        absorber_displacement = hybrid.absorber_displacement
         asked = ()
 
-        def stress(self, shell, angle):
+        def history(self, shell, angle, quantity):
             self.asked = (*self.asked, *angle)
-            return hybrid.stress(shell, angle=angle)
+            return hybrid.history(shell, angle, quantity)
 
     response = Turned()
     history_table(response)

@@ -33,6 +33,12 @@ class FakeResponse:
     def actuator_voltage(self, shell, angle):
         return self._array(shell, angle, 3e3, 7.0)
 
+    def history(self, shell, angle, quantity):
+        component = "tangential" if "tangential" in quantity else "normal"
+        if "displacement" in quantity:
+            return self.displacement(shell, angle, component, relative="relative" in quantity)
+        return getattr(self, quantity)(shell, angle)
+
     def _array(self, shell, angle, scale, frequency):
         index = self.system.shell_index(shell)
         columns = []

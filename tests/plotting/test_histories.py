@@ -36,5 +36,5 @@ def test_leaves_the_callers_settings_alone(response):
 
 
 def test_unknown_quantity(response):
-    with pytest.raises(InputError, match="'strain' cannot be drawn; allowed: stress, displacement"):
+    with pytest.raises(InputError, match="'strain' cannot be drawn; allowed: stress, relative_displacement, displacement"):
         plot_history(response, "strain")

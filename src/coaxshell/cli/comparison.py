@@ -73,12 +73,13 @@ def comparison_rows(first: Summary, second: Summary) -> list[tuple[str, ...]]:
     Where a value still grows at the end of its run that would be a matter of the run's length: it is not given.
     """
     from coaxshell.model.prefixes import against, engineering
-    from coaxshell.response.summary_text import GROWING, ROWS
+    from coaxshell.response.quantities import summary_rows
+    from coaxshell.response.summary_text import GROWING
 
     ours, theirs = ({shell.name: shell for shell in summary.shells} for summary in (first, second))
     rows = []
     for name in dict.fromkeys([*ours, *theirs]):
-        for key, label, unit in ROWS:
+        for key, label, unit in summary_rows():
             found = [getattr(shells.get(name), key, None) for shells in (ours, theirs)]
             pair = [_number(value) for value in found]
             if any(value is not None for value in pair):

@@ -36,9 +36,9 @@ def _plain(value: Any) -> Any:
 
 def runs_document(named: Mapping[str, Summary]) -> dict[str, Any]:
     """Return the summaries of named runs, with the units of their fields."""
-    from coaxshell.response.summary_text import ROWS
+    from coaxshell.response.quantities import summary_rows
 
-    units = {key: unit for key, _, unit in ROWS} | {"segment": "m", "actuator_limit": "V"}
+    units = {key: unit for key, _, unit in summary_rows()} | {"segment": "m", "actuator_limit": "V"}
     units |= {
         "absorber_displacement": "m",
         "absorber_force": "N/m",

@@ -21,7 +21,7 @@ def plot(
         typer.Option(
             "--quantity",
             metavar="NAME",
-            help="stress, relative_displacement, displacement, tangential_displacement, sensor_voltage or actuator_voltage.",
+            help="A quantity of a shell: stress, displacement, relative_displacement, actuator_voltage, ...; any other word lists all.",
         ),
     ] = "stress",
     shell: Annotated[

@@ -48,7 +48,7 @@ def summary_table(summary: Summary) -> Table:
     from rich.markup import escape
     from rich.table import Table
 
-    from coaxshell.response.summary_text import ROWS
+    from coaxshell.response.quantities import summary_rows
 
     title, run, *_ = printable(str(summary)).splitlines()
     table = Table(title=f"{escape(title)}\n[not bold]{escape(run)}[/]", title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
@@ -57,7 +57,7 @@ def summary_table(summary: Summary) -> Table:
     for heading in ("value", "t (a/c)", "angle (°)"):
         table.add_column(heading, justify="right", no_wrap=True)
     for shell in summary.shells:
-        rows = [(label, cells) for key, label, unit in ROWS if (cells := _cells(getattr(shell, key), unit))]
+        rows = [(label, cells) for key, label, unit in summary_rows() if (cells := _cells(getattr(shell, key), unit))]
         for number, (label, cells) in enumerate(rows):
             table.add_row(shell.name if number == 0 else "", label, *cells, end_section=number == len(rows) - 1)
     return table

@@ -18,6 +18,7 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing_folder
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
+from coaxshell.response.quantities import QUANTITIES, Quantity, columns
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -74,7 +75,7 @@ def export_paraview(
     check_grid(half_width, points, displaced)
     index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
     seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
-    shown, kept = 3.0 * response.time.size, 3.0 * len(response.system.shells) * len(index)
+    shown, kept = 3.0 * response.time.size, 1.0 * len(_arrays()) * len(response.system.shells) * len(index)
     Cost(8.0 * _ANGLES.size * (shown + kept) + 4.0 * _BLOCK_BYTES).require(
         f"ParaView's series of {len(index):,} instants of a run of {response.time.size:,}", "give fewer times, or run a coarser step"
     )
@@ -127,26 +128,35 @@ def _write_shells(response: Response, folder: Path, index: npt.NDArray[np.intp],
     theta = np.radians(_ANGLES)
     radial = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1)
     around = np.stack([-np.sin(theta), np.cos(theta), np.zeros_like(theta)], axis=1)
-    stress, normal, tangential = ([_on_wall(response, shell, index, name) for shell in range(len(shells))] for name in _QUANTITIES)
+    found = {quantity.name: [_on_wall(response, shell, index, quantity) for shell in range(len(shells))] for quantity in _arrays()}
     names = [f"data/shells_{number:05d}.vtp" for number in range(len(index))]
     for number, name in enumerate(names):
-        vectors = [v[number][:, None] * around - w[number][:, None] * radial for w, v in zip(normal, tangential, strict=True)]
-        lines = [shell.radius * radial + displaced * vector for shell, vector in zip(shells, vectors, strict=True)]
-        data = {
-            "hoop_stress": np.concatenate([around[number] for around in stress]),
-            "displacement": np.concatenate(vectors),
-            "normal_displacement": np.concatenate([around[number] for around in normal]),
-        }
+        data: dict[str, FloatArray] = {}
+        for quantity in point_data():
+            values = [each[number] for each in found[quantity.name]]
+            if not quantity.partner:
+                data[quantity.label.replace(" ", "_")] = np.concatenate(values)
+                continue
+            vectors = [v[number][:, None] * around - w[:, None] * radial for w, v in zip(values, found[quantity.partner], strict=True)]
+            data |= {quantity.name: np.concatenate(vectors), f"normal_{quantity.name}": np.concatenate(values)}
+        moved = np.split(data["displacement"], len(shells))
+        lines = [shell.radius * radial + displaced * vector for shell, vector in zip(shells, moved, strict=True)]
         write_lines(folder / name, lines, data, {"shell": np.arange(len(shells), dtype=np.int32)})
     return names
 
 
-_QUANTITIES = ("stress", "normal", "tangential")
+def point_data() -> list[Quantity]:
+    """Return the quantities that every point of a shell is given: those with columns, voltages left out."""
+    return [quantity for quantity in columns() if not quantity.roles]
 
 
-def _on_wall(response: Response, shell: int, index: npt.NDArray[np.intp], quantity: str) -> FloatArray:
+def _arrays() -> list[Quantity]:
+    """Return them with the tangential components of those that are vectors."""
+    return [*point_data(), *(QUANTITIES[quantity.partner] for quantity in point_data() if quantity.partner)]
+
+
+def _on_wall(response: Response, shell: int, index: npt.NDArray[np.intp], quantity: Quantity) -> FloatArray:
     """Return a quantity at all points of a shell and the chosen instants, shape (instants, angles); zeros for a rigid one."""
     if isinstance(response.system.shells[shell], RigidShell):
         return np.zeros((len(index), len(_ANGLES)))
-    labelled = response.stress(shell, angle=_ANGLES) if quantity == "stress" else response.displacement(shell, _ANGLES, quantity)
-    return np.asarray(labelled, dtype=np.float64)[index]
+    return np.asarray(response.history(shell, _ANGLES, quantity.name), dtype=np.float64)[index]

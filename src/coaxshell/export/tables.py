@@ -16,7 +16,8 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing
 from coaxshell.numerics.memory import words_of
 from coaxshell.plotting.saving import known_suffix
-from coaxshell.response.tables import UNITS, history_table, quantities_of
+from coaxshell.response.quantities import columns
+from coaxshell.response.tables import at_ends, history_table, quantities_of
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -37,11 +38,11 @@ def export_csv(response: Response, path: str | Path) -> Path:
     """
     target = Path(path)
     known_suffix(target, (".csv",))
-    columns = history_table(response)
+    table = history_table(response)
     with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(columns)
-        for row in zip(*(values.tolist() for values in columns.values()), strict=True):
+        writer.writerow(table)
+        for row in zip(*(values.tolist() for values in table.values()), strict=True):
             writer.writerow([f"{value:.12g}" for value in row])
     return target
 
@@ -50,8 +51,8 @@ def export_mat(response: Response, path: str | Path) -> Path:
     """Write histories and modal amplitudes as a MATLAB (version 5) file.
 
     Variables: ``time`` (a/c), ``time_seconds``, ``head_angle`` (degrees), ``scenario`` (TOML), ``version``, ``shells``: a struct array
-    with radius (m), stress, displacement and voltages at [head, tail] (T x 2), and ``modal_normal``, ``modal_tangential`` (m, parities x
-    orders x T); ``absorber_displacement`` (m, absorbers x T) where there are any.
+    with radius (m), the quantities that tables hold (stress, displacement, voltages, ...; SI) at [head, tail] (T x 2), and
+    ``modal_normal``, ``modal_tangential`` (m, parities x orders x T); ``absorber_displacement`` (m, absorbers x T) where there are any.
 
     Raises
     ------
@@ -89,14 +90,12 @@ def _require_room(response: Response) -> None:
 
 
 def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
-    head = response.system.sources[0].angle
     structs = []
     for shell, described in enumerate(response.system.shells):
         struct: dict[str, Any] = {"radius": described.radius, "rigid": isinstance(described, RigidShell)}
-        quantities = [] if struct["rigid"] else quantities_of(response, shell)
-        for quantity in UNITS:
-            given = quantity in quantities
-            struct[quantity] = np.asarray(getattr(response, quantity)(shell, angle=[head, head + 180.0])) if given else np.empty((0, 2))
+        given = [] if struct["rigid"] else quantities_of(response, shell)
+        for quantity in columns():
+            struct[quantity.name] = at_ends(response, quantity, shell) if quantity in given else np.empty((0, 2))
         struct["modal_normal"] = np.asarray(response.modal(shell, "displacement"))
         struct["modal_tangential"] = np.asarray(response.modal(shell, "tangential"))
         structs.append(struct)

@@ -162,10 +162,10 @@ def unpacked(arrays: Mapping[str, Any], values: Mapping[str, Any]) -> Observed:
     from coaxshell.response.summary import ShellSummary
 
     def shell(plain: Mapping[str, Any]) -> ShellSummary:
-        whole: dict[str, Any] = {
-            name: Peak(**value) if isinstance(value, dict) and name != "errors" else value for name, value in plain.items()
-        }
-        return ShellSummary(**whole)
+        def peaks(values: Mapping[str, Any]) -> dict[str, Any]:
+            return {name: Peak(**one) if isinstance(one, dict) and "angle" in one else one for name, one in values.items()}
+
+        return ShellSummary(**{**peaks(plain), "further": peaks(plain.get("further", {}))})
 
     split = {tuple(name.split()): np.asarray(array, dtype=np.float64) for name, array in arrays.items()}
     return Observed(

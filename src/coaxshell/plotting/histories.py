@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import Late
 from coaxshell.plotting.style import COLOURS, COLUMN_WIDTH, new_figure, style
 
 if TYPE_CHECKING:
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
     from coaxshell.response import Response
+    from coaxshell.response import quantities as outputs
+else:
+    outputs = Late("coaxshell.response.quantities")  # what is drawn is there already; a figure's options are told without it
 
 TIME_LABEL = "time (acoustic transits $a/c_e$)"
 
@@ -50,21 +53,23 @@ class PlottedQuantity:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
-QUANTITIES: Mapping[str, PlottedQuantity] = MappingProxyType(
-    {
-        "stress": PlottedQuantity("stress", "hoop stress (MPa)", "MPa", 1e-6, COLOURS["blue"]),
-        "displacement": PlottedQuantity("displacement", "inward displacement (µm)", "µm", 1e6, COLOURS["orange"]),
-        "relative_displacement": PlottedQuantity(
-            "displacement", "inward displacement, relative (µm)", "µm", 1e6, COLOURS["orange"], {"relative": True}
-        ),
-        "tangential_displacement": PlottedQuantity(
-            "displacement", "tangential displacement (µm)", "µm", 1e6, COLOURS["orange"], {"component": "tangential"}
-        ),
-        "sensor_voltage": PlottedQuantity("sensor_voltage", "sensor voltage (V)", "V", 1.0, COLOURS["green"]),
-        "actuator_voltage": PlottedQuantity("actuator_voltage", "actuator voltage (kV)", "kV", 1e-3, COLOURS["purple"]),
-    }
-)
-"""Quantities that :func:`plot_history` draws, by name."""
+class _Drawn(Mapping[str, PlottedQuantity]):
+    """How each quantity of the table is drawn, by name."""
+
+    def __getitem__(self, name: str) -> PlottedQuantity:
+        quantity = outputs.QUANTITIES[name]
+        unit, per_si = quantity.shown
+        return PlottedQuantity("history", quantity.axis, unit, per_si, COLOURS[quantity.colour], {"quantity": name})
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(outputs.QUANTITIES)
+
+    def __len__(self) -> int:
+        return len(outputs.QUANTITIES)
+
+
+QUANTITIES: Mapping[str, PlottedQuantity] = _Drawn()
+"""Quantities that :func:`plot_history` draws, by name: those of the table :mod:`coaxshell.response.quantities`."""
 
 
 @dataclass(frozen=True)

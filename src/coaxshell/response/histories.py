@@ -1,4 +1,4 @@
-"""Displacement and hoop stress of a shell at given angles."""
+"""Quantities of a shell at given angles, as labelled arrays."""
 
 from __future__ import annotations
 
@@ -8,17 +8,45 @@ import numpy.typing as npt
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
-from coaxshell.response.labels import INWARD, history, modal_array
-from coaxshell.response.modal import amplitudes, displacement_gain, elastic_wall, stress_gain_of, voltage_gain
+from coaxshell.response.labels import history, modal_array
+from coaxshell.response.modal import amplitudes, combined, elastic_wall, stress_gain_of, voltage_gain
+from coaxshell.response.quantities import QUANTITIES, Quantity
 from coaxshell.response.synthesis import angle_basis, at_angles
-from coaxshell.response.translation import relative_gain, relative_tangential_gain
-from coaxshell.response.voltages import actuator_values
+from coaxshell.response.voltages import actuator_limit, actuator_values, mean_shares
+from coaxshell.response.wall_motion import WallMotion
+from coaxshell.solver.electrodes import Segment, segment_length
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import Gain
 
-TENSION = "positive in tension"
-COUNTERCLOCKWISE = "positive towards increasing angle"
-COSINE = ("cos", "sin")
+PARITIES = {"normal": ("cos", "sin"), "tangential": ("sin", "-cos")}
+
+
+def of_quantity(motion: WallMotion, shell: int, quantity: str, angle: npt.ArrayLike) -> xr.DataArray:
+    """Return the history of any quantity of the table at angles, SI, dims (time, angle).
+
+    Parameters
+    ----------
+    motion : WallMotion
+    shell : int
+    quantity : str
+        A name of :data:`coaxshell.response.quantities.QUANTITIES`.
+    angle : array_like, shape () or (A,)
+        Degrees from the source direction.
+
+    Raises
+    ------
+    InputError
+        If the quantity is unknown, the shell has none, or the angle is not allowed.
+    """
+    entry = QUANTITIES[arguments.one_of("quantity", quantity, QUANTITIES)]
+    theta = arguments.angles(angle)
+    return _labelled(motion.solution, shell, entry, entry.at(motion, shell, theta), theta)
+
+
+def _labelled(
+    solution: ModalSolution, shell: int, entry: Quantity, values: FloatArray, theta: FloatArray, long_name: str = ""
+) -> xr.DataArray:
+    name, told = entry.array or entry.name, long_name or entry.long_name
+    return history(solution, values, theta, shell, name=name, long_name=told, units=entry.unit, sign=entry.sign)
 
 
 def displacement(
@@ -48,26 +76,8 @@ def displacement(
         If the angle or the component is not allowed.
     """
     component = arguments.one_of("component", component, ("normal", "tangential"))
-    theta = arguments.angles(angle)
-    modal = solution.normal[shell] if component == "normal" else solution.tangential[shell]
-    basis = angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0], component)
-    if relative:
-        gain = relative_gain(solution) if component == "normal" else relative_tangential_gain(solution)
-        values = at_angles(solution.normal[shell], basis * gain.w) + at_angles(solution.tangential[shell], basis * gain.v)
-    else:
-        values = solution.problem.scales.length * at_angles(modal, basis)
-    sign = INWARD if component == "normal" else COUNTERCLOCKWISE
-    name, long_name = f"{component}_displacement", f"{component} displacement"
-    if relative:
-        name, long_name = f"relative_{name}", f"{long_name} relative to the section's translation"
-    return history(solution, values, theta, shell, name=name, long_name=long_name, units="m", sign=sign)
-
-
-def combined(solution: ModalSolution, shell: int, gain: Gain, theta: FloatArray) -> FloatArray:
-    """Return gain.v V + gain.w W at angles, shape (T, A); the gains go into the basis, so no modal array is built."""
-    normal, tangential = solution.normal[shell], solution.tangential[shell]
-    basis = angle_basis(np.atleast_1d(theta), normal.shape[1], normal.shape[0])
-    return at_angles(normal, basis * gain.w) + at_angles(tangential, basis * gain.v)
+    name = "displacement" if component == "normal" else "tangential_displacement"
+    return of_quantity(WallMotion(solution), shell, f"relative_{name}" if relative else name, angle)
 
 
 def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: float | str | None = None) -> xr.DataArray:
@@ -97,7 +107,7 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
     wall = elastic_wall(solution.problem, shell)
     if depth is None:
         values = combined(solution, shell, stress_gain_of(solution, shell), theta)
-        long_name = "mid-surface hoop stress of the core"
+        long_name = ""
     else:
         z = arguments.depth_of(wall.faces, depth)
         values = combined(solution, shell, stress_gain_of(solution, shell, z), theta)
@@ -105,44 +115,102 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
         if per_volt and wall.gains is not None:
             values = values + per_volt * actuator_values(solution, shell, theta)
         long_name = f"hoop stress at {z:g} m outward of the mid-surface"
-    labelled = history(solution, values, theta, shell, name="stress", long_name=long_name, units="Pa", sign=TENSION)
+    labelled = _labelled(solution, shell, QUANTITIES["stress"], values, theta, long_name)
     if depth is not None:
         labelled.attrs["depth"] = z
     return labelled
 
 
-def modal(solution: ModalSolution, shell: int, quantity: str = "displacement") -> xr.DataArray:
-    """Return modal amplitudes in SI, dims (half, mode, time).
+def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:
+    """Return the open-circuit voltage of the sensor at angles, V: phi_s = E_s (m V - m^2 W)/(zeta33 R^2 + m^2 zeta22) (Eq. 20).
 
     Parameters
     ----------
     solution : ModalSolution
     shell : int
+    angle : array_like, shape () or (A,)
+        Degrees from the source direction.
+    segment : float, str or None
+        Length of the segment of the wall around each angle over which the mean is taken (:mod:`coaxshell.solver.electrodes`).
+
+    Returns
+    -------
+    DataArray, dims (time, angle)
+
+    Raises
+    ------
+    InputError
+        If the shell has no sensor, or the angle or the segment is not allowed.
+    """
+    theta = arguments.angles(angle)
+    length = segment_length(solution.problem, shell, segment)
+    modal = amplitudes(solution, shell, voltage_gain(solution, shell))
+    basis = angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0]) * mean_shares(solution, shell, length)
+    values = at_angles(modal, basis)
+    labelled = _labelled(solution, shell, QUANTITIES["sensor_voltage"], values, theta)
+    return _over(labelled, length)
+
+
+def actuator_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:
+    """Return the control voltage on the actuator at angles, V: u = k_p phi_s + k_d dphi_s/dt, t in transits (Eq. 17).
+
+    Cut at the field limit times the thickness if the controller saturates. Without velocities from the engine the derivative is a
+    difference of fourth order.
+
+    Parameters
+    ----------
+    solution : ModalSolution
+    shell : int
+    angle : array_like, shape () or (A,)
+        Degrees from the source direction.
+    segment : float, str or None
+        Length of the segment of the wall around each angle over which the mean is taken (:mod:`coaxshell.solver.electrodes`).
+
+    Returns
+    -------
+    DataArray, dims (time, angle)
+
+    Raises
+    ------
+    InputError
+        If the shell has no sensor, no actuator or no control, or the angle or the segment is not allowed.
+    """
+    theta = arguments.angles(angle)
+    length = segment_length(solution.problem, shell, segment)
+    values = actuator_values(solution, shell, theta, length)
+    labelled = _labelled(solution, shell, QUANTITIES["actuator_voltage"], values, theta)
+    labelled.attrs["limit"] = actuator_limit(solution, shell).volts
+    return _over(labelled, length)
+
+
+def _over(labelled: xr.DataArray, length: float) -> xr.DataArray:
+    """Say over how long a segment the mean was taken."""
+    if length:
+        labelled.attrs["segment"] = length
+        labelled.attrs["long_name"] += ", mean over a segment"
+    return labelled
+
+
+def modal(solution: ModalSolution | WallMotion, shell: int, quantity: str = "displacement") -> xr.DataArray:
+    """Return modal amplitudes in SI, dims (half, mode, time).
+
+    Parameters
+    ----------
+    solution : ModalSolution or WallMotion
+    shell : int
     quantity : str
-        "displacement" (W, m), "tangential" (V, m), "stress" (Eq. 22, Pa) or "sensor_voltage" (Eq. 20, V).
+        Any of the table that is linear in the motion: "displacement" (W, m), "tangential_displacement" or "tangential" (V, m), "stress"
+        (Eq. 22, Pa), "sensor_voltage" (Eq. 20, V), ...
 
     Raises
     ------
     InputError
         If the quantity is unknown or the shell has none.
     """
-    names = {
-        "displacement": ("normal displacement", "m"),
-        "tangential": ("tangential displacement", "m"),
-        "stress": ("mid-surface hoop stress of the core", "Pa"),
-        "sensor_voltage": ("open-circuit voltage of the sensor", "V"),
-    }
-    quantity = arguments.one_of("quantity", quantity, names)
-    parities = COSINE
-    match quantity:
-        case "tangential":
-            values = solution.problem.scales.length * solution.tangential[shell]
-            parities = ("sin", "-cos")
-        case "displacement":
-            values = amplitudes(solution, shell, displacement_gain(solution))
-        case "stress":
-            values = amplitudes(solution, shell, stress_gain_of(solution, shell))
-        case _:
-            values = amplitudes(solution, shell, voltage_gain(solution, shell))
-    long_name, units = names[quantity]
-    return modal_array(solution, values, shell, name=f"modal_{quantity}", long_name=f"modal {long_name}", units=units, parities=parities)
+    motion = solution if isinstance(solution, WallMotion) else WallMotion(solution)
+    linear = [name for name, entry in QUANTITIES.items() if entry.gain is not None]
+    quantity = arguments.one_of("quantity", quantity, ["tangential", *linear])
+    entry = QUANTITIES["tangential_displacement" if quantity == "tangential" else quantity]
+    values, parities = entry.amplitudes(motion, shell)(slice(None)), PARITIES[entry.component]
+    long_name = f"modal {entry.long_name}"
+    return modal_array(motion.solution, values, shell, name=f"modal_{quantity}", long_name=long_name, units=entry.unit, parities=parities)

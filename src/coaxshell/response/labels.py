@@ -14,6 +14,8 @@ TRANSIT = "a/c_e"
 """Unit of dimensionless time: one acoustic transit of the outermost radius in the exterior fluid."""
 
 INWARD = "positive inward"
+TENSION = "positive in tension"
+COUNTERCLOCKWISE = "positive towards increasing angle"
 
 
 def time_coordinates(solution: ModalSolution) -> dict[str, xr.Variable]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import Gain, ShellModel
@@ -32,6 +33,12 @@ def displacement_gain(solution: ModalSolution) -> Gain:
     """Return the gain of the normal displacement, m: (0, a)."""
     m = orders(solution)
     return Gain(np.zeros_like(m), np.full_like(m, solution.problem.scales.length))
+
+
+def tangential_gain(solution: ModalSolution) -> Gain:
+    """Return the gain of the tangential displacement, m: (a, 0)."""
+    gain = displacement_gain(solution)
+    return Gain(gain.w, gain.v)
 
 
 def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None) -> Gain:
@@ -66,3 +73,10 @@ def amplitudes(solution: ModalSolution, shell: int, gain: Gain, window: slice = 
     if np.any(gain.v):
         result += solution.tangential[shell, :, :, window] * gain.v[:, None]
     return result
+
+
+def combined(solution: ModalSolution, shell: int, gain: Gain, theta: FloatArray, component: str = "normal") -> FloatArray:
+    """Return gain.v V + gain.w W at angles, shape (T, A); the gains go into the basis, so no modal array is built."""
+    normal, tangential = solution.normal[shell], solution.tangential[shell]
+    basis = angle_basis(np.atleast_1d(theta), normal.shape[1], normal.shape[0], component)
+    return at_angles(normal, basis * gain.w) + at_angles(tangential, basis * gain.v)

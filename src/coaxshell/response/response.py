@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
@@ -15,15 +14,16 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import Late
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
-from coaxshell.response import absorbers, arguments, errors, histories, storage, voltages
+from coaxshell.response import absorbers, arguments, errors, histories, storage
 from coaxshell.response.display import response_card
 from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
 from coaxshell.response.translation import translation
+from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_solution
-from coaxshell.solver.recompute import SolvedSpectra, spectra_of
+from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 
@@ -46,6 +46,12 @@ class Response:
     solution : ModalSolution
         What the solver returned, or a file held.
 
+    Attributes
+    ----------
+    solution : ModalSolution
+    motion : WallMotion
+        What quantities of shells are read from.
+
     Raises
     ------
     InputError
@@ -55,6 +61,7 @@ class Response:
     def __init__(self, solution: ModalSolution) -> None:
         require_finite_solution(solution)
         self.solution = solution
+        self.motion = WallMotion(solution)
 
     @property
     def system(self) -> System:
@@ -137,27 +144,34 @@ class Response:
         """
         return histories.stress(self.solution, self._index(shell), angle, depth)
 
+    def history(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress") -> xr.DataArray:
+        """Return the history of any quantity of a shell by its name, SI, dims (time, angle); the names are those of a plot.
+
+        See :func:`coaxshell.response.histories.of_quantity`.
+        """
+        return histories.of_quantity(self.motion, self._index(shell), quantity, angle)
+
     def modal(self, shell: int | str, quantity: str = "displacement") -> xr.DataArray:
-        """Return modal amplitudes of "displacement", "tangential", "stress" or "sensor_voltage" in SI, dims (half, mode, time).
+        """Return modal amplitudes of "displacement", "tangential", "stress", "sensor_voltage", ... in SI, dims (half, mode, time).
 
         See :func:`coaxshell.response.histories.modal`.
         """
-        return histories.modal(self.solution, self._index(shell), quantity)
+        return histories.modal(self.motion, self._index(shell), quantity)
 
     def sensor_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point") -> xr.DataArray:
         """Return the open-circuit voltage of the sensor, V, dims (time, angle) (Eq. 20): at points, or as means over a *segment* around.
 
         A segment is a length ("50 mm", m) or None for the one of the summary. Behind a sharp front only means converge with the orders.
-        See :func:`coaxshell.response.voltages.sensor_voltage`.
+        See :func:`coaxshell.response.histories.sensor_voltage`.
         """
-        return voltages.sensor_voltage(self.solution, self._index(shell), angle, segment)
+        return histories.sensor_voltage(self.solution, self._index(shell), angle, segment)
 
     def actuator_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point") -> xr.DataArray:
         """Return the control voltage on the actuator, V, dims (time, angle) (Eq. 17): at points, or as means over a *segment* around.
 
-        See :func:`coaxshell.response.voltages.actuator_voltage`.
+        See :func:`coaxshell.response.histories.actuator_voltage`.
         """
-        return voltages.actuator_voltage(self.solution, self._index(shell), angle, segment)
+        return histories.actuator_voltage(self.solution, self._index(shell), angle, segment)
 
     def pressure(
         self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PressureOptions]
@@ -195,9 +209,9 @@ class Response:
         """
         return fields.pressure_rms(self._spectra, region, radius, **options)
 
-    @cached_property
+    @property
     def _spectra(self) -> SolvedSpectra:
-        return spectra_of(self.solution)
+        return self.motion.spectra
 
     def absorber_displacement(self) -> xr.DataArray:
         """Return the displacement of the absorbers' masses, m, positive inward, dims (absorber, time)."""

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 from coaxshell.model.places import shell_name
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.errors import error_table
-from coaxshell.response.modal import amplitudes, displacement_gain, stress_gain_of
-from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere, peak_at, root_mean_square
+from coaxshell.response.peaks import Peak, peak_anywhere, peak_at, root_mean_square
+from coaxshell.response.quantities import QUANTITIES, Quantity, Where
 from coaxshell.response.summary_text import summary_html, summary_text
-from coaxshell.response.translation import relative_gain, still_grows
-from coaxshell.response.voltages import actuator_limit, largest_demanded_voltage, largest_sensor_voltage
+from coaxshell.response.translation import still_grows
+from coaxshell.response.voltages import actuator_limit
+from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import Segment, segment_length
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import Gain
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,9 @@ class ShellSummary:
     errors : dict
         Estimated relative errors by quantity ("displacement", "stress") and cause ("orders", "time step", "march", "combined"), None where
         the engine does not estimate one; see :func:`coaxshell.response.errors.errors`.
+    further : dict
+        What else the table :mod:`coaxshell.response.quantities` shows in a summary, Peak, float or None by its key; each can be read as an
+        attribute too.
     """
 
     name: str
@@ -70,6 +73,17 @@ class ShellSummary:
     actuator_limit: float | None
     stress_truncation: float
     errors: dict[str, dict[str, float | None]]
+    further: dict[str, Peak | float | None] = field(default_factory=dict)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what is among the further ones."""
+        found = self.__dict__.get("further", {})
+        if name not in found:
+            raise AttributeError(f"{type(self).__name__!r} has no attribute {name!r}")
+        return found[name]
+
+
+_FIELDS = {one.name for one in fields(ShellSummary)}
 
 
 @dataclass(frozen=True)
@@ -108,7 +122,8 @@ class Summary:
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as nested plain dicts, lists and numbers, ready for JSON."""
         plain = asdict(self)
-        return {**plain, "window": list(self.window), "shells": list(plain["shells"]), "warnings": list(self.warnings)}
+        shells = [{**shell, **shell.pop("further")} for shell in plain["shells"]]
+        return {**plain, "window": list(self.window), "shells": shells, "warnings": list(self.warnings)}
 
     def _repr_html_(self) -> str:
         return summary_html(self.to_dict())
@@ -150,41 +165,41 @@ def summarise(solution: ModalSolution, window: Sequence[float] | None = None, se
 
 
 def _shell(solution: ModalSolution, shell: int, span: slice, length: float) -> ShellSummary:
-    head = solution.problem.system.sources[0].angle
-    ends = [head, head + 180.0]
-    time = solution.time
-    width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
-    wall = solution.problem.shells[shell]
-
-    def of(gain: Gain) -> Amplitudes:
-        return lambda block: amplitudes(solution, shell, gain, block)
-
-    def everywhere(quantity: Amplitudes) -> tuple[Peak, Peak, Peak]:
-        at_head, at_tail = peak_at(quantity, time, span, ends)
-        anywhere = peak_anywhere(quantity, time, span, width)
-        return at_head, at_tail, max(anywhere, at_head, at_tail, key=lambda peak: peak.value)  # never below a point shown beside it
-
-    stress = of(stress_gain_of(solution, shell))
-    stress_head, stress_tail, stress_anywhere = everywhere(stress)
-    relative_head, relative_tail, relative = everywhere(of(relative_gain(solution)))
-    drifting = still_grows(solution, shell, span)
-    displaced = peak_at(of(displacement_gain(solution)), time, span, ends)
-    displacement_head, displacement_tail = (replace(peak, growing=peak.growing or drifting) for peak in displaced)
+    problem = solution.problem
+    wall, motion = problem.shells[shell], WallMotion(solution)
+    found: dict[str, Any] = {}
+    for quantity in QUANTITIES.values():
+        if quantity.lack(problem.system, shell) is not None:
+            found |= dict.fromkeys(quantity.summary_keys)
+        elif quantity.summary:
+            found |= _largest(quantity, motion, shell, span, length)
     return ShellSummary(
-        name=shell_name(shell, len(solution.problem.shells)),
-        stress_head=stress_head,
-        stress_tail=stress_tail,
-        stress=stress_anywhere,
-        stress_rms=root_mean_square(stress, time, span, width),
-        relative_displacement_head=relative_head,
-        relative_displacement_tail=relative_tail,
-        relative_displacement=relative,
-        displacement_head=displacement_head,
-        displacement_tail=displacement_tail,
-        sensor_voltage=largest_sensor_voltage(solution, shell, span, length) if wall.has("sensor") else None,
-        actuator_voltage=largest_demanded_voltage(solution, shell, span, length) if wall.gains else None,
+        name=shell_name(shell, len(problem.shells)),
         segment=length if wall.has("sensor") else None,
         actuator_limit=actuator_limit(solution, shell).volts if wall.has("actuator") else None,
         stress_truncation=float(solution.estimates.modal_stress[shell]),
         errors=error_table(solution, shell),
+        further={key: found.pop(key) for key in list(found) if key not in _FIELDS},
+        **found,
     )
+
+
+def _largest(quantity: Quantity, motion: WallMotion, shell: int, span: slice, length: float) -> dict[str, Peak | float | None]:
+    """Return the largest magnitudes of a quantity that the summary shows, by their keys."""
+    solution, wanted = motion.solution, quantity.summary
+    if quantity.largest is not None:
+        return {quantity.name: quantity.largest(solution, shell, span, length)}
+    head, time = solution.problem.system.sources[0].angle, solution.time
+    width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
+    amplitudes = quantity.amplitudes(motion, shell)
+    found: dict[Where, Peak | float | None] = {}
+    if "head" in wanted:
+        found["head"], found["tail"] = peaks = peak_at(amplitudes, time, span, [head, head + 180.0])
+    if "anywhere" in wanted:
+        anywhere = peak_anywhere(amplitudes, time, span, width)
+        beside = peaks if "head" in wanted else []
+        found["anywhere"] = max([anywhere, *beside], key=lambda peak: peak.value)  # never below a point shown beside it
+    if "rms" in wanted:
+        found["rms"] = root_mean_square(amplitudes, time, span, width)
+    drifting = quantity.drifts and still_grows(solution, shell, span)
+    return {quantity.key(where): replace(one, growing=True) if drifting and isinstance(one, Peak) else one for where, one in found.items()}

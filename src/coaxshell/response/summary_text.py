@@ -7,21 +7,7 @@ from html import escape
 from typing import Any
 
 from coaxshell.model.prefixes import engineering
-
-ROWS = (
-    ("stress_head", "stress at head", "Pa"),
-    ("stress_tail", "stress at tail", "Pa"),
-    ("stress", "stress anywhere", "Pa"),
-    ("stress_rms", "stress RMS", "Pa"),
-    ("relative_displacement_head", "relative displacement at head", "m"),
-    ("relative_displacement_tail", "relative displacement at tail", "m"),
-    ("relative_displacement", "relative displacement anywhere", "m"),
-    ("displacement_head", "absolute displacement at head", "m"),
-    ("displacement_tail", "absolute displacement at tail", "m"),
-    ("sensor_voltage", "sensor voltage", "V"),
-    ("actuator_voltage", "actuator voltage asked", "V"),
-)
-"""Fields of a shell's summary, with their labels and units, in the order of the tables."""
+from coaxshell.response.quantities import summary_rows
 
 _HEADING = ("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]")
 GROWING = "still growing"
@@ -111,7 +97,7 @@ def _change(peak: Mapping[str, Any]) -> float:
 
 def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
-    for key, label, unit in ROWS:
+    for key, label, unit in summary_rows():
         value = shell[key]
         if isinstance(value, Mapping):
             rows.append((shell["name"], label, engineering(value["value"], unit), when(value), f"{value['angle']:.4g}"))

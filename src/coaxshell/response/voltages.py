@@ -1,24 +1,22 @@
-"""Sensor and actuator voltages (Eqs. 17 and 20)."""
+"""Sensor and actuator voltages by modes and at angles, and their largest values (Eqs. 17 and 20)."""
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
-from typing import NamedTuple
+from importlib import import_module
+from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
-from coaxshell.numerics.late import xarray as xr
-from coaxshell.response import arguments
-from coaxshell.response.labels import history
 from coaxshell.response.modal import amplitudes, elastic_wall, orders, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
-from coaxshell.solver.electrodes import Segment, lower_half, segment_length, segment_mean
+from coaxshell.solver.electrodes import lower_half, segment_mean
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import ControlGains, Gain
@@ -129,78 +127,6 @@ def actuator_values(solution: ModalSolution, shell: int, theta: FloatArray, leng
     return applied(at_angles(modal, basis), limit)
 
 
-def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:
-    """Return the open-circuit voltage of the sensor at angles, V: phi_s = E_s (m V - m^2 W)/(zeta33 R^2 + m^2 zeta22) (Eq. 20).
-
-    Parameters
-    ----------
-    solution : ModalSolution
-    shell : int
-    angle : array_like, shape () or (A,)
-        Degrees from the source direction.
-    segment : float, str or None
-        Length of the segment of the wall around each angle over which the mean is taken (:mod:`coaxshell.solver.electrodes`).
-
-    Returns
-    -------
-    DataArray, dims (time, angle)
-
-    Raises
-    ------
-    InputError
-        If the shell has no sensor, or the angle or the segment is not allowed.
-    """
-    theta = arguments.angles(angle)
-    length = segment_length(solution.problem, shell, segment)
-    modal = amplitudes(solution, shell, voltage_gain(solution, shell))
-    basis = angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0]) * mean_shares(solution, shell, length)
-    values = at_angles(modal, basis)
-    long_name = "open-circuit voltage of the sensor"
-    labelled = history(solution, values, theta, shell, name="sensor_voltage", long_name=long_name, units="V", sign="of phi_s in Eq. 20")
-    return _over(labelled, length)
-
-
-def actuator_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:
-    """Return the control voltage on the actuator at angles, V: u = k_p phi_s + k_d dphi_s/dt, t in transits (Eq. 17).
-
-    Cut at the field limit times the thickness if the controller saturates. Without velocities from the engine the derivative is a
-    difference of fourth order.
-
-    Parameters
-    ----------
-    solution : ModalSolution
-    shell : int
-    angle : array_like, shape () or (A,)
-        Degrees from the source direction.
-    segment : float, str or None
-        Length of the segment of the wall around each angle over which the mean is taken (:mod:`coaxshell.solver.electrodes`).
-
-    Returns
-    -------
-    DataArray, dims (time, angle)
-
-    Raises
-    ------
-    InputError
-        If the shell has no sensor, no actuator or no control, or the angle or the segment is not allowed.
-    """
-    theta = arguments.angles(angle)
-    length = segment_length(solution.problem, shell, segment)
-    values = actuator_values(solution, shell, theta, length)
-    long_name = "control voltage on the actuator"
-    labelled = history(solution, values, theta, shell, name="actuator_voltage", long_name=long_name, units="V", sign="of u in Eq. 17")
-    labelled.attrs["limit"] = actuator_limit(solution, shell).volts
-    return _over(labelled, length)
-
-
-def _over(labelled: xr.DataArray, length: float) -> xr.DataArray:
-    """Say over how long a segment the mean was taken."""
-    if length:
-        labelled.attrs["segment"] = length
-        labelled.attrs["long_name"] += ", mean over a segment"
-    return labelled
-
-
 def largest_sensor_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
     """Return the largest sensor voltage anywhere within a window, as a mean over a segment of a length (m; 0 a point)."""
     gain, share = voltage_gain(solution, shell), mean_shares(solution, shell, length)
@@ -222,3 +148,11 @@ def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice) -> Pe
     largest = peak_anywhere(quantity, solution.time, window, len(circle_angles(all_of_them, parities)))
     fewer = peak_anywhere(lambda block: quantity(block)[:, :few], solution.time, window, len(circle_angles(few, parities)))
     return replace(largest, lower_half=fewer.value)
+
+
+def __getattr__(name: str) -> Any:
+    """Find the labelled voltages where they live now; deprecated."""
+    if name in ("sensor_voltage", "actuator_voltage"):
+        warnings.warn(f"coaxshell.response.voltages.{name} is now coaxshell.response.histories.{name}", DeprecationWarning, stacklevel=2)
+        return getattr(import_module("coaxshell.response.histories"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -22,6 +22,7 @@ from coaxshell.model.paths import parts
 from coaxshell.model.places import region_name, region_number, region_place, shell_phrase, shell_place, shell_words
 from coaxshell.model.system import System
 from coaxshell.response import Response
+from coaxshell.response.quantities import Where, shell_metrics
 from coaxshell.studies.reading import DesignReading, MetricSource
 from coaxshell.studies.user_functions import UserCode, UserFunction, from_callable, from_text
 
@@ -32,7 +33,7 @@ ANYWHERE = UserCode()
 _DIGITS = re.compile(r"[0-9]{1,9}")
 
 
-class Quantity(NamedTuple):
+class MetricEntry(NamedTuple):
     """A number of a reading: its unit, its meaning, the role of the layer that it needs ("" for none)."""
 
     units: str
@@ -40,40 +41,42 @@ class Quantity(NamedTuple):
     needs: str = ""
 
 
-SHELL_QUANTITIES = {
-    "peak_stress": Quantity("Pa", "largest hoop stress anywhere"),
-    "peak_stress_head": Quantity("Pa", "largest hoop stress at the head"),
-    "peak_stress_tail": Quantity("Pa", "largest hoop stress at the tail"),
-    "rms_stress": Quantity("Pa", "RMS hoop stress over surface and time"),
-    "peak_displacement": Quantity("m", "largest normal displacement anywhere"),
-    "peak_displacement_head": Quantity("m", "largest normal displacement at the head"),
-    "peak_displacement_tail": Quantity("m", "largest normal displacement at the tail"),
-    "peak_relative_displacement": Quantity("m", "largest normal displacement relative to the section's translation, anywhere"),
-    "peak_relative_displacement_head": Quantity("m", "largest normal displacement relative to the section's translation, at the head"),
-    "peak_relative_displacement_tail": Quantity("m", "largest normal displacement relative to the section's translation, at the tail"),
-    "peak_sensor_voltage": Quantity("V", "largest sensor voltage at any point", "sensor"),
-    "peak_actuator_voltage": Quantity("V", "largest actuator voltage asked for at any point", "actuator"),
-    "peak_actuator_field": Quantity("V/m", "largest actuator field asked for at any point", "actuator"),
-    "actuator_field_ratio": Quantity("1", "largest actuator field asked for at any point, over its limit", "actuator"),
-    "segment_sensor_voltage": Quantity("V", "largest sensor voltage, mean over a segment", "sensor"),
-    "segment_actuator_voltage": Quantity("V", "largest actuator voltage asked for, mean over a segment", "actuator"),
-    "segment_actuator_field": Quantity("V/m", "largest actuator field asked for, mean over a segment", "actuator"),
-    "segment_field_ratio": Quantity("1", "largest actuator field asked for, mean over a segment, over its limit", "actuator"),
-    "stress_truncation": Quantity("1", "estimated share of the orders left out of the stress"),
-    "mass": Quantity("kg/m", "mass"),
+_WHERE: dict[Where, str] = {"anywhere": "largest {} anywhere", "head": "largest {} at the head", "tail": "largest {} at the tail"}
+_RMS = "RMS {} over surface and time"
+_MORE_OF_A_SHELL = {
+    "peak_actuator_voltage": MetricEntry("V", "largest actuator voltage asked for at any point", "actuator"),
+    "peak_actuator_field": MetricEntry("V/m", "largest actuator field asked for at any point", "actuator"),
+    "actuator_field_ratio": MetricEntry("1", "largest actuator field asked for at any point, over its limit", "actuator"),
+    "segment_sensor_voltage": MetricEntry("V", "largest sensor voltage, mean over a segment", "sensor"),
+    "segment_actuator_voltage": MetricEntry("V", "largest actuator voltage asked for, mean over a segment", "actuator"),
+    "segment_actuator_field": MetricEntry("V/m", "largest actuator field asked for, mean over a segment", "actuator"),
+    "segment_field_ratio": MetricEntry("1", "largest actuator field asked for, mean over a segment, over its limit", "actuator"),
+    "stress_truncation": MetricEntry("1", "estimated share of the orders left out of the stress"),
+    "mass": MetricEntry("kg/m", "mass"),
 }
-FLUID_QUANTITIES = {"rms_pressure": Quantity("Pa", "RMS pressure over area and time")}
+
+
+def shell_quantities() -> dict[str, MetricEntry]:
+    """Return what can be asked of a shell: the quantities of the table at their places, and what is derived from voltages and layers."""
+    found = {
+        name: MetricEntry(quantity.unit, _WHERE.get(where, _RMS).format(quantity.noun), quantity.roles[-1] if quantity.roles else "")
+        for name, (quantity, where) in shell_metrics().items()
+    }
+    return {**found, **_MORE_OF_A_SHELL}
+
+
+FLUID_QUANTITIES = {"rms_pressure": MetricEntry("Pa", "RMS pressure over area and time")}
 ABSORBER_QUANTITIES = {
-    "absorber_count": Quantity("1", "number of absorbers"),
-    "absorber_mass": Quantity("kg/m", "mass added by the absorbers"),
-    "absorber_spacing": Quantity("m", "smallest distance between neighbouring absorbers"),
-    "absorber_displacement": Quantity("m", "largest displacement of an absorber's mass"),
-    "absorber_force": Quantity("N/m", "largest force of an absorber on a shell"),
-    "dissipated_energy": Quantity("J/m", "energy dissipated in the absorbers' dampers"),
+    "absorber_count": MetricEntry("1", "number of absorbers"),
+    "absorber_mass": MetricEntry("kg/m", "mass added by the absorbers"),
+    "absorber_spacing": MetricEntry("m", "smallest distance between neighbouring absorbers"),
+    "absorber_displacement": MetricEntry("m", "largest displacement of an absorber's mass"),
+    "absorber_force": MetricEntry("N/m", "largest force of an absorber on a shell"),
+    "dissipated_energy": MetricEntry("J/m", "energy dissipated in the absorbers' dampers"),
 }
 SYSTEM_QUANTITIES = {
-    "total_mass": Quantity("kg/m", "mass of all shells and absorbers"),
-    "time_window_error": Quantity("1", "estimated error of the inverse transform"),
+    "total_mass": MetricEntry("kg/m", "mass of all shells and absorbers"),
+    "time_window_error": MetricEntry("1", "estimated error of the inverse transform"),
 }
 WITHOUT_SHELL = {
     "absorbers": {
@@ -101,7 +104,7 @@ class Metric:
     place : str, int
         What it is read from: the number of a shell, a fluid, "absorbers", "system"; "" for a function of the user's.
     quantity : str
-        Name of the method or property of :class:`MetricSource`.
+        Name of what :meth:`MetricSource.number` gives.
     function : UserFunction, optional
     """
 
@@ -122,8 +125,7 @@ class Metric:
         if self.function is not None:
             assert isinstance(reading, MetricSource)
             return self.function(reading.response, self.name)
-        found = getattr(reading, self.quantity)
-        value = float(found(self.place) if callable(found) else found)
+        value = reading.number(self.quantity, self.place)
         if not math.isfinite(value):
             raise InputError(self.name, f"{value!r} is not finite", "try a smaller time step")
         return value
@@ -171,7 +173,7 @@ def metric_names(system: System) -> list[str]:
     names: list[str] = []
     for i, wall in enumerate(system.shells):
         place = shell_place(i, count)
-        names += [f"{place}.{key}" for key, entry in SHELL_QUANTITIES.items() if _lacks(wall, entry) is None]
+        names += [f"{place}.{key}" for key, entry in shell_quantities().items() if _lacks(wall, entry) is None]
     names += [f"{region_place(i, count)}.rms_pressure" for i, fluid in enumerate(system.fluids) if not isinstance(fluid, Vacuum)]
     return names + [f"{place}.{key}" for place, keys in WITHOUT_SHELL.items() for key in keys]
 
@@ -196,9 +198,9 @@ def _metric(asked: Any, name: str | None, system: System, where: str, code: User
     if listing == "fluids" or (quantity in FLUID_QUANTITIES and item in ("interior", "gap", "exterior")):
         return _of_fluid(text, label, item, quantity, system, where)
     shell = _shell(item, system)
-    if shell is None or quantity not in SHELL_QUANTITIES:
+    if shell is None or quantity not in shell_quantities():
         raise InputError(where, f"{text!r} is not a known metric", suggestion(text, metric_names(system)))
-    entry = SHELL_QUANTITIES[quantity]
+    entry = shell_quantities()[quantity]
     lack = _lacks(system.shells[shell], entry)
     if lack is not None:
         raise InputError(where, f"{text!r} needs a shell that {lack}", suggestion(text, metric_names(system)))
@@ -220,7 +222,7 @@ def _shell(item: str | int, system: System) -> int | None:
     return number if number is not None and number < count else None
 
 
-def _lacks(wall: object, entry: Quantity) -> str | None:
+def _lacks(wall: object, entry: MetricEntry) -> str | None:
     if not isinstance(wall, Shell):
         return "is not rigid"
     return f"has a layer with the role {entry.needs!r}" if entry.needs and getattr(wall, entry.needs) is None else None

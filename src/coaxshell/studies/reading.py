@@ -14,12 +14,10 @@ from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import Response
 from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.modal import amplitudes, displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
-from coaxshell.response.translation import relative_gain
+from coaxshell.response.quantities import Quantity, Where, shell_metrics
 from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.solver.electrodes import segment_length
-from coaxshell.structure.shell_model import Gain
 
 
 class DesignReading:
@@ -36,6 +34,11 @@ class DesignReading:
     def mass(self, shell: int) -> float:
         """Return the mass of a shell, kg/m."""
         return shell_mass(self._wall(shell))
+
+    def number(self, name: str, place: str | int) -> float:
+        """Return a number by the name of its property, or of its method and the place that it is given."""
+        found = getattr(self, name)
+        return float(found(place) if callable(found) else found)
 
     def _wall(self, shell: int) -> Shell:
         wall = self.system.shells[shell]
@@ -80,66 +83,26 @@ class MetricSource(DesignReading):
         self._width = len(circle_angles(self.solution.normal.shape[2], self.solution.normal.shape[1]))
         self._head = self.system.sources[0].angle
 
-    def _of(self, shell: int, gain: Gain) -> Amplitudes:
-        return lambda block: amplitudes(self.solution, shell, gain, block)
+    def number(self, name: str, place: str | int) -> float:
+        """Return a number by its name: the largest magnitude or RMS of a quantity of a shell, or what a method or property here gives."""
+        entry = shell_metrics().get(name)
+        if entry is None:
+            return super().number(name, place)
+        assert isinstance(place, int)
+        return self._largest(*entry, place)
 
-    def _stress(self, shell: int) -> Amplitudes:
-        return self._of(shell, stress_gain_of(self.solution, shell))
+    def _largest(self, quantity: Quantity, where: Where, shell: int) -> float:
+        amplitudes, time = quantity.amplitudes(self.response.motion, shell), self.solution.time
+        if where == "rms":
+            return root_mean_square(amplitudes, time, self._whole, self._width)
+        # What the summary shows at head, tail and anywhere is never less anywhere than there.
+        beside = where == "anywhere" and {"head", "anywhere"} <= set(quantity.summary)
+        turns = {"head": [0.0], "tail": [180.0], "anywhere": [0.0, 180.0] if beside else []}[where]
+        found = [peak_at(amplitudes, time, self._whole, [self._head + turn])[0].value for turn in turns]
+        return max(found) if where != "anywhere" else max([self._anywhere(amplitudes), *found])
 
-    def _displacement(self, shell: int) -> Amplitudes:
-        return self._of(shell, displacement_gain(self.solution))
-
-    def _anywhere(self, quantity: Amplitudes) -> float:
-        return peak_anywhere(quantity, self.solution.time, self._whole, self._width).value
-
-    def _at(self, quantity: Amplitudes, beside_head: float) -> float:
-        return peak_at(quantity, self.solution.time, self._whole, [self._head + beside_head])[0].value
-
-    def peak_stress(self, shell: int) -> float:
-        """Return the largest design stress of the core (Eq. 22) over the whole shell and time, head and tail included, Pa."""
-        stress = self._stress(shell)
-        return max(self._anywhere(stress), self._at(stress, 0.0), self._at(stress, 180.0))
-
-    def peak_stress_head(self, shell: int) -> float:
-        """Return the largest design stress at the head, Pa."""
-        return self._at(self._stress(shell), 0.0)
-
-    def peak_stress_tail(self, shell: int) -> float:
-        """Return the largest design stress at the tail, Pa."""
-        return self._at(self._stress(shell), 180.0)
-
-    def rms_stress(self, shell: int) -> float:
-        """Return the root mean square of the design stress over the surface and time, Pa."""
-        return root_mean_square(self._stress(shell), self.solution.time, self._whole, self._width)
-
-    def peak_displacement(self, shell: int) -> float:
-        """Return the largest normal displacement anywhere, m."""
-        return self._anywhere(self._displacement(shell))
-
-    def peak_displacement_head(self, shell: int) -> float:
-        """Return the largest normal displacement at the head, m."""
-        return self._at(self._displacement(shell), 0.0)
-
-    def peak_displacement_tail(self, shell: int) -> float:
-        """Return the largest normal displacement at the tail, m."""
-        return self._at(self._displacement(shell), 180.0)
-
-    def peak_relative_displacement(self, shell: int) -> float:
-        """Return the largest normal displacement relative to the section's translation anywhere, head and tail included, m."""
-        relative = self._of(shell, relative_gain(self.solution))
-        return max(self._anywhere(relative), self._at(relative, 0.0), self._at(relative, 180.0))
-
-    def peak_relative_displacement_head(self, shell: int) -> float:
-        """Return the same at the head, m."""
-        return self._at(self._of(shell, relative_gain(self.solution)), 0.0)
-
-    def peak_relative_displacement_tail(self, shell: int) -> float:
-        """Return the same at the tail, m."""
-        return self._at(self._of(shell, relative_gain(self.solution)), 180.0)
-
-    def peak_sensor_voltage(self, shell: int) -> float:
-        """Return the largest open-circuit voltage of the sensor anywhere, V."""
-        return self._anywhere(self._of(shell, voltage_gain(self.solution, shell)))
+    def _anywhere(self, amplitudes: Amplitudes) -> float:
+        return peak_anywhere(amplitudes, self.solution.time, self._whole, self._width).value
 
     def peak_actuator_voltage(self, shell: int) -> float:
         """Return the largest voltage that the control law asks for anywhere, before any saturation, V; 0 without control."""

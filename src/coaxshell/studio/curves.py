@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,44 +10,32 @@ from coaxshell.model import RigidShell, Shell
 from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
-from coaxshell.response.histories import combined
-from coaxshell.response.modal import displacement_gain, stress_gain_of, voltage_gain
 from coaxshell.response.peaks import Peak
+from coaxshell.response.quantities import QUANTITIES, Quantity, Where, columns
 from coaxshell.response.summary import Summary
-from coaxshell.response.voltages import actuator_values
-from coaxshell.solver.solution import ModalSolution
+from coaxshell.response.tables import quantities_of
 from coaxshell.studio import limits
 from coaxshell.studio.arrays import Item, Packed, packed
 
-QUANTITIES = {
-    "stress": ("hoop stress", "Pa"),
-    "displacement": ("displacement, inward", "m"),
-    "sensor_voltage": ("sensor voltage", "V"),
-    "actuator_voltage": ("actuator voltage", "V"),
-    "absorber_force": ("absorber force, inward", "N/m"),
-}
-"""What is given at head and tail of each shell: label and unit."""
-
-BARS = {
-    "stress_head": ("peak stress at the head", "Pa"),
-    "stress_tail": ("peak stress at the tail", "Pa"),
-    "stress": ("peak stress anywhere", "Pa"),
-    "stress_rms": ("RMS stress", "Pa"),
-    "relative_displacement_head": ("peak relative displacement at the head", "m"),
-    "relative_displacement_tail": ("peak relative displacement at the tail", "m"),
-    "displacement_head": ("peak absolute displacement at the head", "m"),
-    "displacement_tail": ("peak absolute displacement at the tail", "m"),
-    "sensor_voltage": ("peak sensor voltage, mean over a segment", "V"),
-    "actuator_voltage": ("peak actuator voltage asked for, mean over a segment", "V"),
-}
+_ABSORBER_FORCE = {"absorber_force": ("absorber force, inward", "N/m")}
+_PLACES: dict[Where, str] = {"head": "peak {} at the head", "tail": "peak {} at the tail", "anywhere": "peak {} anywhere", "rms": "RMS {}"}
 
 
-_AT_ENDS: dict[str, Callable[[ModalSolution, int, FloatArray], FloatArray]] = {
-    "stress": lambda solution, shell, ends: combined(solution, shell, stress_gain_of(solution, shell), ends),
-    "displacement": lambda solution, shell, ends: combined(solution, shell, displacement_gain(solution), ends),
-    "sensor_voltage": lambda solution, shell, ends: combined(solution, shell, voltage_gain(solution, shell), ends),
-    "actuator_voltage": actuator_values,
-}
+def quantities() -> dict[str, tuple[str, str]]:
+    """Return what is given at head and tail of each shell: label and unit by name."""
+    return {quantity.name: (quantity.label, quantity.unit) for quantity in columns()} | _ABSORBER_FORCE
+
+
+def bars() -> dict[str, tuple[str, str]]:
+    """Return the bars of a shell: label and unit by their keys in the summary."""
+    return {
+        quantity.key(where): (
+            f"peak {quantity.noun}, mean over a segment" if quantity.largest else _PLACES[where].format(quantity.noun),
+            quantity.unit,
+        )
+        for quantity in QUANTITIES.values()
+        for where in quantity.summary
+    }
 
 
 def curves(response: Response, seconds: float) -> Packed:
@@ -93,8 +80,8 @@ def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]
     items: dict[str, Item] = {}
     for index in range(len(response.system.shells)):
         for quantity in _given(response, index):
-            values = _AT_ENDS[quantity](solution, index, ends)
-            items[f"{quantity}/{index}"] = Item(np.asarray(values, dtype=np.float32).T, QUANTITIES[quantity][1])
+            values = quantity.at(response.motion, index, ends)
+            items[f"{quantity.name}/{index}"] = Item(np.asarray(values, dtype=np.float32).T, quantity.unit)
     if solution.absorber_force is not None and response.system.absorber_list:
         forces = solution.problem.scales.line_force * solution.absorber_force
         for index in range(len(response.system.shells)):
@@ -105,16 +92,8 @@ def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]
     return items
 
 
-def _given(response: Response, index: int) -> list[str]:
-    shell = response.system.shells[index]
-    if not isinstance(shell, Shell):
-        return []
-    found = ["stress", "displacement"]
-    if shell.sensor is not None:
-        found.append("sensor_voltage")
-    if index in response.system.controlled_shells and shell.sensor is not None and shell.actuator is not None:
-        found.append("actuator_voltage")
-    return found
+def _given(response: Response, index: int) -> list[Quantity]:
+    return quantities_of(response, index) if isinstance(response.system.shells[index], Shell) else []
 
 
 def _absorbers(response: Response) -> dict[str, Any]:
@@ -145,22 +124,23 @@ def _nearest(response: Response, head: float, inner_shell: int | None) -> tuple[
 def _bars(response: Response, summary: Summary) -> list[dict[str, Any]]:
     count = len(response.system.shells)
     numbers = {shell_name(index, count): index for index in range(count)}
-    bars: list[dict[str, Any]] = []
+    found: list[dict[str, Any]] = []
     for shell in summary.shells:
-        for name, (label, unit) in BARS.items():
+        for name, (label, unit) in bars().items():
             value: Peak | float | None = getattr(shell, name)
             if value is None:
                 continue
             told = _peak(value) if isinstance(value, Peak) else {"value": _finite(value), "time": None, "angle": None}
-            bars.append({"shell": numbers[shell.name], "name": name, "label": label, "unit": unit, **told})
+            found.append({"shell": numbers[shell.name], "name": name, "label": label, "unit": unit, **told})
     for name, label, unit in (
         ("absorber_displacement", "peak absorber displacement", "m"),
         ("absorber_force", "peak absorber force", "N/m"),
     ):
         largest = getattr(summary, name)
         if largest is not None:
-            bars.append({"shell": None, "name": name, "label": label, "unit": unit, "value": _finite(largest), "time": None, "angle": None})
-    return bars
+            told = {"value": _finite(largest), "time": None, "angle": None}
+            found.append({"shell": None, "name": name, "label": label, "unit": unit, **told})
+    return found
 
 
 def _peak(peak: Peak) -> dict[str, Any]:

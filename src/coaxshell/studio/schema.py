@@ -8,9 +8,9 @@ from typing import Any
 
 from coaxshell._version import __version__
 from coaxshell.model import EXPLOSIVES, Elastic, System, fluids, materials, presets
-from coaxshell.studies.metrics import ABSORBER_QUANTITIES, FLUID_QUANTITIES, SHELL_QUANTITIES, SYSTEM_QUANTITIES, WITHOUT_SHELL
+from coaxshell.studies.metrics import ABSORBER_QUANTITIES, FLUID_QUANTITIES, SYSTEM_QUANTITIES, WITHOUT_SHELL, shell_quantities
 from coaxshell.studio import limits
-from coaxshell.studio.curves import QUANTITIES
+from coaxshell.studio.curves import quantities
 from coaxshell.studio.descriptions import normalised
 
 # The limit that JSON Schema has no word for.
@@ -34,7 +34,7 @@ def schema() -> dict[str, Any]:
         ],
         "explosives": list(EXPLOSIVES),
         "metric_units": _metric_units(),
-        "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in QUANTITIES.items()],
+        "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in quantities().items()],
         "resolutions": {"preview": limits.table_of(limits.PREVIEW), "full": limits.table_of(limits.FULL)},
         "films": ["mp4", "webp"] if find_spec("imageio_ffmpeg") else ["webp"],
         "limits": limits.table(),
@@ -43,7 +43,7 @@ def schema() -> dict[str, Any]:
 
 def _metric_units() -> dict[str, str]:
     """Return the unit of each metric by its name, or by its quantity where the place does not matter."""
-    units = {name: entry.units for name, entry in {**SHELL_QUANTITIES, **FLUID_QUANTITIES}.items()}
+    units = {name: entry.units for name, entry in {**shell_quantities(), **FLUID_QUANTITIES}.items()}
     for place, names in WITHOUT_SHELL.items():
         units |= {f"{place}.{name}": {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}[key].units for name, key in names.items()}
     return units

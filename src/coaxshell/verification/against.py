@@ -15,6 +15,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.files import write_text
 from coaxshell.numerics.progress import Progress
+from coaxshell.response.quantities import QUANTITIES
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
 from coaxshell.verification.causes import likely_cause
@@ -26,14 +27,6 @@ LONGEST = 50.0
 """Longest history that is computed for a comparison, in transits."""
 TOLERANCE = 0.05
 """Largest relative L2 error, and error of a peak, that passes unless another is given."""
-DRAWN = {
-    "displacement": (1e6, "displacement (µm)"),
-    "stress": (1e-6, "hoop stress (MPa)"),
-    "sensor_voltage": (1.0, "sensor voltage (V)"),
-    "actuator_voltage": (1.0, "actuator voltage (V)"),
-    "absorber_displacement": (1e6, "displacement of absorbers (µm)"),
-}
-UNIT = {"displacement": "m", "stress": "Pa", "sensor_voltage": "V", "actuator_voltage": "V", "absorber_displacement": "m"}
 CLOCKS = 1e-3
 """Relative difference that columns of transits and of seconds may have."""
 
@@ -120,10 +113,11 @@ def _check(path: Path, system: System, column: Column) -> None:
     except InputError as error:
         raise InputError(where, error.problem, error.remedy) from None
     roles = {layer.role for layer in getattr(shell, "layers", ())}
-    if not roles and column.quantity != "displacement":
+    quantity = QUANTITIES[column.quantity]
+    if not roles and quantity.needs:
         raise InputError(where, "is of a rigid shell, which has no stress and no voltage", "leave the column out")
-    needed = column.quantity.removesuffix("_voltage")
-    if needed != column.quantity and needed not in roles:
+    needed = next((role for role in reversed(quantity.roles) if role not in roles), None)
+    if needed is not None:
         raise InputError(where, f"is of a shell without a layer that is its {needed}", "leave the column out")
 
 
@@ -141,7 +135,7 @@ def _ours(response: Response, column: Column) -> tuple[FloatArray, FloatArray]:
         return own, own
     head = response.system.sources[0].angle
     angle = head if column.place == "head" else head + 180.0 if column.place == "tail" else float(column.place)
-    histories = getattr(response, column.quantity)(_index(response.system, column.shell), [angle, angle + 180.0])
+    histories = response.history(_index(response.system, column.shell), [angle, angle + 180.0], column.quantity)
     own, opposite = np.asarray(histories, dtype=np.float64).T
     return own, opposite
 
@@ -167,7 +161,7 @@ def _rows(
     column: Column, time: FloatArray, response: Response, curve: FloatArray, opposite: FloatArray, tolerance: float
 ) -> tuple[Row, Row]:
     """Return the rows of the whole history, with the likely cause of a deviation that does not pass, and of its peak."""
-    unit = UNIT[column.quantity]
+    unit = QUANTITIES[column.quantity].unit if column.quantity in QUANTITIES else "m"
     ours = np.interp(time, response.time, curve)
     peaks = [float(history[np.abs(history).argmax()]) for history in (ours, column.values)]
     norm, largest = float(np.linalg.norm(ours)), abs(peaks[0])
@@ -188,7 +182,10 @@ def _rows(
 
 
 def _panel(column: Column, time: FloatArray, curve: FloatArray, at: FloatArray, file: str) -> Panel:
-    scale, label = DRAWN[column.quantity]
+    if column.quantity in QUANTITIES:
+        scale, label = QUANTITIES[column.quantity].shown[1], QUANTITIES[column.quantity].axis
+    else:
+        scale, label = 1e6, "displacement of absorbers (µm)"
     curves = [
         Curve("coaxshell", time, scale * curve, colour="blue"),
         Curve(file, at, scale * column.values, "dashed", colour="orange"),
@@ -212,13 +209,13 @@ def template(system: System, path: Path, *, time_step: float = 0.01, duration: f
     count = response.shells
     names = [str(shell) if " " in name else name for shell in range(count) for name in (shell_name(shell, count),)]
     head = system.sources[0].angle
-    for quantity in ("displacement", "stress"):
-        unit = UNIT[quantity]
+    for quantity in (QUANTITIES["displacement"], QUANTITIES["stress"]):
         for shell in names:
-            if quantity == "stress" and not hasattr(system.shells[system.shell_index(shell)], "layers"):
+            if quantity.lack(system, system.shell_index(shell)) is not None:
                 continue
             for side, angle in (("head", head), ("tail", head + 180.0)):
-                columns[f"{quantity}_{shell}_{side} [{unit}]"] = np.asarray(getattr(response, quantity)(shell, [angle]))[::every, 0]
+                values = np.asarray(response.history(shell, [angle], quantity.name))
+                columns[f"{quantity.name}_{shell}_{side} [{quantity.unit}]"] = values[::every, 0]
     lines = [f"# {line}" for line in _explanation(system)] + [", ".join(columns)]
     lines += [", ".join(f"{number:.9g}" for number in row) for row in zip(*columns.values(), strict=True)]
     write_text(path, "\n".join(lines) + "\n")

@@ -16,18 +16,19 @@ from coaxshell.model.records.columns import Table, factor_of
 from coaxshell.model.records.reader import table_of
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.reading import regular_bytes
+from coaxshell.response.quantities import QUANTITIES, columns
 
 TIMES = ("time", "t", "time seconds", "time transits", "zeit", "temps")
 TRANSITS = ("transits", "transit", "a/c", "a/c_e")
 SIDES = ("head", "tail")
 VOLTAGES = {"V": 1.0, "mV": 1e-3, "kV": 1e3}
-QUANTITIES = {
-    "displacement": ("displacement",),
-    "stress": ("stress",),
-    "sensor_voltage": ("sensor", "voltage"),
-    "actuator_voltage": ("actuator", "voltage"),
+KINDS = {"m": "length", "Pa": "pressure", "m/s": "speed", "m/s^2": "acceleration"}
+_USUAL = {
+    "m": "m, mm, um or any other length",
+    "Pa": "Pa, kPa, MPa or any other unit of stress",
+    "m/s": "m/s, mm/s or any other speed",
+    "m/s^2": "m/s^2, mm/s^2 or any other acceleration",
 }
-"""Quantities and the words that name them; what is left of a heading names the shell and, last, the place."""
 _EXAMPLE = 'write names such as "displacement_inner_head [m]", "stress_outer_tail [MPa]" or "stress_outer_90 [Pa]"'
 _REMEDY = "give a CSV file; --template writes an example"
 
@@ -41,7 +42,7 @@ class Column:
     name : str
         The heading without its unit.
     quantity : str
-        One of :data:`QUANTITIES`, or ``"absorber_displacement"``.
+        One of those with columns in :mod:`coaxshell.response.quantities`, or ``"absorber_displacement"``.
     shell : str
         As written; the number of an absorber for its displacement.
     place : str
@@ -139,11 +140,12 @@ def _meanings(words: list[str]) -> Iterator[tuple[str, str, str]]:
     if place not in SIDES and not _is_angle(place):
         return
     rest = words[:-1]
-    for quantity, naming in QUANTITIES.items():
+    for quantity in columns():
+        naming = tuple(quantity.words.split())
         for start in range(len(rest) - len(naming) + 1):
             shell = rest[:start] + rest[start + len(naming) :]
             if tuple(rest[start : start + len(naming)]) == naming and shell:
-                yield quantity, " ".join(shell), place
+                yield quantity.name, " ".join(shell), place
 
 
 def _is_angle(text: str) -> bool:
@@ -155,12 +157,13 @@ def _factor(where: str, quantity: str, unit: str | None) -> float:
     """Return the factor of a unit to SI; 1 without one."""
     if unit is None:
         return 1.0
-    if quantity.endswith("voltage"):
+    own = QUANTITIES[quantity].unit if quantity in QUANTITIES else "m"
+    if own == "V":
         factor, usual = VOLTAGES.get(unit), ", ".join(VOLTAGES)
-    elif quantity == "stress":
-        factor, usual = factor_of(unit, "pressure"), "Pa, kPa, MPa or any other unit of stress"
+    elif own in KINDS:
+        factor, usual = factor_of(unit, KINDS[own]), _USUAL[own]
     else:
-        factor, usual = factor_of(unit, "length"), "m, mm, um or any other length"
+        factor, usual = (1.0 if unit == own else None), own
     if factor is None:
         raise InputError(where, f"has the unknown unit {shown(unit)}", f"allowed: {usual}")
     return factor
