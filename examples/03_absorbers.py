@@ -18,7 +18,7 @@ bare = cx.presets.load("bare")
 prepared = cx.prepare(bare, duration=4.0, time_step=2e-3, modes=80)
 
 
-def ring(count, damping=1e6):
+def ring(count: int, damping: float = 1e6) -> cx.AbsorberRing:
     return cx.absorber_ring(
         count, mass=10, damping=damping, linear_stiffness=1e9, cubic_stiffness=1e20
     )

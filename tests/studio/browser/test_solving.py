@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -118,5 +120,8 @@ def test_a_pinned_run_stays_while_the_system_changes(page):
     assert_allclose(pinned, before, rtol=0, atol=0.05 * np.abs(before).max())
     assert np.abs(current - before).max() > 0.1 * np.abs(before).max()
     assert "pinned" in {name for name, *_ in shown_curves(page)}
+    told = page.locator("#peaks td.better, #peaks td.worse").all_inner_texts()
+    assert told
+    assert all(re.fullmatch(r"(smaller|larger) by \d+\.\d\u202f%|[\d.]+ times as large", text) for text in told), told
     page.locator("#pin").click()
     until(page, "!window.coaxshell.state.runs.pinned")
