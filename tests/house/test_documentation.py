@@ -35,6 +35,16 @@ def test_public_names_are_documented(path):
     assert list(undocumented(tree(path).body)) == []
 
 
+LEANING = re.compile(r"(?:The same\b|Likewise|Ditto|Those\b|That of|Their\b|Its\b|Theirs|Of\b|As above)")
+"""How a docstring begins that makes sense only after another one."""
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: "/".join(path.parts[-2:]))
+def test_docstrings_stand_by_themselves(path):
+    texts = ((node.name, ast.get_docstring(node) or "") for node in ast.walk(tree(path)) if isinstance(node, DEFINITIONS))
+    assert [f"{name}: {text.splitlines()[0]}" for name, text in texts if LEANING.match(text)] == []
+
+
 def test_every_exported_name_exists():
     for name in coaxshell.__all__:
         assert getattr(coaxshell, name) is not None

@@ -113,5 +113,5 @@ class RadialBasis:
 
     @property
     def surface(self) -> RadialFunctions:
-        """Those of the exterior fluid at r = 1."""
+        """Radial functions of the exterior fluid at r = 1."""
         return self(1.0, 1.0)

@@ -37,7 +37,7 @@ class Largest(Protocol):
     """The largest magnitude of a quantity within a window of time, as a mean over a segment of the wall."""
 
     def __call__(self, solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
-        """Return it; the length in m."""
+        """Return the largest magnitude; the length in m."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +102,7 @@ class Quantity:
 
     @property
     def stem(self) -> str:
-        """Its name within the names of metrics."""
+        """Name of the quantity within the names of metrics."""
         return self.name.removeprefix("shell_")
 
     def key(self, where: Where) -> str:
@@ -120,7 +120,7 @@ class Quantity:
 
     @property
     def words(self) -> str:
-        """Its name in headings."""
+        """Name of the quantity in headings."""
         return self.name.replace("_", " ")
 
     @property
