@@ -424,6 +424,22 @@ MUTATIONS = (
         "the direct engine's loads of pulses with corners",
         "acoustics/test_far_sources.py",
     ),
+    Mutation(
+        "limited-share",
+        "solver/limited_orders.py",
+        "work / square if square > 0 else 1.0",
+        "1.0",
+        "share of saturating feedback that the orders above M get",
+        "solver/test_limited_orders.py",
+    ),
+    Mutation(
+        "unresolved-membranes",
+        "solver/estimates.py",
+        "STEP_FACTOR * membrane_error(",
+        "0.0 * membrane_error(",
+        "printed error of a march whose membranes the step does not resolve",
+        "solver/test_estimates.py",
+    ),
     # studies, paper, command line
     Mutation(
         "shared-structure",

@@ -58,9 +58,10 @@ def limit(name: str, case: Case, response: cx.Response) -> float:
     if ("cubic" in case.kind or "saturated" in case.kind) and 0.0 < allowed < MARCHED and name not in OF_THE_RESULT:
         allowed = MARCHED
     if name in OF_THE_STEP:
-        printed = response.errors().sel(cause=["time step", "march"], quantity="displacement").sum("cause").values
-        size = np.linalg.norm(response.solution.normal.reshape(printed.size, -1), axis=1)
-        allowed = max(allowed, float((printed * size).max() / max(size.max(), 1e-300)))
+        printed = response.errors().sel(cause=["time step", "march"]).sum("cause")
+        told = (printed.max("quantity") if name == "energy" else printed.sel(quantity="displacement")).values
+        size = np.linalg.norm(response.solution.normal.reshape(told.size, -1), axis=1)
+        allowed = max(allowed, float((told * size).max() / max(size.max(), 1e-300)))
     return allowed
 
 

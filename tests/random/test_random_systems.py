@@ -37,5 +37,5 @@ def test_printed_errors_are_honest() -> None:
     for found in study.ratios.values():
         ratios = np.array([ratio for ratio, *_ in found])
         assert np.mean(ratios > 2.0) < 0.05
-        assert np.mean(ratios > 10.0) < 0.02
+        assert ratios.max() < 10.0
         assert np.median(ratios) > 0.05

@@ -34,7 +34,7 @@ from coaxshell.solver.sampled_orders import standing_for
 Array = npt.NDArray[Any]
 
 WIDE_ROLL_OFF = 0.4
-SHARES = {8: (0.1, 3e-3), 4: (0.2, 0.06), 2: (1.0, np.inf)}
+SHARES = {8: (0.1, 3e-4), 4: (0.2, 0.06), 2: (1.0, np.inf)}
 """By how many times the step is longer, the printed share of what that changes, and the error up to which it tells: beyond, answers of the
 longer step may have nothing to do with those of the run's, whatever its error, and a shorter one is marched. At second order, which most
 interfaces show, that is 6 or 3 times the error; those that show less than first order still have their error printed."""
