@@ -6,9 +6,8 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from coaxshell.cli.output import echo, printable
+from coaxshell.cli.output import echo, printable, tell_warnings
 from coaxshell.cli.running import load_system
-from coaxshell.cli.tables import tell_warnings
 from coaxshell.model.paths import parts
 
 if TYPE_CHECKING:

@@ -10,10 +10,9 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.options import named_as_options
-from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.output import Outputs, echo, tell_warnings, write_figure
 from coaxshell.cli.progress import progress
 from coaxshell.cli.running import Request, answers, tell_all_warnings, with_resolution
-from coaxshell.cli.tables import tell_warnings
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:

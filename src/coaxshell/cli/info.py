@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.cli.documents import JsonOption, print_document, runs_document
-from coaxshell.cli.output import echo
+from coaxshell.cli.options import JsonOption
+from coaxshell.cli.output import echo, print_document, runs_document
 
 
 def info(
@@ -25,6 +25,6 @@ def info(
     echo(response.info(file).rstrip())
     echo()
 
-    from coaxshell.cli.tables import print_summary
+    from coaxshell.cli.output import print_summary
 
     print_summary(response.load_response(file))

@@ -9,10 +9,9 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.documents import JsonOption, print_document
 from coaxshell.cli.entry import Interrupted
 from coaxshell.cli.options import named_as_options
-from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.output import Outputs, echo, print_document, write_figure
 from coaxshell.cli.running import study_options, tell_code, tell_study_time
 
 
@@ -47,7 +46,7 @@ def optimise(
     allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
-    as_json: JsonOption = False,
+    as_json: options.JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:

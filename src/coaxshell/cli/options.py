@@ -32,6 +32,7 @@ RefinementOption = Annotated[
     str, typer.Option("--refinement", metavar="N", help="Solve at time-step/N and keep every N-th instant: for stiff absorbers.")
 ]
 ForceOption = Annotated[bool, typer.Option("--force", help="Overwrite what exists already.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document for programs instead of a table.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]
 WorkersOption = Annotated[str | None, typer.Option("--workers", metavar="N", help="Processes; one a core unless given.")]
 DaskOption = Annotated[

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.output import echo
+from coaxshell.cli.options import JsonOption
+from coaxshell.cli.output import echo, print_document
 
 
 def presets(as_json: JsonOption = False) -> None:

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.documents import JsonOption, print_document
-from coaxshell.cli.output import Outputs, write_figure
+from coaxshell.cli.output import Outputs, print_document, write_figure
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ def record(
     ] = None,
     taper: Annotated[Text, typer.Option("--taper", metavar="TIME", help="Bring the last part of this length to zero.")] = None,
     figure: Annotated[Path | None, typer.Option("--figure", metavar="FILE", help="Draw it with its spectrum; .png, .pdf, .svg.")] = None,
-    as_json: JsonOption = False,
+    as_json: options.JsonOption = False,
     force: options.ForceOption = False,
 ) -> None:
     """Show what is understood of a measured pressure record.

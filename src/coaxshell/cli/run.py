@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.documents import JsonOption, print_document, runs_document
 from coaxshell.cli.options import named_as_options
-from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.output import Outputs, echo, print_document, runs_document, write_figure
 from coaxshell.cli.running import Request, with_resolution
 
 if TYPE_CHECKING:
@@ -47,7 +46,7 @@ def run(
     energy: Annotated[
         Path | None, typer.Option("--energy", metavar="FILE", help="Draw where the energy of the first run goes; .png, .pdf or .svg.")
     ] = None,
-    as_json: JsonOption = False,
+    as_json: options.JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -57,8 +56,8 @@ def run(
     --output saves the first run.
     """
     from coaxshell.cli.comparison import labels, load_reference, print_comparison
+    from coaxshell.cli.output import print_summary, tell_warnings
     from coaxshell.cli.running import load_system
-    from coaxshell.cli.tables import print_summary, tell_warnings
 
     outputs = Outputs(force)
     if output is not None:

@@ -19,6 +19,7 @@ import typer
 
 from coaxshell.cli import options
 from coaxshell.cli.options import named_as_options, overrides
+from coaxshell.cli.output import tell_warnings
 from coaxshell.cli.progress import progress, tell_time
 from coaxshell.errors import InputError
 
@@ -185,8 +186,6 @@ def _refuse_solving_options(context: typer.Context) -> None:
 
 def tell_all_warnings(responses: Sequence[Response]) -> None:
     """Tell the warnings of all responses, each once."""
-    from coaxshell.cli.tables import tell_warnings
-
     tell_warnings(dict.fromkeys(text for response in responses for text in response.warnings))
 
 

@@ -9,10 +9,9 @@ from typing import Annotated
 import typer
 
 from coaxshell.cli import options
-from coaxshell.cli.documents import JsonOption, print_document, statistics_document
 from coaxshell.cli.entry import kept
 from coaxshell.cli.options import named_as_options
-from coaxshell.cli.output import Outputs, echo, write_figure
+from coaxshell.cli.output import Outputs, echo, print_document, statistics_document, write_figure
 from coaxshell.cli.running import study_options, tell_code, tell_study_time
 
 
@@ -29,7 +28,7 @@ def sensitivity(
     allow_code: options.AllowCodeOption = False,
     workers: options.WorkersOption = None,
     dask: options.DaskOption = None,
-    as_json: JsonOption = False,
+    as_json: options.JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
