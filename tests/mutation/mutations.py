@@ -257,7 +257,7 @@ MUTATIONS = (
     ),
     Mutation(
         "absorber-projection",
-        "solver/ingredients.py",
+        "solver/point_forces.py",
         "np.where(all_orders(max_order) == 0, 2.0, 1.0)",
         "np.where(all_orders(max_order) == 0, 1.0, 1.0)",
         "projection of absorbers' forces: beta of order 0",

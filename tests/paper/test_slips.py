@@ -15,6 +15,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
 from coaxshell.paper.slips.switches import slipped
 from coaxshell.paper.slips.waves import PrintedPotential
+from coaxshell.solver import Prepared
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
@@ -304,3 +305,9 @@ def test_a_response_with_slips_is_not_saved(tmp_path):
 def test_bad_input_is_refused(slips, system, where):
     with pytest.raises(cx.InputError, match=where):
         simulate(system, TINY, frozenset(slips))
+
+
+@pytest.mark.parametrize("slip", ["diffraction-sign", "radius-factor", "printed-strain"])
+def test_what_is_prepared_without_a_slip_is_not_taken_for_it(slip):
+    prepared = Prepared(dimensionless(BARE), TINY).retuned(slipped(BARE, {slip}))
+    np.testing.assert_array_equal(prepared.solve().normal, simulate(BARE, TINY, frozenset({slip})).solution.normal)

@@ -18,7 +18,6 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.operators import annulus
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 
@@ -55,7 +54,7 @@ def fluid_matrix(problem: Problem, radial: RadialBasis) -> FluidMatrix:
             continue
         sides = [j for j in (i - 1, i) if 0 <= j < count]
         walls = [radial(fluid.slowness, problem.shells[j].radius) for j in sides]
-        density = [fluid.density * problem.ingredients.wall_motion_factor(problem, i, j, radial) for j in sides]
+        density = [fluid.density * fluid.wall_motion_factor(j, radial) for j in sides]
         if i == 0:
             matrix.diagonal[0] = matrix.diagonal[0] + density[0] * walls[0].disc
         elif i == count:
@@ -104,7 +103,7 @@ class ModalSystem:
     def _fluids(self) -> FluidMatrix:
         """Return the added mass, shared where only fluids, radii, modes and nodes determine it."""
         problem = self.problem
-        if self._shared is None or problem.ingredients != OWN:
+        if self._shared is None:
             return fluid_matrix(problem, self.radial)
         key = ("fluids", problem.fluids, tuple(shell.radius for shell in problem.shells), self.modes.key, self.s.tobytes())
         fluids: FluidMatrix = self._shared.get_or_make(key, lambda: fluid_matrix(problem, self.radial))

@@ -7,17 +7,23 @@ the outer radius.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import SourceGeometry, source_geometry
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
-from coaxshell.solver.ingredients import OWN, Ingredients
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.solver.point_forces import point_force_shares
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
 from coaxshell.structure.shell_model import ControlGains, ShellModel
 from coaxshell.structure.thin_wall import ThinWall
+
+if TYPE_CHECKING:
+    from coaxshell.solver.point_forces import PointForceShares
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,10 @@ class FluidRegion:
     density: float
     slowness: float
 
+    def wall_motion_factor(self, wall: int, radial: RadialBasis) -> ComplexArray | float:
+        """Return the factor with which it feels the acceleration of a wall beside it, by number: 1, a fluid moves with its wall (Eq. 9)."""
+        return 1.0
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -77,8 +87,8 @@ class Problem:
         From the inside out, one more than the shells; None is a vacuum.
     sources : tuple of SourceGeometry
         Where the system's sources are, one each.
-    ingredients : Ingredients
-        Formulas by their place, the theory manual's unless a study changes one.
+    point_force_shares : callable
+        From absorbers and M to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
     """
 
     system: System
@@ -86,7 +96,7 @@ class Problem:
     shells: tuple[ShellModel, ...]
     fluids: tuple[FluidRegion | None, ...]
     sources: tuple[SourceGeometry, ...]
-    ingredients: Ingredients = OWN
+    point_force_shares: PointForceShares = point_force_shares
 
     @property
     def open_loop(self) -> Problem:

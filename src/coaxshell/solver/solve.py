@@ -63,7 +63,7 @@ class Prepared:
     Parameters
     ----------
     system : System or Problem
-        Its own absorbers are only the default of ``solve``. A dimensionless problem may carry other ingredients than a system's own.
+        Its own absorbers are only the default of ``solve``. A dimensionless problem may differ from its system's.
     settings : Settings
     progress : callable, optional
     shared : SharedParts, optional
@@ -108,7 +108,7 @@ class Prepared:
     def same_structure(self, problem: Problem, max_order: int) -> bool:
         """Return whether a problem differs at most in its sources, absorbers and field limits."""
         own = self.problem
-        same = all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "ingredients"))
+        same = all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "point_force_shares"))
         return same and max_order == self.structure.max_order
 
     def retuned(self, system: System | Problem) -> Prepared:
@@ -123,7 +123,7 @@ class Prepared:
             self._shared = shared_parts()
         problem = system if isinstance(system, Problem) else dimensionless(system)
         same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
-        if same and self.same_structure(problem, self.structure.max_order):
+        if same and problem.sources == self.problem.sources and self.same_structure(problem, self.structure.max_order):
             twin = copy(self)
             twin.problem, twin._stopwatch = problem, Stopwatch()
             return twin

@@ -20,7 +20,6 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.winding import turning
 from coaxshell.solver.coupling import ModalSystem, determinant
-from coaxshell.solver.ingredients import OWN
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 
@@ -115,7 +114,7 @@ def unstable_poles(problem: Problem, max_order: int, duration: float, shared: Sh
     for start in range(0, frequencies.size, _BLOCK):
         block = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
         make = partial(OpenLoop.of, problem, block, orders, shared)
-        if shared is not None and problem.ingredients == OWN:
+        if shared is not None:
             open_loop = shared.get_or_make(("open loop", *known, block.tobytes()), make)
         else:
             open_loop = make()

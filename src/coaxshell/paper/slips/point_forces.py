@@ -9,23 +9,23 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.scaling import Problem
 
 
-def missing_projection(ingredients: Ingredients) -> Ingredients:
-    """Return the ingredients without 1/(beta pi): every absorber pulls pi times (order 0: 2 pi times) as hard as its own mass feels."""
+def missing_projection(problem: Problem) -> Problem:
+    """Return the problem without 1/(beta pi): every absorber pulls pi times (order 0: 2 pi times) as hard as its own mass feels."""
 
     def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
         beta_pi = np.pi * np.where(all_orders(max_order) == 0, 2.0, 1.0)
-        found: FloatArray = ingredients.point_force_shares(absorbers, max_order) * beta_pi
+        found: FloatArray = problem.point_force_shares(absorbers, max_order) * beta_pi
         return found
 
-    return replace(ingredients, point_force_shares=shares)
+    return replace(problem, point_force_shares=shares)
 
 
-def outside_sum(ingredients: Ingredients, which: int) -> Ingredients:
-    """Return the ingredients with cos(m theta_n) outside the sum over n, n being one absorber's number for all: 0 the first, -1 the last.
+def outside_sum(problem: Problem, which: int) -> Problem:
+    """Return the problem with cos(m theta_n) outside the sum over n, n being one absorber's number for all: 0 the first, -1 the last.
 
     Forces are still read where each absorber sits, but all of them act where that one does. In a layout that is symmetric about the
     axis, whose series has cosines only, this is half there and half at its mirror image.
@@ -39,15 +39,15 @@ def outside_sum(ingredients: Ingredients, which: int) -> Ingredients:
         found: FloatArray = np.broadcast_to(there[:, None, :], own.shape) * absorbers.multiplicity[:, None] / beta_pi
         return found
 
-    return replace(ingredients, point_force_shares=shares)
+    return replace(problem, point_force_shares=shares)
 
 
-def cosine_only(ingredients: Ingredients) -> Ingredients:
-    """Return the ingredients with cosines only: an absorber off the axis acts as two of half its strength at +theta_n and -theta_n."""
+def cosine_only(problem: Problem) -> Problem:
+    """Return the problem with cosines only: an absorber off the axis acts as two of half its strength at +theta_n and -theta_n."""
 
     def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
-        found = ingredients.point_force_shares(absorbers, max_order).copy()
+        found = problem.point_force_shares(absorbers, max_order).copy()
         found[1:] = 0.0
         return found
 
-    return replace(ingredients, point_force_shares=shares)
+    return replace(problem, point_force_shares=shares)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 
@@ -11,12 +10,7 @@ from coaxshell.errors import InputError
 from coaxshell.model import Piezoelectric, Shell, System
 from coaxshell.paper.slips import fluids, point_forces, shells, waves
 from coaxshell.paper.slips.catalogue import SLIPS
-from coaxshell.solver.ingredients import Ingredients
 from coaxshell.solver.scaling import Problem, dimensionless
-
-
-def _formula(change: Callable[[Ingredients], Ingredients]) -> Callable[[Problem], Problem]:
-    return lambda problem: replace(problem, ingredients=change(problem.ingredients))
 
 
 def with_permittivity(system: System, reduction: str) -> System:
@@ -32,7 +26,7 @@ def with_permittivity(system: System, reduction: str) -> System:
 
 
 def _printed_permittivity(problem: Problem) -> Problem:
-    return replace(dimensionless(with_permittivity(problem.system, "printed")), ingredients=problem.ingredients)
+    return dimensionless(with_permittivity(problem.system, "printed"))
 
 
 _SWITCHES: Mapping[str, Callable[[Problem], Problem]] = MappingProxyType(
@@ -41,17 +35,17 @@ _SWITCHES: Mapping[str, Callable[[Problem], Problem]] = MappingProxyType(
         "control-sign": shells.control_sign,
         "doubled-curvature": shells.doubled_curvature,
         "printed-strain": shells.printed_strain,
-        "radius-factor": _formula(fluids.radius_factor),
-        "interior-derivative": _formula(fluids.interior_derivative),
-        "interior-function": _formula(fluids.interior_function),
-        "radiation-sign": _formula(fluids.radiation_sign),
+        "radius-factor": fluids.radius_factor,
+        "interior-derivative": fluids.interior_derivative,
+        "interior-function": fluids.interior_function,
+        "radiation-sign": fluids.radiation_sign,
         "incident-potential": partial(waves.printed_potential, impulse=False),
         "incident-potential-impulse": partial(waves.printed_potential, impulse=True),
         "diffraction-sign": waves.reversed_diffraction,
-        "outside-sum": _formula(partial(point_forces.outside_sum, which=-1)),
-        "outside-sum-first": _formula(partial(point_forces.outside_sum, which=0)),
-        "missing-projection": _formula(point_forces.missing_projection),
-        "cosine-only": _formula(point_forces.cosine_only),
+        "outside-sum": partial(point_forces.outside_sum, which=-1),
+        "outside-sum-first": partial(point_forces.outside_sum, which=0),
+        "missing-projection": point_forces.missing_projection,
+        "cosine-only": point_forces.cosine_only,
     }
 )
 

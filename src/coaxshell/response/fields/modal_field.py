@@ -51,12 +51,12 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
         return None
     nodes = grid.nodes
-    problem, radial = spectra.problem, RadialBasis(Modes.up_to(spectra.max_order), nodes)
-    acceleration = region.fluid.density * nodes * nodes
+    fluid, problem, radial = region.fluid, spectra.problem, RadialBasis(Modes.up_to(spectra.max_order), nodes)
+    acceleration = fluid.density * nodes * nodes
 
     def radiated(shell: int) -> ComplexArray:
         motion = spectra.normal[shell, ..., : nodes.size] * acceleration
-        return np.asarray(motion * problem.ingredients.wall_motion_factor(problem, region.index, shell, radial))
+        return np.asarray(motion * fluid.wall_motion_factor(shell, radial))
 
     inner: ComplexArray | None = None
     outer: ComplexArray | None = None

@@ -151,7 +151,7 @@ class InterfacePoints:
         self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
         shapes = absorbers.shapes(max_order)
         self._evaluate = [np.ascontiguousarray(shapes[:, points % max(absorbers.count, 1)]) for _, points in self._groups]
-        shares = problem.ingredients.point_force_shares(absorbers, max_order)
+        shares = problem.point_force_shares(absorbers, max_order)
         self._project = [
             np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.shells[i].radius) for i, points in self._groups
         ]

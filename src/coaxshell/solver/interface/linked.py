@@ -9,12 +9,12 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.ingredients import point_force_shares
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
+from coaxshell.solver.point_forces import point_force_shares
 from coaxshell.solver.prepared import StructureSpectra
 
 
@@ -70,7 +70,7 @@ def solve_linked(
         linear = structure.linear
         return AbsorberSolution(linear.normal, linear.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0)
     if absorbers.is_linear if exact is None else exact:
-        if is_ring(absorbers) and structure.problem.ingredients.point_force_shares is point_force_shares:
+        if is_ring(absorbers) and structure.problem.point_force_shares is point_force_shares:
             found = solve_ring(structure, absorbers)
         else:
             found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
