@@ -72,6 +72,7 @@ def plot_spectrum(record: Sampled, ax: Axes, found: Measures | None = None) -> A
     if found.band > 0:
         ax.axvline(found.band / 10.0**f, color=COLOURS["orange"], linewidth=0.9, linestyle="dashed", label="99 % of the energy below")
         ax.legend(loc="lower left")
+    ax.xaxis.set_major_formatter("{x:g}")  # 0.1, 1, 10 kHz: powers of ten beside a prefix have to be multiplied
     ax.set_xlabel(f"frequency ({PREFIXES[f]}Hz)")
     ax.set_ylabel("|P(f)| (Pa s)")
     return ax
