@@ -18,6 +18,7 @@ from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
 from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.reproduction import VARIANTS, reproduce, write
+from coaxshell.paper.reproduction import results as reading
 from coaxshell.paper.reproduction import run as running
 from coaxshell.paper.reproduction import work as working
 from coaxshell.paper.reproduction.cost import part_cost
@@ -43,7 +44,7 @@ def results(tmp_path_factory, small_fields):
     return reproduce(tmp_path_factory.mktemp("whole"), TINY, only=ONLY, film_suffix=None, workers=1)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def judged(runs, changed, scaled):
     """Return all claims judged, the corrected model's runs standing for every variant but one."""
     other = changed(lambda name, run: scaled(run, 2.0, "outer"))
@@ -79,12 +80,17 @@ def test_the_parts_hold_every_run_that_claims_and_figures_ask_for(runs, judged):
 
 
 def test_a_run_that_was_cut_off_ends_like_one_that_was_not(results, tmp_path_factory, monkeypatch):
+    """Of the whole only as much as shows it: two figures of fields, two of many runs, and the runs of these."""
     folder = tmp_path_factory.mktemp("cut")
+    chosen = {number: FIGURES[number] for number in ("3", "4", "6", "10")}
+    needed = {Part("figure", "3"), Part("figure", "4"), *(Part("runs", name) for name in ("of the presets", "of masses", "of dampings"))}
+    monkeypatch.setattr(reading, "FIGURES", chosen)
+    monkeypatch.setattr(running, "parts", lambda *given, **options: (part for part in parts(*given, **options) if part in needed))
     done = []
     carry_out = running.carry_out
 
     def until(job):
-        if len(done) == 6:
+        if len(done) == 3:
             raise KeyboardInterrupt
         done.append(job.part)
         return carry_out(job)
@@ -95,8 +101,10 @@ def test_a_run_that_was_cut_off_ends_like_one_that_was_not(results, tmp_path_fac
     assert not list(folder.glob("**/.*.part*"))
     monkeypatch.setattr(running, "carry_out", carry_out)
     whole = reproduce(folder, TINY, only=ONLY, film_suffix=None, workers=1)
-    assert whole.resumed == 6
-    assert [figure.png for figure in whole.figures] == [figure.png for figure in results.figures]
+    assert whole.resumed == 3
+    assert len(whole.seconds) == len(needed)
+    expected = [figure.png for figure in results.figures if figure.recipe.number in chosen]
+    assert [figure.png for figure in whole.figures] == expected
 
 
 def test_the_film_the_slips_and_the_estimate(tmp_path, monkeypatch):

@@ -6,6 +6,7 @@ import asyncio
 import itertools
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import pytest
 
@@ -69,19 +70,40 @@ def taking(size):
     return memory.held()
 
 
-def carried_out(story, **seconds):
-    """Return what a coroutine function finds with one worker that has started, under other limits than usual."""
+@contextmanager
+def shared_worker():
+    """Give what tells coroutine functions, one after another, with one worker, since it takes seconds to start."""
 
-    async def told():
+    async def made():
         crew = workers.Workers(1)
-        try:
-            await crew.submit(worker.ready).future  # takes seconds, and reports nothing
+        await crew.submit(worker.ready).future  # reports nothing meanwhile
+        return crew
+
+    async def closed(crew):
+        crew.close()
+
+    # In a thread of their own: the browser of other tests may have left a loop running in this one.
+    with ThreadPoolExecutor(1) as apart:
+        runner = asyncio.Runner()
+
+        def run(story, *arguments):
+            return apart.submit(lambda: runner.run(story(*arguments))).result()
+
+        def told(story, **seconds):
             with pytest.MonkeyPatch.context() as patch:
                 for name, value in seconds.items():
                     patch.setattr(limits, name, value)
-                return await story(crew)
-        finally:
-            crew.close()
+                return run(story, crew)
 
-    with ThreadPoolExecutor(1) as apart:  # the browser of other tests may have left a loop running in this thread
-        return apart.submit(lambda: asyncio.run(told())).result()
+        crew = run(made)
+        try:
+            yield told
+        finally:
+            run(closed, crew)
+            apart.submit(runner.close).result()
+
+
+def carried_out(story, **seconds):
+    """Return what a coroutine function finds with a worker of its own, under other limits than usual."""
+    with shared_worker() as told:
+        return told(story, **seconds)

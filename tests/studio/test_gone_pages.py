@@ -5,11 +5,17 @@ from __future__ import annotations
 import asyncio
 
 import pytest
-from asking import SMALL, carried_out, described, ended, reporting
+from asking import SMALL, described, ended, reporting, shared_worker
 
 from coaxshell.studio.jobs import CANCELLED, DONE, ENDED, RUNNING, Job, Jobs
 
 PAGE, OTHER = "page", "other"
+
+
+@pytest.fixture(scope="module")
+def carried_out():
+    with shared_worker() as told:
+        yield told
 
 
 def busy(jobs, kind, client=PAGE, seconds=20.0):
@@ -29,7 +35,7 @@ async def until(holds, seconds=60.0):
 
 
 @pytest.mark.parametrize("kind", ["solve", "field", "film"])
-def test_what_only_a_page_that_has_gone_would_show_is_stopped(kind):
+def test_what_only_a_page_that_has_gone_would_show_is_stopped(kind, carried_out):
     async def story(crew):
         jobs = Jobs(crew)
         running, waiting = busy(jobs, kind), busy(jobs, "field")
@@ -57,7 +63,7 @@ def is_another(jobs):
 
 
 @pytest.mark.parametrize("page", [comes_back, closes_one_of_two_windows, is_another])
-def test_jobs_go_on_when_their_page(page):
+def test_jobs_go_on_when_their_page(page, carried_out):
     async def story(crew):
         jobs = Jobs(crew)
         job = busy(jobs, "field", seconds=1.0)
@@ -68,7 +74,7 @@ def test_jobs_go_on_when_their_page(page):
     assert carried_out(story, GONE_SECONDS=0.05) == DONE
 
 
-def test_the_studies_of_a_program_that_never_watched_are_its_own():
+def test_the_studies_of_a_program_that_never_watched_are_its_own(carried_out):
     async def story(crew):
         jobs = Jobs(crew)
         study = busy(jobs, "sweep", "program", 0.0)
@@ -80,7 +86,7 @@ def test_the_studies_of_a_program_that_never_watched_are_its_own():
 
 
 @pytest.mark.parametrize("kind", ["sweep", "optimise"])
-def test_studies_go_on_and_another_page_takes_them_over(kind):
+def test_studies_go_on_and_another_page_takes_them_over(kind, carried_out):
     async def story(crew):
         jobs = Jobs(crew)
         study = busy(jobs, kind)
@@ -101,7 +107,7 @@ def test_studies_go_on_and_another_page_takes_them_over(kind):
     assert carried_out(story, GONE_SECONDS=0.05) == []  # it was cancelled
 
 
-def test_a_study_taken_over_by_a_page_that_vanishes_is_left_for_the_next():
+def test_a_study_taken_over_by_a_page_that_vanishes_is_left_for_the_next(carried_out):
     async def story(crew):
         jobs = Jobs(crew)
         study = busy(jobs, "sweep")

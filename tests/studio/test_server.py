@@ -208,7 +208,14 @@ def test_nothing_stays_of_a_server_that_was_ended_otherwise(tmp_path, monkeypatc
     environment = {**os.environ, "TMPDIR": str(tmp_path), "XDG_STATE_HOME": str(tmp_path / "state")}
     command = [sys.executable, "-m", "coaxshell", "studio", "--no-browser", "--port", "0"]
     places = tmp_path / f"coaxshell-studio-{os.getuid()}"
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) as process:
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # tests under nohup ignore it, and so would their children
+    ) as process:
         process.stdout.readline()
         (left,) = places.iterdir()
         (left / "upload.nc").write_bytes(b"half")
