@@ -14,8 +14,8 @@ from coaxshell.studies import Execution
 from coaxshell.studies.evaluation import Batch, Case, batches, evaluate
 from coaxshell.studies.executors import process_pool
 from coaxshell.studies.metrics import metrics_of
-from coaxshell.studies.paths import varied
 from coaxshell.studies.running import run_cases
+from coaxshell.studies.varied_fields import varied
 
 RESOLUTION = Settings(duration=5.0, time_step=4e-3, modes=60)
 ASKED = ["inner.peak_stress", "inner.rms_stress", "absorbers.mass"]

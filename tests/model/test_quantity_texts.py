@@ -12,7 +12,7 @@ from coaxshell.model.naming import suggestion
 from coaxshell.model.system import System
 from coaxshell.model.units import to_si
 from coaxshell.studies.optimisation.targets import targets_of
-from coaxshell.studies.paths import field_of
+from coaxshell.studies.varied_fields import field_of
 
 UNDERSTOOD = [
     ("6,5 mm", "length", 6.5e-3),

@@ -12,8 +12,8 @@ from coaxshell.studies import structures
 from coaxshell.studies.evaluation import Case, batches, evaluate, forget
 from coaxshell.studies.executors import WorkerDiedError, completed
 from coaxshell.studies.metrics import metrics_of
-from coaxshell.studies.paths import varied
 from coaxshell.studies.store import Store
+from coaxshell.studies.varied_fields import varied
 
 ASKED = ["inner.peak_stress", "outer.rms_stress", "absorbers.peak_force"]
 

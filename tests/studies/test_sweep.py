@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 
 import coaxshell as cx
-from coaxshell.studies.paths import Field, field_of
 from coaxshell.studies.span import Span
+from coaxshell.studies.varied_fields import Field, field_of
 
 STRESS = ["inner.peak_stress"]
 

@@ -15,8 +15,8 @@ from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
 from coaxshell.model.system import System
 from coaxshell.numerics.scalars import plain
-from coaxshell.studies.paths import Field, field_of
 from coaxshell.studies.span import Span
+from coaxshell.studies.varied_fields import Field, field_of
 
 Points = Literal["grid", "zip", "latin-hypercube", "sobol"]
 POINTS: tuple[Points, ...] = get_args(Points)

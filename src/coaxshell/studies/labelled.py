@@ -16,8 +16,8 @@ from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.paths import Field
 from coaxshell.studies.store import numerics
+from coaxshell.studies.varied_fields import Field
 
 CASE = "case"
 FAILURE, WARNINGS = "failure", "physics_warnings"

@@ -13,7 +13,7 @@ from pydantic import Field as Entry
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described, shown
 from coaxshell.model.paths import within
-from coaxshell.studies.paths import Field
+from coaxshell.studies.varied_fields import Field
 
 MOST_VALUES = 1_000_000
 """Values of one field."""

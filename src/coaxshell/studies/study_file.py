@@ -19,8 +19,8 @@ from coaxshell.model.toml_text import parsed
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design, design_of
 from coaxshell.studies.metrics import Metric, metrics_of
-from coaxshell.studies.paths import varied
 from coaxshell.studies.user_functions import UserCode
+from coaxshell.studies.varied_fields import varied
 
 MetricTexts = list[str] | dict[str, str]
 SweepParts = tuple[System, Design, tuple[Metric, ...], Settings]

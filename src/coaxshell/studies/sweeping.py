@@ -16,8 +16,8 @@ from coaxshell.studies.design import Design, Points, design_of
 from coaxshell.studies.execution import Execution, StudyKeywords, asked
 from coaxshell.studies.labelled import failures_text, labelled
 from coaxshell.studies.metrics import Metric, Metrics, metrics_of
-from coaxshell.studies.paths import varied
 from coaxshell.studies.running import run_study
+from coaxshell.studies.varied_fields import varied
 
 
 @showing(StudyKeywords, Settings, Execution)

@@ -19,7 +19,7 @@ from coaxshell.studies.design import Design, design_of
 from coaxshell.studies.evaluation import Outcome, evaluated, failure
 from coaxshell.studies.labelled import FAILURE, WARNINGS, labelled
 from coaxshell.studies.metrics import Metric, metric_names, metrics_of
-from coaxshell.studies.paths import varied
+from coaxshell.studies.varied_fields import varied
 from coaxshell.studio import limits, worker
 
 METRICS = ["inner.peak_stress", "outer.peak_stress"]

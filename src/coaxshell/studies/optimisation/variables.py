@@ -13,7 +13,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber
 from coaxshell.model.base import shown
 from coaxshell.model.system import System
-from coaxshell.studies.paths import Field, field_of, varied
+from coaxshell.studies.varied_fields import Field, field_of, varied
 
 EVERY = "absorbers[*]."
 MOST_LEVELS = 1_000_000

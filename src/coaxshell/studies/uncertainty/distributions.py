@@ -14,8 +14,8 @@ from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, to_si
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
-from coaxshell.studies.paths import Field, field_of, varied
 from coaxshell.studies.uncertainty.laws import ENTRIES, Distribution, LogNormal, Normal, Uniform, check, law_of
+from coaxshell.studies.varied_fields import Field, field_of, varied
 
 __all__ = ["Coordinate", "Distribution", "LogNormal", "Normal", "Uncertain", "Uniform", "coordinates_of", "uncertain_of", "unit_points"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import coaxshell as cx
-from coaxshell.studies.paths import field_of, varied
+from coaxshell.studies.varied_fields import field_of, varied
 
 BARE = cx.presets.load("bare")
 
