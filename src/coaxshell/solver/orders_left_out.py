@@ -206,7 +206,7 @@ def left_out(
         problem, lasts = (interface.saturating or structure).problem, beyond[:, 0] / grid.time[-1]
         actuators = actuators_of(problem, interface.asked, above, asked_above(problem, above, squares), lasts)
         if actuators:
-            above = SampledOrders.of(softened(problem, actuators), grid, above.orders)
+            above = SampledOrders.of(softened(problem, actuators), grid, above.orders, structure.shared)
             squares, change = moving(above)
             further = asked_above(problem, above, squares)
             actuators = actuators_of(problem, interface.asked, above, further, lasts) or actuators

@@ -71,19 +71,22 @@ class StructureSpectra:
     ) -> None:
         self.problem, self.grid, self.max_order = problem, grid, max_order
         self.forced = forced or UnitResponse()
-        self._progress, self._shared = progress, shared
+        self._progress, self.shared = progress, shared
+        self._linear: LinearSpectra | None = None
 
-    @cached_property
+    @property
     def linear(self) -> LinearSpectra:
         """Transforms of the response without absorbers."""
-        return linear_spectra(self.problem, self.grid, self.max_order, self._progress, shared=self._shared)
+        if self._linear is None:
+            self._linear = linear_spectra(self.problem, self.grid, self.max_order, self._progress, shared=self.shared)
+        return self._linear
 
-    def _responses(self) -> tuple[ComplexArray, ComplexArray]:
-        """Return compliance and V/W, made in one pass with the linear response if neither is known."""
+    def unit_pressures(self) -> tuple[ComplexArray, ComplexArray]:
+        """Return compliance and V/W, made in one pass with the response to the sources where none of them is known."""
         forced = self.forced
         if forced.compliance is None or forced.ratio is None:
-            made = linear_spectra(self.problem, self.grid, self.max_order, self._progress, compliance=True, shared=self._shared)
-            self.__dict__.setdefault("linear", made)
+            made = linear_spectra(self.problem, self.grid, self.max_order, self._progress, compliance=True, shared=self.shared)
+            self._linear = self._linear or made
             forced.compliance, forced.ratio = made.compliance, made.ratio
         assert forced.compliance is not None
         assert forced.ratio is not None
@@ -92,12 +95,12 @@ class StructureSpectra:
     @property
     def compliance(self) -> ComplexArray:
         """Compliance C_ij, W of shell i per modal pressure on shell j, shape (shells, shells, M + 1, nodes)."""
-        return self._responses()[0]
+        return self.unit_pressures()[0]
 
     @property
     def tangential_ratio(self) -> ComplexArray:
         """V/W, shape (shells, M + 1, nodes)."""
-        return self._responses()[1]
+        return self.unit_pressures()[1]
 
     @cached_property
     def linear_displacement(self) -> FloatArray:
@@ -144,26 +147,28 @@ class StructureSpectra:
         if self.forced.open_loop is None:
             self.forced.open_loop = UnitResponse()
         problem, shared = self.problem.open_loop, self.forced.open_loop
-        return StructureSpectra(problem, self.grid, self.max_order, self._progress, shared=self._shared, forced=shared)
+        return StructureSpectra(problem, self.grid, self.max_order, self._progress, shared=self.shared, forced=shared)
 
     @property
     def kernels_with_voltage(self) -> KernelTable:
         """Step weights of the velocities without feedback, with the voltages asked for on the controlled shells as further outputs."""
-        if self.forced.kernels_with_voltage is None:
+        return self._controlled_kernels()[0]
+
+    @property
+    def sensor_rates(self) -> FloatArray:
+        """Step weights of modal pressures in the rates of the controlled shells' sensors, without feedback."""
+        return self._controlled_kernels()[1]
+
+    def _controlled_kernels(self) -> tuple[KernelTable, FloatArray]:
+        """Return the kernels with voltages and the sensors' rates, made together."""
+        if self.forced.kernels_with_voltage is None or self.forced.sensor_rates is None:
             velocity, rates = self.open_loop.step_weights(self.controlled)
             self.forced.sensor_rates = rates
             voltage = voltage_weights(self.problem, rates, self.controlled, self.grid.time_step)
             both = np.concatenate([velocity, voltage])
             self.forced.kernels_with_voltage = KernelTable(both)
             self.open_loop.forced.kernels = KernelTable(both[: velocity.shape[0]])
-        return self.forced.kernels_with_voltage
-
-    @property
-    def sensor_rates(self) -> FloatArray:
-        """Step weights of modal pressures in the rates of the controlled shells' sensors, without feedback."""
-        self.kernels_with_voltage  # noqa: B018 - made together
-        assert self.forced.sensor_rates is not None
-        return self.forced.sensor_rates
+        return self.forced.kernels_with_voltage, self.forced.sensor_rates
 
     @cached_property
     def voltage_without_actuators(self) -> FloatArray:

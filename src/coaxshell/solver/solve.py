@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -88,14 +87,17 @@ class Prepared:
     ) -> None:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
-        self._stopwatch = Stopwatch()
+        self._stopwatch, self._notes = Stopwatch(), list[str]()
+        self._orders_above: SampledOrders | None = None
         self._progress, self._shared, self._asked = progress, shared, settings
         self.problem = system if isinstance(system, Problem) else dimensionless(system)
+        if like is not None and like.differs_by_absorbers(self.problem):
+            self._adopt(like)
+            return
         grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
-        self._notes: list[str] = []
         require_room(self.problem, settings, retunable=shared is not None)
         order = self._order(grid, settings)
-        self.settings = replace(settings, modes=order)
+        self.settings: Settings = replace(settings, modes=order)
         if settings.modes == "auto":
             require_room(self.problem, self.settings, retunable=shared is not None)
         forced = like.structure.forced if like is not None and like.same_structure(self.problem, order) else None
@@ -103,13 +105,22 @@ class Prepared:
             require_stable(self.problem, order, settings.duration, shared)
             self._stopwatch.lap("stability of the feedback")
         self.structure: StructureSpectra = StructureSpectra(self.problem, grid, order, progress, shared=shared, forced=forced)
-        self._orders_above: SampledOrders | None = None
+
+    def _adopt(self, like: Prepared) -> None:
+        """Take over everything from one that differs at most in its absorbers."""
+        self.settings, self.structure = like.settings, like.structure
+        self._notes, self._orders_above = like._notes, like._orders_above
 
     def same_structure(self, problem: Problem, max_order: int) -> bool:
         """Return whether a problem differs at most in its sources, absorbers and field limits."""
         own = self.problem
         same = all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "point_force_shares"))
         return same and max_order == self.structure.max_order
+
+    def differs_by_absorbers(self, problem: Problem) -> bool:
+        """Return whether a problem differs at most in its absorbers."""
+        same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
+        return same and problem.sources == self.problem.sources and self.same_structure(problem, self.structure.max_order)
 
     def retuned(self, system: System | Problem) -> Prepared:
         """Return what is prepared for a changed system, sharing what is unchanged; the first call makes what later ones share.
@@ -121,13 +132,7 @@ class Prepared:
         """
         if self._shared is None:
             self._shared = shared_parts()
-        problem = system if isinstance(system, Problem) else dimensionless(system)
-        same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
-        if same and problem.sources == self.problem.sources and self.same_structure(problem, self.structure.max_order):
-            twin = copy(self)
-            twin.problem, twin._stopwatch = problem, Stopwatch()
-            return twin
-        return Prepared(problem, self._asked, self._progress, shared=self._shared, like=self)
+        return Prepared(system, self._asked, self._progress, shared=self._shared, like=self)
 
     def _order(self, grid: LaplaceGrid, settings: Settings) -> int:
         order, notes = resolve_modes(self.problem, grid, settings, self._shared)
@@ -168,7 +173,7 @@ class Prepared:
         saturate = system.control is not None and system.control.saturation
         if system.absorber_list or saturate:
             passive = structure.open_loop if saturate else structure
-            passive.compliance  # noqa: B018 - one pass for response and compliance together
+            passive.unit_pressures()  # one pass for the sources and for them
             stopwatch.lap("modal system at all Laplace nodes")
             links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
             linked = solve_linked(structure, links, progress, saturate=saturate)
