@@ -19,11 +19,11 @@ from coaxshell.errors import InputError
 from coaxshell.export import export_csv, export_mat, export_paraview
 from coaxshell.numerics import scratch
 from coaxshell.numerics.netcdf import write_netcdf
-from coaxshell.paper.store import Store as Pieces
 from coaxshell.plotting import FieldView, save_figure
 from coaxshell.plotting.film import save_film
 from coaxshell.plotting.style import new_figure
 from coaxshell.studies import Optimum
+from coaxshell.studies.store import Store as Pieces
 from coaxshell.verification.files import write_report
 from coaxshell.verification.suite import Report
 

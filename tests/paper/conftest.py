@@ -10,8 +10,8 @@ import pytest
 import coaxshell as cx
 from coaxshell.paper import Runs, figure_recipe
 from coaxshell.paper.known_runs import CORRECTED
-from coaxshell.paper.store import Store
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.store import Store
 
 TINY = Settings(duration=2.5, time_step=1e-2, modes=16)
 SMALL = Settings(duration=2.5, time_step=1e-2, modes=16)

@@ -12,8 +12,8 @@ from coaxshell.errors import InputError
 from coaxshell.paper.claims import claims, judge
 from coaxshell.paper.claims.systems import preset
 from coaxshell.paper.known_runs import CORRECTED, Runs, packed, unpacked
-from coaxshell.paper.store import Store
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.store import Store
 
 SMALL = Settings(duration=2.5, time_step=1e-2, modes=16)
 BY_NAME = {claim.name: claim for claim in claims()}

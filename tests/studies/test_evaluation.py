@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.errors import InputError
+from coaxshell.response.storage import info
 from coaxshell.studies import structures
 from coaxshell.studies.evaluation import Case, batches, evaluate, forget
 from coaxshell.studies.executors import WorkerDiedError, completed
 from coaxshell.studies.metrics import metrics_of
-from coaxshell.studies.store import Store
+from coaxshell.studies.store import Store, StudyStore
 from coaxshell.studies.varied_fields import varied
 
 ASKED = ["inner.peak_stress", "outer.rms_stress", "absorbers.peak_force"]
@@ -68,18 +70,18 @@ def test_a_refused_case_is_nan_with_its_reason(hybrid, resolution):
 
 def test_a_store_keeps_outcomes_to_the_last_bit(hybrid, cases, resolution, tmp_path):
     metrics = metrics_of(ASKED, hybrid)
-    store = Store(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics)
+    store = StudyStore(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics)
     for number, outcome in outcomes(batches(cases, metrics, resolution, 1)).items():
         key = store.key(cases[number].system, resolution)
         assert store.load(key) is None
         store.save(key, outcome)
         assert store.load(key).values == outcome.values
     with pytest.raises(cx.InputError, match="already holds 6 cases of this study; use resume"):
-        Store(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics)
+        StudyStore(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics)
     with pytest.raises(cx.InputError, match="holds another study: its scenario differ"):
-        Store(tmp_path / "store", {"scenario": 1}, metrics, resume=True)
+        StudyStore(tmp_path / "store", {"scenario": 1}, metrics, resume=True)
     (tmp_path / "store" / f"{key}.json").write_text("")  # as after a power cut
-    assert Store(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics, resume=True).load(key) is None
+    assert StudyStore(tmp_path / "store", {"scenario": hybrid.canonical()}, metrics, resume=True).load(key) is None
 
 
 def square(x):
@@ -98,3 +100,31 @@ def test_a_pool_survives_the_death_of_its_workers():
     assert isinstance(found.pop(5), WorkerDiedError)
     assert isinstance(found.pop(6), ValueError)
     assert found == {x: x * x for x in range(12) if x not in (5, 6)}
+
+
+def test_pieces_with_and_without_arrays(tmp_path):
+    store = Store(tmp_path / "kept")
+    store.put("plain", {}, {"y": [1, None]})
+    store.put("arrays", {"x": np.arange(3.0)}, {"y": 2.5})
+    again = Store(tmp_path / "kept")
+    assert again.get("plain") == ({}, {"y": [1, None]})
+    arrays, values = again.get("arrays")
+    assert (arrays["x"].tolist(), values) == ([0.0, 1.0, 2.0], {"y": 2.5})
+    assert ("plain" in again, "arrays" in again, "none" in again) == (True, True, False)
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match=r"^output: .* cannot be used"):
+        Store(tmp_path / "file" / "kept", where="output")
+
+
+def test_the_numerics_version_is_one(tmp_path, quick):
+    from coaxshell.numerics.identity import NUMERICS_VERSION, numerics, origin
+    from coaxshell.paper.known_runs import key_of
+    from coaxshell.studies.store import digest
+
+    assert numerics().endswith(f"numerics {NUMERICS_VERSION}")
+    assert origin("paper/slips") != origin()
+    assert key_of("run") == digest([origin("paper/observed.py", "paper/fields.py", "paper/slips"), "run"])
+    swept = cx.sweep("bare", {"source.peak_pressure": [1e4]}, workers=1, **quick)
+    assert swept.attrs["numerics"] == numerics()
+    path = cx.simulate("bare", **quick).save(tmp_path / "run.nc")
+    assert f"numerics {NUMERICS_VERSION}, " in info(path)

@@ -11,11 +11,24 @@ from pathlib import Path
 import coaxshell
 from coaxshell._version import __version__
 
+NUMERICS_VERSION = 6
+"""Raised whenever a change alters the numbers that a run gives, so that kept results of another version are told from ours."""
+
 NUMERICAL = ("errors.py", "limits.py", "numerics", "model", "structure", "acoustics", "solver", "response", "studies")
 """Parts of the package from which numbers come, but for the paper's."""
 
 LIBRARIES = ("numpy", "scipy")
 """What the last digits of numbers depend on beside our own code."""
+
+
+def numerics() -> str:
+    """Return the version of the numerics, for a person."""
+    return f"{__version__}, numerics {NUMERICS_VERSION}"
+
+
+def origin(*further: str) -> str:
+    """Return all that kept numbers depend on beside what they are of, in words: version, code (*further* parts too), key libraries."""
+    return f"{numerics()}, code {package_digest(*further)}, {libraries()}"
 
 
 @cache

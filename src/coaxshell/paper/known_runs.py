@@ -8,18 +8,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coaxshell.numerics.identity import origin
 from coaxshell.numerics.progress import Progress
 from coaxshell.paper.fields import Fields, fields_of
 from coaxshell.paper.observed import Observed
 from coaxshell.paper.shared_runs import FEWEST, Share, Solver, in_turn, shared_out
-from coaxshell.paper.store import Store, key_of
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.store import Store, digest
 from coaxshell.studies.structures import solve_each
 
 if TYPE_CHECKING:
     from coaxshell.model import System
 
 CORRECTED = "corrected"
+_FURTHER = ("paper/observed.py", "paper/fields.py", "paper/slips")
+"""What kept numbers come from beside the solver and all that it builds on."""
+
+
+def key_of(*parts: Any) -> str:
+    """Return the name of a kept piece: the hash of what it is of and of the code that its numbers come from."""
+    return digest([origin(*_FURTHER), *parts])
 
 
 class NoFieldsError(Exception):

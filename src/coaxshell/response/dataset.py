@@ -16,6 +16,7 @@ import scipy
 from coaxshell._version import __version__
 from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.identity import NUMERICS_VERSION
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, time_coordinates
 from coaxshell.solver.solution import CAUSES, QUANTITIES, ModalSolution
@@ -89,6 +90,7 @@ def _attributes(solution: ModalSolution) -> dict[str, Any]:
         "source": f"coaxshell {__version__}",
         "coaxshell_format_version": FORMAT_VERSION,
         "coaxshell_version": __version__,
+        "numerics_version": NUMERICS_VERSION,
         "numpy_version": np.__version__,
         "scipy_version": scipy.__version__,
         "python_version": platform.python_version(),

@@ -107,7 +107,8 @@ def _judge_format(file: ForeignFile, path: str | Path) -> None:
 
 def _described(file: ForeignFile) -> str:
     sizes = restored.sizes_of(file)
-    versions = ", ".join(f"{part} {file.attribute(f'{part}_version')}" for part in ("coaxshell", "numpy", "scipy", "python"))
+    parts = {part: file.attribute(f"{part}_version") for part in ("coaxshell", "numerics", "numpy", "scipy", "python")}
+    versions = ", ".join(f"{part} {version}" for part, version in parts.items() if version is not None)
     settings = ", ".join(f"{key} {value}" for key, value in restored.settings_of(file).items())
     dimensions = {name: ", ".join(f"{dim} {sizes[dim]}" for dim in dims) for name, (dims, _, _) in ARRAYS.items() if name in file}
     return "\n".join(

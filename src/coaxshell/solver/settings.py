@@ -19,8 +19,6 @@ MAX_MODES = 2000
 MAX_REFINEMENT = 64
 MAX_STEPS = 2_000_000
 ENGINES = ("spectral", "direct")
-NUMERICS_VERSION = 6
-"""Raised whenever a change alters the numbers that a run gives, so that kept results of another version are told from ours."""
 
 
 @dataclass(frozen=True)

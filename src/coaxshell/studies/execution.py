@@ -17,7 +17,7 @@ from coaxshell.solver.settings import Settings, SettingsKeywords, whole
 from coaxshell.studies.cluster import dask_executor
 from coaxshell.studies.executors import MAX_WORKERS, capacity
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.store import Store
+from coaxshell.studies.store import StudyStore
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,9 @@ class Execution:
         """How many cases can be in work at a time."""
         return capacity(self.executor, self.workers)
 
-    def opened(self, parts: Mapping[str, Any], metrics: Sequence[Metric], where: str = "store") -> Store | None:
+    def opened(self, parts: Mapping[str, Any], metrics: Sequence[Metric], where: str = "store") -> StudyStore | None:
         """Return the store of a study, told from others by its *parts*; None if nothing is to be kept. Errors call it *where*."""
-        return None if self.store is None else Store(Path(self.store), parts, metrics, resume=self.resume, where=where)
+        return None if self.store is None else StudyStore(Path(self.store), parts, metrics, resume=self.resume, where=where)
 
     @contextmanager
     def started(self) -> Iterator[Execution]:

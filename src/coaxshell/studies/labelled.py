@@ -11,12 +11,12 @@ import numpy as np
 
 from coaxshell._version import __version__
 from coaxshell.model.system import System
+from coaxshell.numerics.identity import numerics
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design
 from coaxshell.studies.evaluation import Outcome
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.store import numerics
 from coaxshell.studies.varied_fields import Field
 
 CASE = "case"

@@ -17,7 +17,7 @@ from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate
 from coaxshell.studies.execution import Execution
 from coaxshell.studies.executors import completed, process_pool
 from coaxshell.studies.metrics import Metric
-from coaxshell.studies.store import Store
+from coaxshell.studies.store import StudyStore
 from coaxshell.studies.user_functions import OtherCodeError
 
 
@@ -44,7 +44,7 @@ def run_cases(
     metrics: tuple[Metric, ...],
     resolution: Settings,
     execution: Execution,
-    store: Store | None = None,
+    store: StudyStore | None = None,
     *,
     keep: bool = False,
 ) -> list[Outcome]:
@@ -57,7 +57,7 @@ def run_cases(
     resolution : Settings
     execution : Execution
         Its executor or its workers (by default one a core, or 1 where a function stands in a notebook), and whom to tell of progress.
-    store : Store, optional
+    store : StudyStore, optional
         Where finished cases are kept, and looked for first.
     keep : bool
         Leave the last structure's kernels in this process for the next call; :func:`coaxshell.studies.evaluation.forget` ends that.
@@ -104,11 +104,11 @@ class WorkerPool:
     execution : Execution
         With its cluster, if there is one, reached.
     metrics : tuple of Metric
-    store : Store, optional
+    store : StudyStore, optional
         Where finished cases are kept, and looked for first.
     """
 
-    def __init__(self, execution: Execution, metrics: tuple[Metric, ...], store: Store | None = None) -> None:
+    def __init__(self, execution: Execution, metrics: tuple[Metric, ...], store: StudyStore | None = None) -> None:
         self._given, self._metrics, self._store = _in_reach(replace(execution, progress=None), metrics), metrics, store
         self._stack = ExitStack()
         self._pool: Executor | None = None
@@ -137,7 +137,7 @@ class WorkerPool:
         return outcomes
 
 
-def _look_up(keys: Mapping[int, str], store: Store | None, outcomes: dict[int, Outcome]) -> None:
+def _look_up(keys: Mapping[int, str], store: StudyStore | None, outcomes: dict[int, Outcome]) -> None:
     """Add what the store holds of some cases to the outcomes."""
     for number, key in keys.items():
         found = None if store is None else store.load(key)
@@ -145,7 +145,9 @@ def _look_up(keys: Mapping[int, str], store: Store | None, outcomes: dict[int, O
             outcomes[number] = found
 
 
-def _still_needed(planned: Sequence[Batch], store: Store | None, keys: dict[int, str], outcomes: dict[int, Outcome]) -> Iterator[Batch]:
+def _still_needed(
+    planned: Sequence[Batch], store: StudyStore | None, keys: dict[int, str], outcomes: dict[int, Outcome]
+) -> Iterator[Batch]:
     """Yield batches without the cases that another writer has finished in the meantime."""
     for batch in planned:
         _look_up({case.number: keys[case.number] for case in batch.cases if case.number in keys}, store, outcomes)

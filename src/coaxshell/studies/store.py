@@ -1,7 +1,7 @@
-"""A folder that keeps every finished case of a study: safe to kill at any moment, safe for several writers.
+"""Folders that keep finished work: safe to kill at any moment, safe for several writers.
 
-One file a case, named by the hash of all that its numbers depend on, written to a temporary name and renamed; ``study.json`` says
-whose cases they are. Failed cases lie beside as ``HASH.failed.json``.
+One file a piece, named by the hash of all that its numbers depend on, written to a temporary name and renamed. In the folder of a
+study ``study.json`` says whose cases they are; failed cases lie beside the others as ``HASH.failed.json``.
 """
 
 from __future__ import annotations
@@ -9,32 +9,26 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from coaxshell._version import __version__
+import numpy as np
+import numpy.typing as npt
+
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
-from coaxshell.numerics.files import reason, write_text
-from coaxshell.numerics.identity import libraries, package_digest
+from coaxshell.numerics.files import reason, replacing, write_text
+from coaxshell.numerics.identity import origin
 from coaxshell.numerics.scratch import reclaim, scratch
-from coaxshell.solver.settings import NUMERICS_VERSION, Settings
+from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Outcome, failure
 from coaxshell.studies.metrics import Metric
 
 MANIFEST = "study.json"
 FORMAT_VERSION = 1
-
-
-def numerics() -> str:
-    """Return the version of the numerics, for a person."""
-    return f"{__version__}, numerics {NUMERICS_VERSION}"
-
-
-def origin() -> str:
-    """Return all that a case's numbers depend on beside its study: version, code and key libraries, in words."""
-    return f"{numerics()}, code {package_digest()}, {libraries()}"
+Array = npt.NDArray[Any]
 
 
 def digest(data: Any) -> str:
@@ -50,6 +44,58 @@ def case_key(system: System, metrics: Sequence[Metric], resolution: Settings) ->
 
 
 class Store:
+    """Pieces of finished work in a folder: arrays by name, and a table of plain values each.
+
+    Parameters
+    ----------
+    folder : Path
+        Made if it is not there.
+    where : str
+        What errors call it.
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written to.
+    """
+
+    def __init__(self, folder: Path, where: str = "store") -> None:
+        self.folder, self._where = Path(folder), where
+        try:
+            self._open()
+        except OSError as error:
+            problem = f"{str(self.folder)!r} cannot be used ({reason(error)})"
+            raise InputError(where, problem, "give a folder that you may write to") from None
+
+    def _open(self) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        reclaim(self.folder)
+
+    def get(self, key: str) -> tuple[dict[str, Array], dict[str, Any]] | None:
+        """Return the arrays and the values of a piece; None if it is not there or cannot be read."""
+        values = _read(self.folder / f"{key}.json")
+        if values is not None:
+            return {}, values
+        try:
+            with (self.folder / f"{key}.npz").open("rb") as file, np.load(file) as stored:
+                arrays = {name: stored[name] for name in stored.files if name != "values"}
+                return arrays, json.loads(str(stored["values"]))
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+            return None
+
+    def put(self, key: str, arrays: Mapping[str, Array], values: Mapping[str, Any]) -> None:
+        """Keep a piece; InputError if there is no room. Cut short by a power cut, it counts as not there."""
+        if not arrays:
+            write_text(self.folder / f"{key}.json", json.dumps(values), self._where, durable=False)
+            return
+        with replacing(self.folder / f"{key}.npz", self._where, durable=False) as made:
+            np.savez(made, allow_pickle=False, values=np.array(json.dumps(values)), **arrays)
+
+    def __contains__(self, key: str) -> bool:
+        return any((self.folder / f"{key}{suffix}").is_file() for suffix in (".json", ".npz"))
+
+
+class StudyStore(Store):
     """The cases of one study in a folder.
 
     Parameters
@@ -74,38 +120,33 @@ class Store:
     def __init__(
         self, folder: Path, study: Mapping[str, Any], metrics: Sequence[Metric], *, resume: bool = False, where: str = "store"
     ) -> None:
-        self.folder, self.metrics, self._where = Path(folder), tuple(metrics), where
-        manifest = {"format": FORMAT_VERSION, "numerics": origin(), "study": {key: digest(part) for key, part in study.items()}}
-        try:
-            self._open({**manifest, "description": dict(study)}, resume=resume)
-        except OSError as error:
-            raise InputError(
-                where, f"{str(self.folder)!r} cannot be used ({reason(error)})", "give a folder that you may write to"
-            ) from None
+        self.metrics, self._resume = tuple(metrics), resume
+        parts = {key: digest(part) for key, part in study.items()}
+        self._manifest: dict[str, Any] = {"format": FORMAT_VERSION, "numerics": origin(), "study": parts, "description": dict(study)}
+        super().__init__(folder, where)
 
-    def _open(self, manifest: dict[str, Any], *, resume: bool) -> None:
+    def _open(self) -> None:
         path = self.folder / MANIFEST
         if self.folder.is_dir() and not path.is_file() and any(not name.name.startswith(".") for name in self.folder.iterdir()):
             raise InputError(self._where, f"{str(self.folder)!r} holds something else than a study", "give an empty or a new folder")
-        self.folder.mkdir(parents=True, exist_ok=True)
-        reclaim(self.folder)
+        super()._open()
         if path.is_file():
-            self._same(_read(path), manifest)
-            if not resume:
+            self._same(_read(path))
+            if not self._resume:
                 kept = sum(1 for _ in self.folder.glob("*.json")) - 1
                 remedy = "use resume (--resume) to go on with it, or remove it"
                 raise InputError(self._where, f"{str(self.folder)!r} already holds {kept} cases of this study", remedy)
             return
         with scratch(self.folder, sweep=False) as place:
             made = place / MANIFEST
-            made.write_text(json.dumps(manifest, indent=1), encoding="utf-8")
+            made.write_text(json.dumps(self._manifest, indent=1), encoding="utf-8")
             try:
                 os.link(made, path)  # fails if another writer was first, where a rename would not
             except FileExistsError:
-                self._same(_read(path), manifest)
+                self._same(_read(path))
 
-    def _same(self, found: dict[str, Any] | None, ours: dict[str, Any]) -> None:
-        name, another = str(self.folder), "give another folder, or remove this one"
+    def _same(self, found: dict[str, Any] | None) -> None:
+        name, another, ours = str(self.folder), "give another folder, or remove this one", self._manifest
         if found is None or "study" not in found:
             raise InputError(self._where, f"{name!r} has a damaged {MANIFEST}", another)
         if found.get("format") != FORMAT_VERSION or found.get("numerics") != ours["numerics"]:
@@ -122,12 +163,12 @@ class Store:
 
     def load(self, key: str) -> Outcome | None:
         """Return the outcome of a case, None if it is not there. Accidents count as not there: they are tried again."""
-        data = _read(self.folder / f"{key}.json")
-        if data is not None and set(data.get("values", ())) == {metric.name for metric in self.metrics}:
+        _, data = self.get(key) or ({}, {})
+        if set(data.get("values", ())) == {metric.name for metric in self.metrics}:
             values = tuple(float(data["values"][metric.name]) for metric in self.metrics)
             return Outcome(values, warnings=tuple(data.get("warnings", ())), seconds=float(data.get("seconds", 0.0)))
-        failed = _read(self.folder / f"{key}.failed.json")
-        if failed is not None and failed.get("expected"):
+        _, failed = self.get(f"{key}.failed") or ({}, {})
+        if failed.get("expected"):
             return failure(self.metrics, str(failed["reason"]), seconds=float(failed.get("seconds", 0.0)))
         return None
 
@@ -135,20 +176,17 @@ class Store:
         """Keep the outcome of a case; InputError if there is no room."""
         data: dict[str, Any] = {"seconds": outcome.seconds}
         if outcome.failed:
-            data |= {"reason": outcome.reason, "expected": outcome.expected}
-        else:
-            named = {metric.name: value for metric, value in zip(self.metrics, outcome.values, strict=True)}
-            data |= {"values": named, "warnings": list(outcome.warnings)}
-        path = self.folder / (f"{key}.failed.json" if outcome.failed else f"{key}.json")
-        write_text(path, json.dumps(data), self._where, durable=False)  # cut short by a power cut, it counts as not there
-        if not outcome.failed:
-            (self.folder / f"{key}.failed.json").unlink(missing_ok=True)  # an accident that has been made good
+            self.put(f"{key}.failed", {}, data | {"reason": outcome.reason, "expected": outcome.expected})
+            return
+        named = {metric.name: value for metric, value in zip(self.metrics, outcome.values, strict=True)}
+        self.put(key, {}, data | {"values": named, "warnings": list(outcome.warnings)})
+        (self.folder / f"{key}.failed.json").unlink(missing_ok=True)  # an accident that has been made good
 
 
 def _read(path: Path) -> dict[str, Any] | None:
     """Return the table of a JSON file; None if it is not there or cut short (after a power cut a new file may be empty)."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, ValueError):
+    except (OSError, ValueError):
         return None
     return data if isinstance(data, dict) else None

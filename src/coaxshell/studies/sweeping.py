@@ -63,7 +63,7 @@ def sweep(
     Raises
     ------
     InputError
-        Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``, ``Store``.
+        Anything wrong with the study, before its first case; see :func:`coaxshell.studies.design.design_of`, ``metrics_of``.
     """
     system = as_system(system)
     resolution, execution = asked(system, keywords)

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-import signal
-import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from multiprocessing import parent_process
-from multiprocessing.process import BaseProcess
 from typing import Any, NamedTuple
 
 from threadpoolctl import ThreadpoolController
@@ -20,6 +16,7 @@ from coaxshell.model import System
 from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
 from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.executors import begin_worker
 from coaxshell.studio import limits, memory
 
 STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
@@ -51,20 +48,10 @@ class _Here:
 
 def begin(board: Any, stage: Any, niceness: int) -> None:
     """Set up a worker process: Ctrl-C and a closed terminal are the server's to handle, and a worker whose server is gone goes too."""
-    for name in ("SIGINT", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    begin_worker("SIGHUP")
     _Here.board, _Here.stage = board, stage
     os.nice(niceness)
     ThreadpoolController().limit(limits=1, user_api="blas")  # the workers share the cores
-    parent = parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
-
-
-def _end_with(parent: BaseProcess) -> None:
-    parent.join()
-    os._exit(0)
 
 
 def ready() -> int:

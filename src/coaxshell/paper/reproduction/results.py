@@ -15,8 +15,8 @@ from coaxshell.paper.known_runs import CORRECTED
 from coaxshell.paper.recipes import FigureRecipe
 from coaxshell.paper.reproduction.plan import VARIANTS, Part
 from coaxshell.paper.reproduction.work import picture, runs_of
-from coaxshell.paper.store import Store
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.store import Store
 
 if TYPE_CHECKING:
     from coaxshell.paper.recipes import StudyRecipe

@@ -13,9 +13,9 @@ from coaxshell.paper.reproduction.cost import require_room
 from coaxshell.paper.reproduction.plan import Part, parts
 from coaxshell.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims
 from coaxshell.paper.reproduction.work import Job, carry_out
-from coaxshell.paper.store import Store
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.executors import completed, worker_count
+from coaxshell.studies.store import Store
 
 FINISHED = "parts"
 """Folder, within that of the report, of finished parts."""

@@ -16,11 +16,11 @@ from coaxshell.errors import PhysicsWarning
 from coaxshell.paper import cases
 from coaxshell.paper.claims import systems
 from coaxshell.paper.figures import FIGURES
-from coaxshell.paper.known_runs import Runs
+from coaxshell.paper.known_runs import Runs, key_of
 from coaxshell.paper.recipes import FigureRecipe
 from coaxshell.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups
-from coaxshell.paper.store import Store, key_of
 from coaxshell.solver.settings import Settings
+from coaxshell.studies.store import Store
 from coaxshell.studies.threads import one_blas_thread
 
 Piece = tuple[dict[str, Any], dict[str, Any]]

@@ -15,6 +15,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.prefixes import against
 from coaxshell.model.system import System
 from coaxshell.numerics.files import replacing_folder
+from coaxshell.numerics.identity import numerics
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.summary_text import aligned
 from coaxshell.solver.settings import Settings
@@ -22,7 +23,6 @@ from coaxshell.studies.optimisation.confirmation import Confirmation
 from coaxshell.studies.optimisation.search import Candidate, non_dominated
 from coaxshell.studies.optimisation.targets import Targets
 from coaxshell.studies.optimisation.variables import Space
-from coaxshell.studies.store import numerics
 
 OPTIMUM_PARTS = ("best.toml", "optimum.json", "history.csv", "front")
 """What a saved optimum holds."""
