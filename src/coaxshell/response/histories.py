@@ -109,9 +109,11 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
         values = combined(solution, shell, stress_gain_of(solution, shell), theta)
         long_name = ""
     else:
-        z = arguments.depth_of(wall.faces, depth)
+        scales = solution.problem.scales
+        inner, outer = (scales.length * face for face in wall.faces)
+        z = arguments.depth_of((inner, outer), depth)
         values = combined(solution, shell, stress_gain_of(solution, shell, z), theta)
-        per_volt = wall.control_stress(z)
+        per_volt = scales.pressure * wall.control_stress(z / scales.length)
         if per_volt and wall.gains is not None:
             values = values + per_volt * actuator_values(solution, shell, theta)
         long_name = f"hoop stress at {z:g} m outward of the mid-surface"

@@ -43,7 +43,9 @@ def tangential_gain(solution: ModalSolution) -> Gain:
 
 def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None) -> Gain:
     """Return the gain of the hoop stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5)."""
-    return elastic_wall(solution.problem, shell).stress_gain(orders(solution), depth)
+    scales = solution.problem.scales
+    gain = elastic_wall(solution.problem, shell).stress_gain(orders(solution), None if depth is None else depth / scales.length)
+    return Gain(scales.pressure * gain.v, scales.pressure * gain.w)
 
 
 def voltage_gain(solution: ModalSolution, shell: int, role: str = "sensor") -> Gain:

@@ -15,7 +15,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.structure.section import Section
 from coaxshell.structure.shell_model import Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
-from coaxshell.structure.stress import control_stress, design_stress_gain, stress_gain, wall_point
+from coaxshell.structure.stress import WallPoint, control_stress, design_stress_gain, stress_gain, wall_point
 from coaxshell.structure.thin import bending_strain, open_circuit_stiffness, potential_gain, wall_stiffness
 
 THIN_SHELL_LIMIT = 0.1
@@ -84,22 +84,25 @@ class ThinWall(ShellModel):
         actuator = self.section.layer("actuator")
         if actuator is None:
             return super().voltage_limit(field)
-        return (field if field is not None else actuator.field_limit) * actuator.thickness
+        return (actuator.field_limit if field is None else field / self.length) * actuator.thickness
 
     def stress_gain(self, orders: FloatArray, depth: float | None = None) -> Gain:
         """Return the hoop stress of the core at the mid-surface (Eq. 22), or at a depth (Eqs. A.4, A.5)."""
-        section = self.section
-        gain = design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, wall_point(section, depth))
-        return Gain(self.length * gain.v, self.length * gain.w)
+        section, factor = self.section, self.length / self.pressure
+        gain = design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, self._point(depth))
+        return Gain(factor * gain.v, factor * gain.w)
 
     def control_stress(self, depth: float) -> float:
         """Return -e32/t within the actuator, 0 elsewhere."""
-        return control_stress(wall_point(self.section, depth))
+        return control_stress(self._point(depth)) / self.pressure
+
+    def _point(self, depth: float) -> WallPoint:
+        return wall_point(self.section, self.length * depth)
 
     @property
     def faces(self) -> tuple[float, float]:
         """Depths of its inner and its outer face."""
-        return self.section.layers[0][0], self.section.layers[-1][1]
+        return self.section.layers[0][0] / self.length, self.section.layers[-1][1] / self.length
 
     def energy(self, motion: WallMotion) -> WallEnergy:
         """Return the energies of a motion, sums over the orders with weights (R/2) beta pi.
@@ -124,7 +127,7 @@ class ThinWall(ShellModel):
     def remarks(self) -> list[str]:
         """Return a sentence if it is too thick for its theory."""
         inner, outer = self.faces
-        ratio = (outer - inner) / self.section.radius
+        ratio = (outer - inner) / self.radius
         if ratio <= THIN_SHELL_LIMIT:
             return []
         return [

@@ -149,4 +149,5 @@ class SaturatedShell:
 def voltage_limit(problem: Problem, index: int) -> float:
     """Return the largest voltage of a shell's actuator: field limit times thickness."""
     control = problem.system.control
-    return problem.shells[index].voltage_limit(None if control is None else control.field_limit)
+    field = None if control is None or control.field_limit is None else control.field_limit * problem.scales.length
+    return problem.shells[index].voltage_limit(field)
