@@ -109,11 +109,11 @@ def test_a_failed_linear_solve_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_fields_and_energies_are_numbers(response: Response, monkeypatch: pytest.MonkeyPatch) -> None:
-    spectra = response._spectra
+    spectra = response.motion.spectra
     spoilt = np.array(spectra.normal)
     spoilt[1, 0, 2, 5] = np.nan
     broken = Response(response.solution)
-    broken.__dict__["_spectra"] = replace(spectra, normal=spoilt)
+    broken.motion.spectra = replace(spectra, normal=spoilt)
     with pytest.raises(InputError, match=r"pressure: is nan at time = 1, y = 0, x = 1.5"):
         broken.pressure(x=[1.5], y=[0.0], time=1.0, part="radiated")
     with pytest.raises(InputError, match="energy"):

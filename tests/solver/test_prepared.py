@@ -75,7 +75,7 @@ def test_refinement_is_a_finer_run_read_less_often() -> None:
     np.testing.assert_array_equal(refined.absorber_force(), fine.absorber_force().isel(time=slice(None, None, 2)))
 
 
-@pytest.mark.parametrize("refinement", [0, 65, 1.5, True, "2"])
+@pytest.mark.parametrize("refinement", [0, 65, 1.5, True, "2.5", "two"])
 def test_bad_refinement(refinement: object) -> None:
     with pytest.raises(InputError, match=r"refinement: .* whole number from 1 to 64"):
         cx.simulate(BARE, duration=1.0, time_step=5e-3, modes=15, refinement=refinement)
