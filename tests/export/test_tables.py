@@ -29,7 +29,7 @@ def test_csv_holds_the_histories_with_their_units(hybrid, tmp_path):
                 name = f"{shell} {method.replace('_', ' ')} {point} ({unit})"
                 np.testing.assert_allclose(columns[name], values[:, column], rtol=1e-11, atol=1e-300)
     np.testing.assert_allclose(columns["absorber 24 displacement (m)"], hybrid.absorber_displacement()[24], rtol=1e-11, atol=1e-300)
-    assert len(columns) == 2 + 2 * 8 + 25
+    assert len(columns) == 2 + 2 * 12 + 25
 
 
 def test_what_a_system_does_not_have_is_left_out(rigid_core):
@@ -43,7 +43,7 @@ def test_head_follows_the_source(hybrid):
 
     class Turned:
         system, time, time_seconds = turned, hybrid.time, hybrid.time_seconds
-        absorber_displacement = hybrid.absorber_displacement
+        absorber_displacement, motion = hybrid.absorber_displacement, hybrid.motion
         asked = ()
 
         def history(self, shell, angle, quantity):

@@ -37,6 +37,8 @@ class FakeResponse:
         component = "tangential" if "tangential" in quantity else "normal"
         if "displacement" in quantity:
             return self.displacement(shell, angle, component, relative="relative" in quantity)
+        if quantity.endswith(("velocity", "acceleration")):
+            return self._array(shell, angle, 1e-2 if quantity.endswith("velocity") else 1e3, 9.0)
         return getattr(self, quantity)(shell, angle)
 
     def _array(self, shell, angle, scale, frequency):

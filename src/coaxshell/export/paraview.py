@@ -47,7 +47,8 @@ def export_paraview(
     """Write a folder with field.pvd and shells.pvd, to be opened both in ParaView; lengths in m, times in s.
 
     field.pvd: the total pressure (Pa) on a square of points. shells.pvd: each shell as a closed line in steps of half a degree
-    with hoop_stress (Pa), displacement (vector, m), normal_displacement (m, positive inward) and, for each line, the shell's number.
+    with hoop_stress (Pa), displacement (vector, m), normal_displacement (m, positive inward), shell_velocity and shell_acceleration and
+    their normal parts likewise (m/s, m/s^2) and, for each line, the shell's number.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def export_paraview(
     check_grid(half_width, points, displaced)
     index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
     seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
-    shown, kept = 3.0 * response.time.size, 1.0 * len(_arrays()) * len(response.system.shells) * len(index)
+    shown, kept = 3.0 * response.time.size, 1.0 * len(_arrays(response)) * len(response.system.shells) * len(index)
     Cost(8.0 * _ANGLES.size * (shown + kept) + 4.0 * _BLOCK_BYTES).require(
         f"ParaView's series of {len(index):,} instants of a run of {response.time.size:,}", "give fewer times, or run a coarser step"
     )
@@ -128,11 +129,11 @@ def _write_shells(response: Response, folder: Path, index: npt.NDArray[np.intp],
     theta = np.radians(_ANGLES)
     radial = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1)
     around = np.stack([-np.sin(theta), np.cos(theta), np.zeros_like(theta)], axis=1)
-    found = {quantity.name: [_on_wall(response, shell, index, quantity) for shell in range(len(shells))] for quantity in _arrays()}
+    found = {quantity.name: [_on_wall(response, shell, index, quantity) for shell in range(len(shells))] for quantity in _arrays(response)}
     names = [f"data/shells_{number:05d}.vtp" for number in range(len(index))]
     for number, name in enumerate(names):
         data: dict[str, FloatArray] = {}
-        for quantity in point_data():
+        for quantity in _points(response):
             values = [each[number] for each in found[quantity.name]]
             if not quantity.partner:
                 data[quantity.label.replace(" ", "_")] = np.concatenate(values)
@@ -145,14 +146,15 @@ def _write_shells(response: Response, folder: Path, index: npt.NDArray[np.intp],
     return names
 
 
-def point_data() -> list[Quantity]:
-    """Return the quantities that every point of a shell is given: those with columns, voltages left out."""
-    return [quantity for quantity in columns() if not quantity.roles]
+def _points(response: Response) -> list[Quantity]:
+    """Return the quantities that every point of a shell is given: those with columns, voltages left out, and what a run cannot give."""
+    return [quantity for quantity in columns() if not quantity.roles and response.motion.has_rate(quantity.rate)]
 
 
-def _arrays() -> list[Quantity]:
+def _arrays(response: Response) -> list[Quantity]:
     """Return them with the tangential components of those that are vectors."""
-    return [*point_data(), *(QUANTITIES[quantity.partner] for quantity in point_data() if quantity.partner)]
+    found = _points(response)
+    return [*found, *(QUANTITIES[quantity.partner] for quantity in found if quantity.partner)]
 
 
 def _on_wall(response: Response, shell: int, index: npt.NDArray[np.intp], quantity: Quantity) -> FloatArray:

@@ -39,6 +39,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "mass": Dimension("a mass", "kg", "250 g"),
     "density": Dimension("a density", "kg/m^3", "7.8 g/cm^3"),
     "speed": Dimension("a speed", "m/s", "1.4 km/s"),
+    "acceleration": Dimension("an acceleration", "m/s^2", "9.81 m/s^2"),
     "pressure": Dimension("a pressure", "Pa", "25 kPa"),
     "stress": Dimension("a stress or modulus", "Pa", "70 GPa"),
     "charge density": Dimension("a charge per area", "C/m^2", "14.1 C/m^2"),

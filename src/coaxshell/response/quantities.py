@@ -60,6 +60,8 @@ class Quantity:
         Values at angles, shape (T, A); None where the gain gives them.
     largest : callable, or None
         Where the summary shows means over a segment of the wall.
+    rate : int
+        Order of the time derivative, 0, 1 or 2, of what the gain gives; from the transforms (:mod:`coaxshell.response.wall_motion`).
     needs : str
         What a shell must have: "" nothing, "elastic" a wall that is not rigid, "sensor" that layer, "control" both layers and gains.
     component : str
@@ -89,6 +91,7 @@ class Quantity:
     gain: Callable[[ModalSolution, int], Gain] | None = None
     values: Callable[[WallMotion, int, FloatArray], FloatArray] | None = None
     largest: Largest | None = None
+    rate: int = 0
     needs: Needs = "elastic"
     component: str = "normal"
     partner: str = ""
@@ -150,12 +153,19 @@ class Quantity:
         if self.values is not None:
             return self.values(motion, shell, theta)
         assert self.gain is not None
+        if self.rate:
+            modal = self.amplitudes(motion, shell)(slice(None))
+            return at_angles(modal, angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0], self.component))
         return combined(motion.solution, shell, self.gain(motion.solution, shell), theta, self.component)
 
     def amplitudes(self, motion: WallMotion, shell: int) -> Amplitudes:
         """Return what gives its modal amplitudes, SI, at a slice of time indices."""
         assert self.gain is not None
-        return motion.amplitudes(shell, self.gain(motion.solution, shell))
+        return motion.amplitudes(shell, self.gain(motion.solution, shell), self.rate)
+
+    def given(self, motion: WallMotion, shell: int) -> bool:
+        """Return whether a run gives it for a shell: the shell has it, and for a rate the run all its instants."""
+        return motion.has_rate(self.rate) and self.lack(motion.solution.problem.system, shell) is None
 
 
 def _displacement(motion: WallMotion, shell: int, theta: FloatArray, component: str = "normal") -> FloatArray:
@@ -251,6 +261,68 @@ _TABLE = (
         needs="",
         component="tangential",
         shown=("µm", 1e6),
+        colour="orange",
+    ),
+    Quantity(
+        name="shell_velocity",
+        label="inward velocity",
+        noun="shell velocity",
+        long_name="normal velocity of the mid-surface",
+        unit="m/s",
+        sign=INWARD,
+        gain=lambda solution, _: displacement_gain(solution),
+        rate=1,
+        needs="",
+        partner="tangential_shell_velocity",
+        shown=("mm/s", 1e3),
+        colour="orange",
+        column=True,
+        summary=("anywhere",),
+        metrics=("anywhere", "head", "tail", "rms"),
+    ),
+    Quantity(
+        name="tangential_shell_velocity",
+        label="tangential velocity",
+        noun="tangential shell velocity",
+        long_name="tangential velocity of the mid-surface",
+        unit="m/s",
+        sign=COUNTERCLOCKWISE,
+        gain=lambda solution, _: tangential_gain(solution),
+        rate=1,
+        needs="",
+        component="tangential",
+        shown=("mm/s", 1e3),
+        colour="orange",
+    ),
+    Quantity(
+        name="shell_acceleration",
+        label="inward acceleration",
+        noun="shell acceleration",
+        long_name="normal acceleration of the mid-surface",
+        unit="m/s^2",
+        sign=INWARD,
+        gain=lambda solution, _: displacement_gain(solution),
+        rate=2,
+        needs="",
+        partner="tangential_shell_acceleration",
+        shown=("m/s²", 1.0),
+        colour="orange",
+        column=True,
+        summary=("anywhere",),
+        metrics=("anywhere", "head", "tail", "rms"),
+    ),
+    Quantity(
+        name="tangential_shell_acceleration",
+        label="tangential acceleration",
+        noun="tangential shell acceleration",
+        long_name="tangential acceleration of the mid-surface",
+        unit="m/s^2",
+        sign=COUNTERCLOCKWISE,
+        gain=lambda solution, _: tangential_gain(solution),
+        rate=2,
+        needs="",
+        component="tangential",
+        shown=("m/s²", 1.0),
         colour="orange",
     ),
     Quantity(

@@ -144,6 +144,20 @@ class Response:
         """
         return histories.stress(self.solution, self._index(shell), angle, depth)
 
+    def shell_velocity(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal") -> xr.DataArray:
+        """Return the velocity of a shell's mid-surface, m/s, dims (time, angle): "normal" (positive inward) or "tangential".
+
+        From the transforms of the run, not by differences. See :func:`coaxshell.response.histories.shell_velocity`.
+        """
+        return histories.shell_velocity(self.motion, self._index(shell), angle, component)
+
+    def shell_acceleration(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal") -> xr.DataArray:
+        """Return the acceleration of a shell's mid-surface, m/s^2, dims (time, angle): "normal" (positive inward) or "tangential".
+
+        Where a front jumps, it jumps: see :func:`coaxshell.response.histories.shell_acceleration` for what the time step makes of that.
+        """
+        return histories.shell_acceleration(self.motion, self._index(shell), angle, component)
+
     def history(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress") -> xr.DataArray:
         """Return the history of any quantity of a shell by its name, SI, dims (time, angle); the names are those of a plot.
 
@@ -235,7 +249,7 @@ class Response:
         Voltages are means over a *segment* of the wall: a length, None for what the pulse's band allows, or "point".
         See :func:`coaxshell.response.summary.summarise`.
         """
-        return summarise(self.solution, window, segment)
+        return summarise(self.solution, window, segment, motion=self.motion)
 
     def thin(self, every: int = 1, window: Sequence[float] | None = None) -> Response:
         """Return the response with every so many instants of a window (start, end) in transits, for a smaller file.

@@ -133,11 +133,14 @@ class Summary:
         return summary_text(self.to_dict())
 
 
-def summarise(solution: ModalSolution, window: Sequence[float] | None = None, segment: Segment = None) -> Summary:
+def summarise(
+    solution: ModalSolution, window: Sequence[float] | None = None, segment: Segment = None, *, motion: WallMotion | None = None
+) -> Summary:
     """Return the summary of a solution within a window (start, end) in transits, by default the whole run.
 
     The head is the point of the shell nearest to the first source, the tail the one opposite. Voltages are means over a segment of
-    the wall: a length (m or text), None for what the pulse's band allows, or "point".
+    the wall: a length (m or text), None for what the pulse's band allows, or "point". Velocities and accelerations need the transforms
+    of the run: they are given with its *motion*, and where the run has all its instants.
 
     Raises
     ------
@@ -149,7 +152,8 @@ def summarise(solution: ModalSolution, window: Sequence[float] | None = None, se
     scales = solution.problem.scales
     elastic = [i for i, shell in enumerate(solution.problem.shells) if shell.moves]
     lengths = [segment_length(solution.problem, i, segment) for i in elastic]  # all checked before the first is computed
-    shells = tuple(_shell(solution, i, span, length) for i, length in zip(elastic, lengths, strict=True))
+    walls, rates = motion or WallMotion(solution), motion is not None
+    shells = tuple(_shell(walls, i, span, length, rates=rates) for i, length in zip(elastic, lengths, strict=True))
     q, f = solution.absorber_displacement, solution.absorber_force
     return Summary(
         title=solution.problem.system.name,
@@ -164,12 +168,13 @@ def summarise(solution: ModalSolution, window: Sequence[float] | None = None, se
     )
 
 
-def _shell(solution: ModalSolution, shell: int, span: slice, length: float) -> ShellSummary:
+def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates: bool) -> ShellSummary:
+    solution = motion.solution
     problem = solution.problem
-    wall, motion = problem.shells[shell], WallMotion(solution)
+    wall = problem.shells[shell]
     found: dict[str, Any] = {}
     for quantity in QUANTITIES.values():
-        if quantity.lack(problem.system, shell) is not None:
+        if not quantity.given(motion, shell) or (quantity.rate and not rates):
             found |= dict.fromkeys(quantity.summary_keys)
         elif quantity.summary:
             found |= _largest(quantity, motion, shell, span, length)

@@ -53,7 +53,7 @@ def _elastic(response: Response) -> list[tuple[int, str]]:
 
 def quantities_of(response: Response, shell: int) -> list[Quantity]:
     """Return the quantities with columns that a shell has: voltages only where it has the layers and the control."""
-    return [quantity for quantity in columns() if quantity.lack(response.system, shell) is None]
+    return [quantity for quantity in columns() if quantity.given(response.motion, shell)]
 
 
 def at_ends(response: Response, quantity: Quantity, shell: int) -> FloatArray:

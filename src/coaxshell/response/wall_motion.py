@@ -1,12 +1,21 @@
-"""The motion of the walls of a finished run: what every quantity of a shell is read from."""
+"""The motion of the walls of a finished run and its rates: what every quantity of a shell is read from.
+
+Rates come from the transforms, s W and s^2 W inverted on the grid of the run under its own roll-off of the top fifth of the band
+(:meth:`coaxshell.numerics.laplace_grid.LaplaceGrid.taper`), so that displacement, velocity and acceleration belong to one motion: each is
+the exact derivative of the one before within the band. The direct engine marches instants, not transforms: its rates are the central
+differences that it is made of.
+"""
 
 from __future__ import annotations
 
 from functools import cached_property
 
+import numpy as np
+
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.modal import amplitudes
 from coaxshell.response.peaks import Amplitudes
-from coaxshell.solver.recompute import SolvedSpectra, spectra_of
+from coaxshell.solver.recompute import SolvedSpectra, marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import Gain
 
@@ -27,6 +36,53 @@ class WallMotion:
         """Transforms of W and V; InputError if instants of the run are missing."""
         return spectra_of(self.solution)
 
-    def amplitudes(self, shell: int, gain: Gain) -> Amplitudes:
-        """Return what gives the modal amplitudes gain.v V + gain.w W of a shell, SI, at a slice of time indices."""
-        return lambda window: amplitudes(self.solution, shell, gain, window)
+    @cached_property
+    def _for_rates(self) -> SolvedSpectra:
+        """Transforms of W and V whose derivatives do not feel that the forces of a march end with the run."""
+        return spectra_of(self.solution, continued=True) if marches(self.solution) else self.spectra
+
+    def has_rate(self, rate: int) -> bool:
+        """Return whether derivatives of an order can be given: 0 always, others of a run with all its instants."""
+        return rate == 0 or self.solution.whole
+
+    def amplitudes(self, shell: int, gain: Gain, rate: int = 0) -> Amplitudes:
+        """Return what gives the modal amplitudes gain.v V + gain.w W of a shell at a slice of time indices.
+
+        Parameters
+        ----------
+        shell : int
+        gain : Gain
+        rate : int
+            0, 1 or 2: order of the time derivative; SI, per second each.
+
+        Raises
+        ------
+        InputError
+            For a derivative of a run that lacks instants.
+        """
+        if rate == 0:
+            return lambda window: amplitudes(self.solution, shell, gain, window)
+        per_second = self.solution.problem.scales.time**-rate
+        scaled = Gain(per_second * gain.v, per_second * gain.w)
+        values = self._differences(shell, scaled, rate) if self.solution.settings.engine == "direct" else self._rates(shell, scaled, rate)
+        return lambda window: values[..., window]
+
+    def _rates(self, shell: int, gain: Gain, rate: int) -> FloatArray:
+        spectra = self._for_rates
+        wanted = spectra.normal[shell] * gain.w[:, None]
+        if np.any(gain.v):
+            wanted += spectra.tangential[shell] * gain.v[:, None]
+        wanted *= spectra.grid.nodes**rate
+        return spectra.grid.invert(wanted)[..., :: spectra.refinement]
+
+    def _differences(self, shell: int, gain: Gain, rate: int) -> FloatArray:
+        """Return central differences; at the end, where none is, one-sided ones of the same order. The run begins at rest."""
+        self.solution.need_every_instant("a velocity or acceleration of a shell")
+        x, step = amplitudes(self.solution, shell, gain), self.solution.settings.time_step
+        if rate == 1:
+            return np.asarray(np.gradient(x, step, axis=-1, edge_order=2), dtype=np.float64)
+        result = np.empty_like(x)
+        result[..., 1:-1] = x[..., 2:] - 2.0 * x[..., 1:-1] + x[..., :-2]
+        result[..., 0] = x[..., 1] - 2.0 * x[..., 0]
+        result[..., -1] = 2.0 * x[..., -1] - 5.0 * x[..., -2] + 4.0 * x[..., -3] - x[..., -4]
+        return result / step**2

@@ -13,7 +13,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver import checks, estimates
+from coaxshell.solver import checks, estimates, recompute
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.excitation import source_parities
@@ -161,6 +161,7 @@ class Prepared:
         problem, structure = replace(self.problem, system=system), self.structure
         if absorbers is not None:
             require_room(problem, self.settings)
+        recompute.let_go()
         with numerical_failures(structure.grid):
             return self._solved(problem, progress or self._progress)
 
@@ -206,7 +207,9 @@ class Prepared:
             solution = replace(solution, absorber_displacement=linked.displacement[:, keep], absorber_force=linked.force[..., keep])
         if saturate:
             solution = replace(solution, control_correction=_lack(solution, linked, keep))
-        return replace(solution, warnings=tuple(warnings + checks.actuators(solution)))
+        solution = replace(solution, warnings=tuple(warnings + checks.actuators(solution)))
+        recompute.keep_at_hand(solution, structure, linked)
+        return solution
 
 
 def _lack(solution: ModalSolution, linked: AbsorberSolution | None, keep: slice) -> FloatArray:

@@ -33,7 +33,8 @@ CLOCKS = 1e-3
 NOTE = (
     "Errors are those of the file relative to coaxshell: relative L2 over the file's own instants, and the difference of the largest "
     "magnitudes; each passes up to the tolerance. A likely cause is named where undoing it brings the error down a lot. "
-    "Displacement is positive inward, stress is the core's at its mid-surface (Eq. 22), t = 0 when the front reaches the head."
+    "Displacement is positive inward, stress is the core's at its mid-surface (Eq. 22), t = 0 when the front reaches the head. "
+    "Accelerations beside a sharp front are those of their time step: compare at the same one, or with a rise time."
 )
 
 
