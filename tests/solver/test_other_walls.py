@@ -66,7 +66,10 @@ WALLS = (
 
 def sprung() -> Problem:
     bare = cx.presets.load("bare")
-    return replace(dimensionless(bare.replace(fluids=[cx.VACUUM, cx.VACUUM, bare.exterior])), shells=WALLS)
+    plain = [
+        cx.Shell(radius=shell.radius, layers=[shell.core]) for shell in bare.shells
+    ]  # described without transducers, as they have none
+    return replace(dimensionless(bare.replace(shells=plain, fluids=[cx.VACUUM, cx.VACUUM, bare.exterior])), shells=WALLS)
 
 
 def solved(time_step: float, absorbers) -> tuple[Prepared, Response]:
