@@ -6,6 +6,7 @@ import math
 import warnings
 from pathlib import Path
 from time import perf_counter
+from typing import Literal
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.response.quantities import QUANTITIES
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
+from coaxshell.solver.settings import Settings
 from coaxshell.verification.causes import likely_cause
 from coaxshell.verification.histories_csv import Column, Histories, read_histories
 from coaxshell.verification.rows import Curve, Panel, Row, Sheet, value
@@ -42,8 +44,8 @@ def against(
     path: Path,
     system: System,
     *,
-    time_step: float = 1e-3,
-    modes: int = 150,
+    time_step: float = Settings.time_step,
+    modes: int | Literal["auto"] = Settings.modes,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
 ) -> Report:
@@ -194,7 +196,14 @@ def _panel(column: Column, time: FloatArray, curve: FloatArray, at: FloatArray, 
     return Panel(column.name, "time (a/c)", label, curves)
 
 
-def template(system: System, path: Path, *, time_step: float = 0.01, duration: float = 5.0, modes: int = 150) -> Path:
+def template(
+    system: System,
+    path: Path,
+    *,
+    time_step: float = 0.01,
+    duration: float = Settings.duration,
+    modes: int | Literal["auto"] = Settings.modes,
+) -> Path:
     """Write an example file with our own numbers: both quantities of every shell at head and tail.
 
     Raises

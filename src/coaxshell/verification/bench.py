@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tomllib
 import warnings
-from collections import OrderedDict
 from importlib import resources
 from typing import Any, TypeVar
 
@@ -13,13 +12,15 @@ import numpy as np
 from coaxshell.errors import PhysicsWarning
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
 from coaxshell.numerics.progress import ShareDone
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import simulate
+from coaxshell.solver.settings import Settings
 
 T = TypeVar("T")
 
-_KEPT = 4
+_KEPT_BYTES = 200_000_000
 
 
 class Bench:
@@ -36,7 +37,7 @@ class Bench:
     def __init__(self, *, quick: bool = False, progress: ShareDone | None = None) -> None:
         self.quick = quick
         self._progress = progress
-        self._responses: OrderedDict[tuple[Any, ...], Response] = OrderedDict()
+        self._responses: ByteBoundedCache[Response] = ByteBoundedCache(_KEPT_BYTES, held_bytes)
 
     def choose(self, quick: T, full: T) -> T:
         """Return the value for a quick run or the one for a full run."""
@@ -49,15 +50,10 @@ class Bench:
 
     def simulate(self, system: System, **settings: Any) -> Response:
         """Return the response of a system; the last few are kept, so that checks that ask alike share the work."""
-        key = (system.to_toml_string(), *sorted(settings.items()))
-        if key not in self._responses:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", PhysicsWarning)
-                self._responses[key] = simulate(system, **settings)
-            while len(self._responses) > _KEPT:
-                self._responses.popitem(last=False)
-        self._responses.move_to_end(key)
-        return self._responses[key]
+        asked = Settings.asked(system, settings)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PhysicsWarning)
+            return self._responses.get_or_make((system.to_toml_string(), asked), lambda: simulate(system, settings=asked))
 
 
 def tables() -> dict[str, Any]:
