@@ -52,7 +52,7 @@ math_eqref_format = "({number})"
 # Reference, from the docstrings
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings tell types together with shapes and units
-autodoc_preserve_defaults = True
+autodoc_preserve_defaults = False  # read from the source, they lack the keywords that many functions share, which ends in an error
 autoclass_content = "class"
 napoleon_google_docstring = False
 napoleon_use_rtype = False
