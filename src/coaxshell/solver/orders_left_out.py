@@ -31,6 +31,8 @@ REST = 1e-7
 LEAST_TRUE = 0.3
 _COUPLED_POINTS = 64
 """Points up to which absorbers are solved together; more of them each alone with its two walls."""
+_BLOCK_BYTES = 4 * 1024 * 1024
+"""Of the matrices between all points, at a few nodes at a time."""
 
 
 @dataclass(frozen=True)
@@ -132,8 +134,27 @@ def forces_against(
     if 2 * count > _COUPLED_POINTS:
         mobility = _mean_mobility(structure, which)
         return each_alone(links, nodes, mobility if soft is None else soft + mobility, moved)
+    found = np.empty((2, count, nodes.size), np.complex128)
+    every, width = range(structure.grid.nodes.size)[which], max(1, _BLOCK_BYTES // (16 * (2 * count) ** 2))
+    for start in range(0, nodes.size, width):
+        part, here = slice(start, start + width), every[start : start + width]
+        compliance = structure.compliance[..., here.start : here.stop : here.step]
+        found[..., part] = _against(structure, links, compliance, nodes[part], moved[..., part], None if soft is None else soft[..., part])
+    return found
+
+
+def _against(
+    structure: StructureSpectra,
+    links: AbsorberSet,
+    compliance: ComplexArray,
+    nodes: ComplexArray,
+    moved: ComplexArray,
+    soft: ComplexArray | None,
+) -> ComplexArray:
+    """Return what :func:`forces_against` does at a few nodes."""
+    count = links.count
     points = InterfacePoints(structure.problem, links, structure.max_order)
-    receptance = np.ascontiguousarray(np.moveaxis(points.between(structure.compliance[..., which]), -1, 0))
+    receptance = np.ascontiguousarray(np.moveaxis(points.between(compliance), -1, 0))
     sides, index = np.stack([links.inner_shell, links.inner_shell + 1]), np.arange(count)
     for a in (0, 1):
         for b in (0, 1):
