@@ -16,7 +16,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.response import Response
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.registry import check
-from coaxshell.verification.rows import Curve, Finding, Panel, Sheet, at_least, distance, within
+from coaxshell.verification.rows import Curve, Finding, Panel, Row, Sheet, at_least, distance, within
 from coaxshell.verification.systems import GAINS, PLANE_STEP
 
 STEPS = (8e-3, 4e-3, 2e-3)
@@ -58,11 +58,9 @@ def engines(bench: Bench) -> Iterator[Finding]:
     panels: tuple[list[Curve], list[Curve]] = ([], [])
     systems = {name: system for name, system in configurations().items() if not bench.quick or name in QUICK}
     for number, (name, system) in enumerate(systems.items()):
-        errors = _errors(bench, system)
-        for what, column, limit, curves in zip(("displacement", "strain"), errors.T, (3e-3, 5e-3), panels, strict=True):
-            source = "theory 10; the other engine at a quarter of the step"
-            yield within(f"{name}: {what}, dt = {STEPS[-1]:g}", source, "the spectral engine's", float(column[-1]), limit)
-            yield at_least(f"{name}: order in dt, {what}", source, LEAST, float(np.log2(column[0] / column[-1]) / 2))
+        found = errors(bench, system)
+        yield from judged(name, found)
+        for column, curves in zip(found.T, panels, strict=True):
             curves.append(Curve(name, np.array(STEPS), column))
         bench.done((number + 1) / len(systems))
     yield Sheet(
@@ -75,8 +73,16 @@ def engines(bench: Bench) -> Iterator[Finding]:
     )
 
 
-def _errors(bench: Bench, system: System) -> FloatArray:
-    """Return the distance of displacement and strain for each step, shape (steps, 2)."""
+def judged(name: str, found: FloatArray) -> Iterator[Row]:
+    """Yield what is asked of the errors of one configuration: small at the finest step, and of their order in the step."""
+    for what, column, limit in zip(("displacement", "strain"), found.T, (3e-3, 5e-3), strict=True):
+        source = "theory 10; the other engine at a quarter of the step"
+        yield within(f"{name}: {what}, dt = {STEPS[-1]:g}", source, "the spectral engine's", float(column[-1]), limit)
+        yield at_least(f"{name}: order in dt, {what}", source, LEAST, float(np.log2(column[0] / column[-1]) / 2))
+
+
+def errors(bench: Bench, system: System) -> FloatArray:
+    """Return the distance of displacement and strain between the engines for each step, relative L2, shape (steps, 2)."""
     fine = bench.simulate(system, time_step=STEPS[-1] / 4, **SETTINGS)
     rows = []
     for step in STEPS:
