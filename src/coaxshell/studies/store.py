@@ -37,12 +37,6 @@ def digest(data: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def case_key(system: System, metrics: Sequence[Metric], resolution: Settings) -> str:
-    """Return the name under which a case is kept: the hash of its physics, metrics, resolution and the code of all of them."""
-    asked = {metric.name: metric.identity for metric in metrics}
-    return digest({"system": system.canonical(), "metrics": asked, "resolution": resolution.arguments(), "numerics": origin()})
-
-
 class Store:
     """Pieces of finished work in a folder: arrays by name, and a table of plain values each.
 
@@ -158,8 +152,9 @@ class StudyStore(Store):
             raise InputError(self._where, f"{name!r} holds another study: its {' and '.join(differ)} differ", another)
 
     def key(self, system: System, resolution: Settings) -> str:
-        """Return the name of a case."""
-        return case_key(system, self.metrics, resolution)
+        """Return the name under which a case is kept: the hash of its physics, metrics, resolution and the code of all of them."""
+        asked = {metric.name: metric.identity for metric in self.metrics}
+        return digest({"system": system.canonical(), "metrics": asked, "resolution": resolution.arguments(), "numerics": origin()})
 
     def load(self, key: str) -> Outcome | None:
         """Return the outcome of a case, None if it is not there. Accidents count as not there: they are tried again."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,10 +10,8 @@ import numpy as np
 
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
-from coaxshell.studies.optimisation.search import Run
+from coaxshell.studies.optimisation.search import Run, Scenarios
 from coaxshell.studies.optimisation.targets import Targets
-
-Scenarios = Callable[[System], Any]
 
 
 @dataclass(frozen=True)
