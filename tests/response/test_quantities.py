@@ -92,4 +92,4 @@ def test_every_entry_reads_as_its_amplitudes(response, name):
     m = np.arange(len(half))[:, None]
     wave = np.cos if QUANTITIES[name].component == "normal" else np.sin
     expected = (half * wave(m * np.radians(70.0))).sum(axis=0)
-    np.testing.assert_allclose(response.history("outer", 70.0, name), expected, rtol=1e-9, atol=1e-12 * np.abs(half).max())
+    np.testing.assert_allclose(response.history("outer", 70.0, name), expected, rtol=1e-9, atol=1e-10 * np.abs(half).max())

@@ -154,8 +154,9 @@ class Quantity:
             return self.values(motion, shell, theta)
         assert self.gain is not None
         if self.rate:
-            modal = self.amplitudes(motion, shell)(slice(None))
-            return at_angles(modal, angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0], self.component))
+            parities, modes = motion.solution.normal.shape[1:3]
+            basis = angle_basis(np.atleast_1d(theta), modes, parities, self.component)
+            return motion.rates_at(shell, self.gain(motion.solution, shell), self.rate, basis)
         return combined(motion.solution, shell, self.gain(motion.solution, shell), theta, self.component)
 
     def amplitudes(self, motion: WallMotion, shell: int) -> Amplitudes:

@@ -12,9 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.modal import amplitudes
 from coaxshell.response.peaks import Amplitudes
+from coaxshell.response.synthesis import at_angles
 from coaxshell.solver.recompute import SolvedSpectra, marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import Gain
@@ -62,23 +63,39 @@ class WallMotion:
         """
         if rate == 0:
             return lambda window: amplitudes(self.solution, shell, gain, window)
-        per_second = self.solution.problem.scales.time**-rate
-        scaled = Gain(per_second * gain.v, per_second * gain.w)
-        values = self._differences(shell, scaled, rate) if self.solution.settings.engine == "direct" else self._rates(shell, scaled, rate)
+        values = self._differences(shell, gain, rate) if self._direct else self._inverse(self._spectrum(shell, gain, rate))
         return lambda window: values[..., window]
 
-    def _rates(self, shell: int, gain: Gain, rate: int) -> FloatArray:
-        spectra = self._for_rates
-        wanted = spectra.normal[shell] * gain.w[:, None]
+    def rates_at(self, shell: int, gain: Gain, rate: int, basis: FloatArray) -> FloatArray:
+        """Return sums of the orders of a derivative at the angles of a basis (:func:`~coaxshell.response.synthesis.angle_basis`), (T, A).
+
+        Few angles are summed before the inverse transform, so that only they are inverted.
+        """
+        if self._direct or len(basis) >= basis[0].size:
+            return at_angles(self.amplitudes(shell, gain, rate)(slice(None)), basis)
+        spectrum = self._spectrum(shell, gain, rate)
+        return self._inverse(basis.reshape(len(basis), -1) @ spectrum.reshape(-1, spectrum.shape[-1])).T
+
+    @property
+    def _direct(self) -> bool:
+        return self.solution.settings.engine == "direct"
+
+    def _spectrum(self, shell: int, gain: Gain, rate: int) -> ComplexArray:
+        """Return the transform of a derivative by modes, SI."""
+        spectra, per_second = self._for_rates, self.solution.problem.scales.time**-rate
+        wanted: ComplexArray = spectra.normal[shell] * (per_second * gain.w[:, None])
         if np.any(gain.v):
-            wanted += spectra.tangential[shell] * gain.v[:, None]
+            wanted += spectra.tangential[shell] * (per_second * gain.v[:, None])
         wanted *= spectra.grid.nodes**rate
-        return spectra.grid.invert(wanted)[..., :: spectra.refinement]
+        return wanted
+
+    def _inverse(self, spectrum: ComplexArray) -> FloatArray:
+        return self._for_rates.grid.invert(spectrum)[..., :: self._for_rates.refinement]
 
     def _differences(self, shell: int, gain: Gain, rate: int) -> FloatArray:
         """Return central differences; at the end, where none is, one-sided ones of the same order. The run begins at rest."""
         self.solution.need_every_instant("a velocity or acceleration of a shell")
-        x, step = amplitudes(self.solution, shell, gain), self.solution.settings.time_step
+        x, step = amplitudes(self.solution, shell, gain), self.solution.settings.time_step * self.solution.problem.scales.time
         if rate == 1:
             return np.asarray(np.gradient(x, step, axis=-1, edge_order=2), dtype=np.float64)
         result = np.empty_like(x)

@@ -107,7 +107,8 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
     continued : bool
         Continue the marched forces beyond the run's end by value and slope, faded by cos^2. What acts after the end moves nothing before
         it; but forces that are cut off there make the acceleration jump, and the band limit spreads half of the jump and its overshoot
-        over the last instants of the run. Fields and energies are those of the forces as they were marched.
+        over the last instants of the run. Fields and energies are those of the forces as they were marched; the links' own motion is
+        left out.
     """
     solution.need_every_instant("what is computed from its transforms (field, energy, velocity and acceleration of shells)")
     modes, refinement = solution.settings.modes, solution.settings.refinement
@@ -123,7 +124,7 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
     motion: LinkMotion | None = None
     if linked.exact is not None:
         motion = exact_motion(links, grid, *linked.exact)
-    elif links.count:
+    elif links.count and not continued:
         motion = marched_motion(links, grid.time_step, linked.force, linked.displacement)
     return SolvedSpectra(problem, grid, modes, linked.normal, linked.tangential, motion, linked.actuation, refinement)
 

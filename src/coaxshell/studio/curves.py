@@ -12,7 +12,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
 from coaxshell.response.peaks import Peak
 from coaxshell.response.quantities import QUANTITIES, Quantity, Where, columns
-from coaxshell.response.summary import Summary
+from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.tables import quantities_of
 from coaxshell.studio import limits
 from coaxshell.studio.arrays import Item, Packed, packed
@@ -41,7 +41,7 @@ def bars() -> dict[str, tuple[str, str]]:
 def curves(response: Response, seconds: float) -> Packed:
     """Return header and arrays of a run as docs/studio-api.md says."""
     system, count = response.system, len(response.system.shells)
-    summary = response.summary()
+    summary = summarise(response.solution)  # without peaks of velocities and accelerations, which a slider would wait for
     absorbers = _absorbers(response)
     highest = {shell.name: shell.actuator_limit for shell in summary.shells}
     header = {
