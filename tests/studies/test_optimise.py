@@ -94,21 +94,23 @@ def test_ctrl_c_keeps_the_best_so_far(quick):
     assert "interrupted" in str(found)
 
 
-def test_a_study_killed_and_resumed_equals_one_that_was_not(tmp_path):
+def test_a_study_killed_and_resumed_equals_one_that_was_not(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(STUDY)
-    command = [sys.executable, "-m", "coaxshell", "optimise", "study.toml", "--quiet", "--workers", "1"]
+    asked = ["optimise", "study.toml", "--quiet", "--workers", "1"]
+    command = [sys.executable, "-m", "coaxshell", *asked]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     kept = tmp_path / "study.journal"
     for least in (6, 12):
         resume = ["--resume"] if kept.exists() else []
-        victim = subprocess.Popen([*command, *resume], cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        victim = subprocess.Popen([*command, *resume], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while victim.poll() is None and len(list(kept.glob("*.json"))) < least:
             time.sleep(0.005)
         victim.send_signal(signal.SIGKILL)
         assert victim.wait() == -signal.SIGKILL
         assert not (tmp_path / "study.optimum").exists()
-    subprocess.run([*command, "--resume"], cwd=tmp_path, env=environment, check=True, capture_output=True)
-    subprocess.run([*command, "--output", "whole"], cwd=tmp_path, env=environment, check=True, capture_output=True)
+    assert main([*asked, "--resume"]) == 0
+    assert main([*asked, "--output", "whole"]) == 0
     for name in ("history.csv", "optimum.json", "best.toml"):
         assert (tmp_path / "study.optimum" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
     assert not kept.exists()
