@@ -19,9 +19,9 @@ from typing import Any
 
 import httpx2
 
+from coaxshell.apps.studio.limits import settings_of
+from coaxshell.apps.studio.worker import solve
 from coaxshell.model import presets
-from coaxshell.studio.limits import settings_of
-from coaxshell.studio.worker import solve
 
 CLIENTS, SECONDS, ROUNDS = 50, 15.0, 16
 SYSTEMS = {name: presets.load(name).model_dump(mode="json") for name in ("absorbers", "hybrid")}

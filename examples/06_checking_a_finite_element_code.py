@@ -9,8 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import coaxshell as cx
+from coaxshell.apps.verification.against import against
 from coaxshell.plotting.style import COLOURS, new_figure, style
-from coaxshell.verification.against import against
 
 # %%
 # The file

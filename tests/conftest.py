@@ -11,10 +11,10 @@ from hypothesis import settings
 from scipy.special import gamma
 
 import coaxshell as cx
+from coaxshell.apps.verification import bench
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.spectral import LinearSpectra, linear_spectra
-from coaxshell.verification import bench
 
 # A busy machine must not fail a test: no example has a deadline.
 settings.register_profile("untimed", deadline=None)

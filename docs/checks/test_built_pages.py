@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 import coaxshell as cx
-from coaxshell import export, plotting, verification
+from coaxshell import export, plotting
+from coaxshell.apps import verification
 
 BUILT = Path(__file__).parents[1] / "built"
 OUTSIDE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)

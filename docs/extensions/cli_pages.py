@@ -6,7 +6,7 @@ from typing import Any
 
 from typer.main import get_command
 
-from coaxshell.cli.app import application
+from coaxshell.apps.cli.app import application
 
 HEAD = """# Command line
 

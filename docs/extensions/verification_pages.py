@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from coaxshell.verification import chosen, run, write_report
+from coaxshell.apps.verification import chosen, run, write_report
 
 HEAD = """# Verification report
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from coaxshell._moved import keep_old_names
 from coaxshell._version import __version__
 from coaxshell.errors import InputError, PhysicsWarning
 
@@ -137,6 +138,9 @@ __all__ = [
     "simulate",
     "sweep",
 ]
+
+
+keep_old_names()
 
 
 def __getattr__(name: str) -> Any:

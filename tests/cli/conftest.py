@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
 
 
 @dataclass

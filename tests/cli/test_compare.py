@@ -7,7 +7,7 @@ import re
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli.comparison import comparison_rows, labels, load_reference
+from coaxshell.apps.cli.comparison import comparison_rows, labels, load_reference
 
 COARSE = {"modes": 6, "time_step": 0.02, "duration": 1}
 

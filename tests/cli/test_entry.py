@@ -13,9 +13,9 @@ import pytest
 import typer
 
 import coaxshell
-from coaxshell.cli import main
-from coaxshell.cli.app import application
-from coaxshell.cli.progress import progress
+from coaxshell.apps.cli import main
+from coaxshell.apps.cli.app import application
+from coaxshell.apps.cli.progress import progress
 
 COMMANDS = (
     *("run", "presets", "init", "info", "record", "figure", "snapshots", "animate", "export", "verify", "response-function"),
@@ -79,7 +79,7 @@ def test_unexpected_errors_are_one_line(run, monkeypatch):
     def broken(*_):
         raise ZeroDivisionError("nothing\nto divide by")
 
-    monkeypatch.setattr("coaxshell.cli.running.load_system", broken)
+    monkeypatch.setattr("coaxshell.apps.cli.running.load_system", broken)
     outcome = run("run", "bare")
     assert outcome.code == 1
     assert outcome.err == "error: unexpected ZeroDivisionError: nothing to divide by (run again with --debug to see where)\n"
@@ -93,7 +93,7 @@ def test_interrupt(run, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("coaxshell.cli.running.load_system", interrupted)
+    monkeypatch.setattr("coaxshell.apps.cli.running.load_system", interrupted)
     outcome = run("run", "bare")
     assert outcome.code == 130
     assert outcome.err.startswith("error: interrupted")
@@ -106,7 +106,7 @@ def test_physics_warnings_are_one_line_each_and_said_once(capsys, monkeypatch):
             warnings.warn(coaxshell.PhysicsWarning(text), stacklevel=1)
         return coaxshell.presets.load("bare")
 
-    monkeypatch.setattr("coaxshell.cli.running.load_system", warn)
+    monkeypatch.setattr("coaxshell.apps.cli.running.load_system", warn)
     main(["run", "bare", "--modes", "0"])
     assert capsys.readouterr().err.splitlines()[:-1] == ["warning: too fast", "warning: too slow"]
 

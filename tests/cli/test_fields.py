@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from coaxshell import InputError
-from coaxshell.cli.options import times
+from coaxshell.apps.cli.options import times
 
 FAST = ("--quiet", "--width", "4")
 
@@ -153,7 +153,7 @@ def test_what_does_not_fit_a_saved_run(refused, saved, arguments, words):
 @pytest.mark.parametrize("command", ["snapshots", "animate", "export"])
 def test_help_imports_nothing_heavy(command):
     code = (
-        "import sys\nfrom coaxshell.cli import main\n"
+        "import sys\nfrom coaxshell.apps.cli import main\n"
         f"assert main([{command!r}, '--help']) == 0\n"
         "print('HEAVY', sorted(set(sys.modules) & {'xarray', 'matplotlib', 'scipy', 'numpy', 'PIL'}))"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli.template import scenario_text
+from coaxshell.apps.cli.template import scenario_text
 from coaxshell.model import Described
 from coaxshell.model.explanations import explanations
 

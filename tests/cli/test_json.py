@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import coaxshell as cx
-from coaxshell.cli.output import print_document
+from coaxshell.apps.cli.output import print_document
 
 RESOLUTION = "[resolution]\nduration = 1\ntime_step = 0.02\nmodes = 6\n"
 STUDY = f"""

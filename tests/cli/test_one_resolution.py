@@ -7,11 +7,11 @@ import json
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli.running import Request
+from coaxshell.apps.cli.running import Request
+from coaxshell.apps.studio import limits
 from coaxshell.solver.settings import Settings
 from coaxshell.studies import SweepStudy
 from coaxshell.studies.optimisation.confirmation import finer
-from coaxshell.studio import limits
 
 BARE = cx.presets.load("bare")
 WRONG = {
@@ -82,7 +82,8 @@ def test_a_resolution_is_read_back_from_its_table():
 
 
 def test_old_names_still_work_and_say_what_they_are_now():
-    from coaxshell import paper, studies
+    from coaxshell import studies
+    from coaxshell.apps import paper
 
     for room in (studies, paper):
         with pytest.warns(DeprecationWarning, match=r"Resolution is now coaxshell\.solver\.settings\.Settings"):

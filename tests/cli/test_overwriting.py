@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from typer.main import get_command
 
-from coaxshell.cli.app import application
+from coaxshell.apps.cli.app import application
 
 COARSE = ("--modes", "4", "--time-step", "0.05", "--duration", "1", "--quiet")
 WRITING = {"--output", "--figure", "--energy", "--csv", "--template"}

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
 
 COARSE = ("--modes", "4", "--time-step", "0.05", "--duration", "1")
 

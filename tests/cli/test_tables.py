@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from coaxshell import load_response
-from coaxshell.cli.output import summary_table
+from coaxshell.apps.cli.output import summary_table
 
 
 @pytest.fixture

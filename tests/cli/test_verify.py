@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from coaxshell.verification import registry
-from coaxshell.verification.rows import within
+from coaxshell.apps.verification import registry
+from coaxshell.apps.verification.rows import within
 
 REPORT = ["report.html", "report.md", "verification-report"]
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-
-import coaxshell as cx
 from coaxshell.verification.bench import Bench
 from coaxshell.verification.checks import engines
+
+import coaxshell as cx
 
 CASES = engines.configurations()
 

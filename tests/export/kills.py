@@ -14,7 +14,9 @@ import numpy as np
 import xarray as xr
 
 import coaxshell as cx
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
+from coaxshell.apps.verification.files import write_report
+from coaxshell.apps.verification.suite import Report
 from coaxshell.errors import InputError
 from coaxshell.export import export_csv, export_mat, export_paraview
 from coaxshell.numerics import scratch
@@ -24,8 +26,6 @@ from coaxshell.plotting.film import save_film
 from coaxshell.plotting.style import new_figure
 from coaxshell.studies import Optimum
 from coaxshell.studies.store import Store as Pieces
-from coaxshell.verification.files import write_report
-from coaxshell.verification.suite import Report
 
 Write = Callable[[Path, int], object]
 

@@ -15,7 +15,7 @@ PROJECT = Path(__file__).parents[2]
 def modules(*, inside_rooms: bool = False) -> list[Path]:
     """Return the package's source files, or only those inside its rooms."""
     paths = sorted(path for path in PACKAGE.rglob("*.py") if "__pycache__" not in path.parts)
-    return [path for path in paths if path.parent != PACKAGE or path.name == "cli.py"] if inside_rooms else paths
+    return [path for path in paths if path.parent != PACKAGE or path.name == "apps/cli.py"] if inside_rooms else paths
 
 
 @cache

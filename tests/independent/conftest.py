@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.verification.independent import RadialElements
+from coaxshell.apps.verification.independent import RadialElements
 
 ANGLES = [0.0, 70.0, 180.0]
 

@@ -10,7 +10,7 @@ import sys
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli.template import scenario_text
+from coaxshell.apps.cli.template import scenario_text
 from coaxshell.errors import InputError
 from coaxshell.model import fluids, materials
 from coaxshell.model.base import Described

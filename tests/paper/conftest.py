@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.paper import Runs, figure_recipe
-from coaxshell.paper.known_runs import CORRECTED
+from coaxshell.apps.paper import Runs, figure_recipe
+from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
 

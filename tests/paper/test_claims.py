@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coaxshell.apps.paper.claims import claims, judge
+from coaxshell.apps.paper.claims.systems import preset
+from coaxshell.apps.paper.known_runs import CORRECTED, Runs, packed, unpacked
 from coaxshell.errors import InputError
-from coaxshell.paper.claims import claims, judge
-from coaxshell.paper.claims.systems import preset
-from coaxshell.paper.known_runs import CORRECTED, Runs, packed, unpacked
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
 
@@ -122,7 +122,7 @@ def test_runs_are_solved_once_and_read_back_alike(tmp_path):
 
 
 def test_runs_on_several_processes_are_those_in_turn(monkeypatch):
-    from coaxshell.paper import cases, known_runs
+    from coaxshell.apps.paper import cases, known_runs
 
     monkeypatch.setattr(known_runs, "FEWEST", 4)
     systems, told = cases.count(preset("bare"), (0, 1, 2, 3, 5)), []
@@ -134,7 +134,7 @@ def test_runs_on_several_processes_are_those_in_turn(monkeypatch):
 
 
 def test_a_run_that_fails_in_another_process_says_what_is_wrong(monkeypatch):
-    from coaxshell.paper import known_runs
+    from coaxshell.apps.paper import known_runs
 
     monkeypatch.setattr(known_runs, "FEWEST", 2)
     systems = {str(n): preset("absorbers").with_overrides({"absorbers.count": n}) for n in (3, 4)}

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
+from coaxshell.apps.paper import FIGURES, Runs, StudyRecipe, figure_recipe, solve_each
+from coaxshell.apps.paper.cases import count, gains, power
+from coaxshell.apps.paper.histories import named_warnings, plain
+from coaxshell.apps.paper.limiting_cases import rigid_pressure
 from coaxshell.errors import InputError
-from coaxshell.paper import FIGURES, Runs, StudyRecipe, figure_recipe, solve_each
-from coaxshell.paper.cases import count, gains, power
-from coaxshell.paper.histories import named_warnings, plain
-from coaxshell.paper.limiting_cases import rigid_pressure
 from coaxshell.studies import structures
 
 SMALL = ["--duration", "1.5", "--time-step", "2e-2", "--modes", "8"]

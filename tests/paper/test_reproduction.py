@@ -10,20 +10,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
+from coaxshell.apps.paper import FIGURES, StudyRecipe
+from coaxshell.apps.paper.claims import claims, judge
+from coaxshell.apps.paper.claims.systems import preset
+from coaxshell.apps.paper.known_runs import CORRECTED
+from coaxshell.apps.paper.reproduction import VARIANTS, reproduce, write
+from coaxshell.apps.paper.reproduction import results as reading
+from coaxshell.apps.paper.reproduction import run as running
+from coaxshell.apps.paper.reproduction import work as working
+from coaxshell.apps.paper.reproduction.cost import part_cost
+from coaxshell.apps.paper.reproduction.plan import Part, groups, parts
+from coaxshell.apps.paper.slips import SLIPS
 from coaxshell.errors import InputError
 from coaxshell.numerics import memory
-from coaxshell.paper import FIGURES, StudyRecipe
-from coaxshell.paper.claims import claims, judge
-from coaxshell.paper.claims.systems import preset
-from coaxshell.paper.known_runs import CORRECTED
-from coaxshell.paper.reproduction import VARIANTS, reproduce, write
-from coaxshell.paper.reproduction import results as reading
-from coaxshell.paper.reproduction import run as running
-from coaxshell.paper.reproduction import work as working
-from coaxshell.paper.reproduction.cost import part_cost
-from coaxshell.paper.reproduction.plan import Part, groups, parts
-from coaxshell.paper.slips import SLIPS
 from coaxshell.solver.settings import Settings
 
 TINY = Settings(duration=0.6, time_step=2e-2, modes=6)

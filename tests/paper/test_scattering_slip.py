@@ -8,7 +8,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.response_functions import exterior
-from coaxshell.paper.slips import scattering_delay
+from coaxshell.apps.paper.slips import scattering_delay
 from coaxshell.solver.direct.loads import arc_integrals
 from coaxshell.solver.scaling import dimensionless
 

@@ -11,10 +11,10 @@ from scipy.special import ive
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.sources import SphericalGeometry
+from coaxshell.apps.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
+from coaxshell.apps.paper.slips.switches import slipped
+from coaxshell.apps.paper.slips.waves import PrintedPotential
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.paper.slips import SLIPS, SWITCHED, effects, growth, simulate, solve_each, table
-from coaxshell.paper.slips.switches import slipped
-from coaxshell.paper.slips.waves import PrintedPotential
 from coaxshell.solver import Prepared
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.prepared import StructureSpectra

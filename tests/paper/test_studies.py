@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.paper import Runs
-from coaxshell.paper.absorbers import counts
+from coaxshell.apps.paper import Runs
+from coaxshell.apps.paper.absorbers import counts
 
 POINTS = [("inner", 0.0), ("inner", 180.0), ("outer", 0.0), ("outer", 180.0)]
 BARE = cx.presets.load("bare")
@@ -102,7 +102,7 @@ def test_number_of_absorbers(tiny):
 
 
 def test_a_turned_source_turns_the_study(drawn, tiny, line):
-    from coaxshell.paper import figure_recipe
+    from coaxshell.apps.paper import figure_recipe
 
     turned = BARE.replace_path("source.angle", 70.0)
     figure = figure_recipe("7").draw([turned], Runs(tiny), None).figure

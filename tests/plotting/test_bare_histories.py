@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coaxshell import InputError, RigidShell, presets
-from coaxshell.paper import FIGURES, figure_recipe
+from coaxshell.apps.paper import FIGURES, figure_recipe
 from coaxshell.plotting import figure_bare_histories, save_figure
 
 

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.collections import PolyCollection
 
 from coaxshell import InputError, RigidShell, presets
-from coaxshell.paper import FIGURES
+from coaxshell.apps.paper import FIGURES
 from coaxshell.plotting import COMPARISON_TIMES, SNAPSHOT_TIMES, FieldView, figure_pressure_rms, figure_snapshots, plot_field
 from coaxshell.plotting.field_scales import PRESSURE_COLOURS, FieldScales, compressed, field_scales, mappable, pressure_unit
 from coaxshell.plotting.frames import field_frames, gathered

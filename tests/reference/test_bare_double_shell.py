@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.verification.bench import bare_double_shell
+from coaxshell.apps.verification.bench import bare_double_shell
 
 
 @pytest.fixture(scope="module")

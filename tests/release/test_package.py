@@ -26,7 +26,7 @@ for name in cx.presets.names():
 response = cx.simulate(cx.presets.load("hybrid"), duration=1.0, time_step=1e-2, modes=8)
 response.save("run.nc")
 assert cx.load_response("run.nc").system == response.system
-from coaxshell.verification import bench
+from coaxshell.apps.verification import bench
 assert bench.tables()
 """
 
@@ -41,7 +41,7 @@ def test_the_package_is_typed_and_its_data_lies_inside():
     names = data_files()
     assert "coaxshell/py.typed" in names
     assert any(name.startswith("coaxshell/model/presets/") for name in names)
-    assert any(name.startswith("coaxshell/verification/data/") for name in names)
+    assert any(name.startswith("coaxshell/apps/verification/data/") for name in names)
 
 
 def test_every_extra_is_documented():

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
 from house import PROJECT
 
 TEXT = (PROJECT / "README.md").read_text(encoding="utf-8")

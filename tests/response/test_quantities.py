@@ -12,7 +12,10 @@ import quantity_pages
 from scipy.io import loadmat
 
 from coaxshell import simulate
-from coaxshell.cli import main
+from coaxshell.apps.cli import main
+from coaxshell.apps.studio.curves import bars, curves
+from coaxshell.apps.studio.curves import quantities as listed
+from coaxshell.apps.verification.histories_csv import read_histories
 from coaxshell.export import export_csv, export_mat, export_paraview
 from coaxshell.model import presets
 from coaxshell.plotting import QUANTITIES as DRAWN
@@ -22,9 +25,6 @@ from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import Gain
 from coaxshell.studies.metrics import metric_names, metrics_of
 from coaxshell.studies.reading import MetricSource
-from coaxshell.studio.curves import bars, curves
-from coaxshell.studio.curves import quantities as listed
-from coaxshell.verification.histories_csv import read_histories
 
 GUIDE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 

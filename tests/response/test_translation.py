@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.cli.comparison import comparison_rows
+from coaxshell.apps.cli.comparison import comparison_rows
 from coaxshell.response import Response
 from coaxshell.response.translation import still_grows
 from coaxshell.solver.solution import ModalSolution

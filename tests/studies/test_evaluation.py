@@ -117,8 +117,8 @@ def test_pieces_with_and_without_arrays(tmp_path):
 
 
 def test_the_numerics_version_is_one(tmp_path, quick):
+    from coaxshell.apps.paper.known_runs import key_of
     from coaxshell.numerics.identity import NUMERICS_VERSION, numerics, origin
-    from coaxshell.paper.known_runs import key_of
     from coaxshell.studies.store import digest
 
     assert numerics().endswith(f"numerics {NUMERICS_VERSION}")

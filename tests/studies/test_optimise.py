@@ -14,7 +14,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
-from coaxshell.cli.entry import main
+from coaxshell.apps.cli.entry import main
 from coaxshell.studies.optimisation.variables import space_of
 from coaxshell.studies.reading import DesignReading
 

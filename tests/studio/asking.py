@@ -10,9 +10,9 @@ from contextlib import contextmanager
 
 import pytest
 
+from coaxshell.apps.studio import limits, memory, worker, workers
+from coaxshell.apps.studio.arrays import decoded
 from coaxshell.model import presets
-from coaxshell.studio import limits, memory, worker, workers
-from coaxshell.studio.arrays import decoded
 
 PORT, KEY = 8765, "a-key-of-the-tests-and-of-no-one-else"
 SMALL = {"duration": 2.0, "time_step": 0.02, "modes": 12}

@@ -8,7 +8,7 @@ import pytest
 from asking import KEY, PORT
 from starlette.testclient import TestClient
 
-from coaxshell.studio.app import create_app
+from coaxshell.apps.studio.app import create_app
 
 HERE = Path(__file__).parent
 

@@ -9,11 +9,11 @@ from itertools import pairwise
 import pytest
 from asking import SMALL, carried_out, described, solve, solved, taking
 
+from coaxshell.apps.studio import limits, worker
+from coaxshell.apps.studio.state import Studio
 from coaxshell.errors import InputError
 from coaxshell.model import System, presets
 from coaxshell.solver.settings import Settings
-from coaxshell.studio import limits, worker
-from coaxshell.studio.state import Studio
 
 MOST = Settings(10.0, 1e-3, 300)
 """As fine as is allowed."""

@@ -7,9 +7,9 @@ import json
 import pytest
 from asking import described
 
+from coaxshell.apps.studio import limits, links
 from coaxshell.errors import InputError
 from coaxshell.model import System, presets
-from coaxshell.studio import limits, links
 
 
 def validated(client, **body):
@@ -140,7 +140,7 @@ def test_all_that_is_wrong_is_told_at_once(client):
 
 
 def test_a_link_that_unpacks_to_too_much_is_refused(client):
-    from coaxshell.studio.links import fragment
+    from coaxshell.apps.studio.links import fragment
 
     bomb = fragment({"v": 1, "system": {"name": "a" * 50_000_000}})
     assert len(bomb) < 200_000

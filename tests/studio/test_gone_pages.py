@@ -7,7 +7,7 @@ import asyncio
 import pytest
 from asking import SMALL, described, ended, reporting, shared_worker
 
-from coaxshell.studio.jobs import CANCELLED, DONE, ENDED, RUNNING, Job, Jobs
+from coaxshell.apps.studio.jobs import CANCELLED, DONE, ENDED, RUNNING, Job, Jobs
 
 PAGE, OTHER = "page", "other"
 

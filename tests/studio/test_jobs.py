@@ -8,9 +8,9 @@ from asking import SMALL, described, ended, solved, start
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
+from coaxshell.apps.studio.arrays import decoded
 from coaxshell.model import System, presets
 from coaxshell.plotting.frames import FieldView, field_frames, gathered
-from coaxshell.studio.arrays import decoded
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from asking import SMALL, described, ended, start
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
+from coaxshell.apps.studio import limits
 from coaxshell.model import System, presets
-from coaxshell.studio import limits
 
 VARIABLES = {
     "absorbers.mass": {"from": "1 kg", "to": "10 kg"},

@@ -7,7 +7,7 @@ from asking import described
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
-from coaxshell.studio import record_views
+from coaxshell.apps.studio import record_views
 
 
 def test_what_is_understood_is_told_with_the_description(client):

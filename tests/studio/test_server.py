@@ -22,11 +22,11 @@ import pytest
 import uvicorn
 from asking import KEY, PORT, described
 
-from coaxshell.cli import main
-from coaxshell.studio import limits
-from coaxshell.studio.app import create_app
-from coaxshell.studio.server import Patient, listening
-from coaxshell.studio.state import temporary
+from coaxshell.apps.cli import main
+from coaxshell.apps.studio import limits
+from coaxshell.apps.studio.app import create_app
+from coaxshell.apps.studio.server import Patient, listening
+from coaxshell.apps.studio.state import temporary
 
 
 @pytest.fixture(scope="module")

@@ -123,7 +123,7 @@ def test_a_run_is_known_by_its_name_and_others_are_not(client):
 
 
 def test_energy_and_pressure_at_a_point(client):
-    from coaxshell.studio.arrays import decoded
+    from coaxshell.apps.studio.arrays import decoded
 
     header, _ = solved(client, described("absorbers"))
     response = cx.simulate(presets.load("absorbers"), **SMALL)
@@ -150,7 +150,7 @@ def test_a_finer_run_is_a_job(client):
     job = start(client, kind="solve", slot="current", revision=1, system=described("bare"), resolution={**SMALL, "modes": 20})
     done = ended(client, job)
     assert (done["state"], done["fraction"], done["error"]) == ("done", 1.0, None)
-    from coaxshell.studio.arrays import decoded
+    from coaxshell.apps.studio.arrays import decoded
 
     _, arrays = decoded(client.get(f"/api/runs/{done['run']}").content)
     expected = cx.simulate(presets.load("bare"), **{**SMALL, "modes": 20}).stress("outer").values.T

@@ -8,10 +8,10 @@ import pytest
 from asking import described
 from test_optimisations import ASKED
 
+from coaxshell.apps.studio import limits, optimisations, study_routes
 from coaxshell.errors import InputError
 from coaxshell.model import presets
 from coaxshell.studies import OptimisationStudy, SweepStudy, read_study
-from coaxshell.studio import limits, optimisations, study_routes
 
 
 def written(client, tmp_path, **body):

@@ -9,8 +9,8 @@ import time
 import pytest
 from asking import carried_out, reporting
 
+from coaxshell.apps.studio import limits, workers
 from coaxshell.errors import InputError
-from coaxshell.studio import limits, workers
 
 
 @pytest.fixture(autouse=True)

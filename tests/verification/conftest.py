@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coaxshell.verification import Check, Curve, Panel, Sheet, run
-from coaxshell.verification.rows import at_least, close, skipped, within
+from coaxshell.apps.verification import Check, Curve, Panel, Sheet, run
+from coaxshell.apps.verification.rows import at_least, close, skipped, within
 
 
 def good(bench):

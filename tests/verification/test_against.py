@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import coaxshell.model as cx
+from coaxshell.apps.verification.against import against, template
+from coaxshell.apps.verification.causes import likely_cause
+from coaxshell.apps.verification.histories_csv import read_histories
 from coaxshell.errors import InputError
 from coaxshell.export import export_csv
 from coaxshell.model import presets
 from coaxshell.response.simulation import simulate
-from coaxshell.verification.against import against, template
-from coaxshell.verification.causes import likely_cause
-from coaxshell.verification.histories_csv import read_histories
 
 CASE = presets.load("iakovlev-double")
 

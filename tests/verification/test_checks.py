@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from coaxshell.acoustics import operators
-from coaxshell.verification import checks, chosen, run
-from coaxshell.verification.bench import Bench, bare_double_shell, tables
+from coaxshell.apps.verification import checks, chosen, run
+from coaxshell.apps.verification.bench import Bench, bare_double_shell, tables
 
 
 @pytest.mark.parametrize("name", [one.name for one in checks()])

@@ -6,12 +6,12 @@ import re
 
 import pytest
 
+from coaxshell.apps.verification import checks, chosen, run, write_report
+from coaxshell.apps.verification.markdown import markdown
+from coaxshell.apps.verification.page import page
+from coaxshell.apps.verification.rows import close, orders, within
+from coaxshell.apps.verification.terminal import drawn, plain
 from coaxshell.errors import InputError
-from coaxshell.verification import checks, chosen, run, write_report
-from coaxshell.verification.markdown import markdown
-from coaxshell.verification.page import page
-from coaxshell.verification.rows import close, orders, within
-from coaxshell.verification.terminal import drawn, plain
 
 
 def test_verdicts(report):

@@ -9,7 +9,7 @@ import numpy as np
 from axe_playwright_python.sync_playwright import Axe
 
 import coaxshell as cx
-from coaxshell.studio.links import fragment
+from coaxshell.apps.studio.links import fragment
 
 PATIENCE = 90
 """Seconds: a machine that does other things beside is slow, not wrong."""

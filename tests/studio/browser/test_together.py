@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from page_reading import PATIENCE, open_preset, rest, run_of, solved, system_of, until
 
 import coaxshell as cx
-from coaxshell.studio.links import fragment
+from coaxshell.apps.studio.links import fragment
 
 
 def test_two_tabs_do_not_disturb_each_other(server, open_page):

@@ -1,0 +1,103 @@
+"""``coaxshell run``: solve a system and tell its peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from coaxshell.apps.cli import options
+from coaxshell.apps.cli.options import named_as_options
+from coaxshell.apps.cli.output import Outputs, echo, print_document, runs_document, write_figure
+from coaxshell.apps.cli.running import Request, with_resolution
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
+
+
+@with_resolution
+def run(
+    scenario: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENARIO", help="A .toml file (see coaxshell init), a preset (see coaxshell presets), or - for standard input."
+        ),
+    ],
+    changes: options.SetOption = None,
+    *,
+    request: Request,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Save the run as NetCDF (.nc): arrays, system, settings, versions."),
+    ] = None,
+    compare: Annotated[
+        str | None,
+        typer.Option(
+            "--compare",
+            metavar="SCENARIO",
+            help="Solve this one too and print both side by side: by how much the first is smaller or larger.",
+        ),
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", metavar="FILE", help="Draw the stress at head and tail of each shell; .png, .pdf or .svg.")
+    ] = None,
+    energy: Annotated[
+        Path | None, typer.Option("--energy", metavar="FILE", help="Draw where the energy of the first run goes; .png, .pdf or .svg.")
+    ] = None,
+    as_json: options.JsonOption = False,
+    force: options.ForceOption = False,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Solve a system and print its peaks.
+
+    With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them;
+    --output saves the first run.
+    """
+    from coaxshell.apps.cli.comparison import labels, load_reference, print_comparison
+    from coaxshell.apps.cli.output import print_summary, tell_warnings
+    from coaxshell.apps.cli.running import load_system
+
+    outputs = Outputs(force)
+    if output is not None:
+        outputs.file(output, "--output", (".nc",))
+    outputs.figure(figure)
+    outputs.figure(energy, "--energy")
+    systems = [load_system(scenario, changes or ())]
+    if compare is not None:
+        systems.append(load_reference(compare, changes or ()))
+    responses = [request.solve(system, quiet=quiet) for system in systems]
+    names = labels(systems[0], systems[-1]) if compare is not None else (systems[0].name or scenario,)
+    named = dict(zip(names, responses, strict=True))
+    if output is not None:
+        with named_as_options(path="output"):
+            responses[0].save(output)
+    _draw(named, figure, energy, quiet=quiet)
+    if as_json:
+        found = {name: response.summary() for name, response in named.items()}
+        print_document(runs_document(found))
+        for summary in found.values():
+            tell_warnings(summary.warnings)
+    elif compare is not None:
+        print_comparison(named)
+    else:
+        print_summary(responses[0])
+    for word, path in (("saved", output), ("wrote", figure), ("wrote", energy)):
+        if path is not None:
+            echo(f"{word} {path}", aside=as_json)
+
+
+def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:
+    """Draw the runs, and where the energy of the first goes."""
+    if figure is not None:
+        from coaxshell.plotting import figure_comparison
+
+        write_figure(figure_comparison(named), figure)
+    if energy is not None:
+        from coaxshell.apps.cli.progress import progress
+        from coaxshell.plotting import figure_energy
+
+        with progress(quiet) as report:
+            balance = next(iter(named.values())).energy(progress=report)
+        write_figure(figure_energy(balance), energy, "--energy")

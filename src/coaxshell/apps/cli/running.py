@@ -1,0 +1,224 @@
+"""From the arguments of a command to systems, responses and studies.
+
+A system is a TOML file, standard input or a preset, with changes; a response is a saved run as it is, or a system solved at the
+resolution of the options; a study is worked on by as many processes, or the cluster, that the options name.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict, dataclass, fields, replace
+from functools import wraps
+from inspect import Parameter, signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coaxshell.apps.cli import options
+from coaxshell.apps.cli.options import named_as_options, overrides
+from coaxshell.apps.cli.output import tell_warnings
+from coaxshell.apps.cli.progress import progress, tell_time
+from coaxshell.errors import InputError
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import Response
+    from coaxshell.solver.settings import Settings
+    from coaxshell.studies import Execution
+
+
+STANDARD_INPUT = ("-", "/dev/stdin")
+
+
+def load_system(scenario: str, changes: Sequence[str] = (), where: str = "SCENARIO") -> System:
+    """Return the system of a preset, a TOML file or standard input ("-"), with ``path=value`` changes applied.
+
+    *where* is the argument that names it.
+
+    Raises
+    ------
+    InputError
+        No such preset or file, something wrong in the file, or a change that is not allowed.
+    """
+    from coaxshell.model.loading import as_system
+
+    wanted = overrides(changes)
+    if scenario in STANDARD_INPUT:
+        system = _of_input(where)
+    else:
+        try:
+            system = as_system(scenario, where)
+        except InputError as error:  # another file may have been given beside it
+            option = where.startswith("-") and error.where != where
+            raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if option else error from None
+    return system.with_overrides(wanted) if wanted else system
+
+
+def _of_input(where: str) -> System:
+    """Return the system whose TOML text comes from standard input; files that it names are relative to the current folder."""
+    import sys
+
+    from coaxshell.limits import TOML_BYTES
+    from coaxshell.model import System, toml
+
+    content = sys.stdin.buffer.read(TOML_BYTES.value + 1)
+    TOML_BYTES.check(len(content), "standard input")
+    try:
+        return System.model_validate(toml.loads(toml.text_of(content, "standard input"), Path(), "standard input"))
+    except InputError as error:
+        raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if where.startswith("-") else error from None
+
+
+@dataclass(frozen=True)
+class Request:
+    """The resolution options of a command, as typed; their names, help and defaults are those of every command that solves.
+
+    The defaults are the texts of :class:`coaxshell.solver.settings.Settings`', which takes too long to import for a page of help.
+    """
+
+    duration: options.DurationOption = options.DURATION
+    time_step: options.TimeStepOption = options.TIME_STEP
+    modes: options.ModesOption = options.MODES
+    tolerance: options.ToleranceOption = "1e-3"
+    engine: options.EngineOption = "spectral"
+    refinement: options.RefinementOption = "1"
+
+    def solve(self, system: System, *, quiet: bool) -> Response:
+        """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
+        from coaxshell.response import simulate
+        from coaxshell.solver.cost import run_cost
+
+        settings = self.settings(system)
+        with options.named_as_options(), progress(quiet) as report:
+            if settings.modes != "auto":
+                tell_time(run_cost(system, settings), "the run", quiet)
+            return simulate(system, settings=settings, progress=report)
+
+    def settings(self, system: System) -> Settings:
+        """Return the settings of a run of a system; InputError names the option that is wrong."""
+        return settings_of(system, asdict(self))
+
+
+def settings_of(system: System, given: Mapping[str, str]) -> Settings:
+    """Return the settings that the texts of some options describe; InputError names the option that is wrong."""
+    from coaxshell.solver.settings import Settings
+
+    with options.named_as_options():
+        return Settings.of(system, given)
+
+
+RESOLUTION = tuple(field.name for field in fields(Request))
+"""The names of the resolution's parameters."""
+
+
+def with_resolution(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command whose parameter ``request`` is filled from the options of a :class:`Request`, which stand in its place."""
+    parameters = signature(command, eval_str=True).parameters
+    shown: list[Parameter] = []
+    for parameter in parameters.values():
+        if parameter.name == "request":
+            shown += signature(Request, eval_str=True).parameters.values()
+        else:
+            shown.append(parameter)
+
+    @wraps(command)
+    def filled(**given: Any) -> None:
+        request = Request(**{name: given.pop(name) for name in RESOLUTION})
+        command(**given, request=request)
+
+    told: Any = filled
+    told.__signature__ = signature(command).replace(parameters=[each.replace(kind=Parameter.KEYWORD_ONLY) for each in shown])
+    return filled
+
+
+_FOR_SOLVING = {"changes": "--set", **{name: "--" + name.replace("_", "-") for name in RESOLUTION}}
+
+
+def is_saved(source: str) -> bool:
+    """Return whether a source names a saved run."""
+    return Path(source).suffix.lower() == ".nc"
+
+
+def answers(
+    context: typer.Context,
+    sources: Sequence[str],
+    changes: Sequence[str] | None,
+    request: Request,
+    *,
+    quiet: bool,
+    options: tuple[str, str] = ("SOURCE", "--compare"),
+) -> list[Response]:
+    """Return the response of each source: a saved run (.nc), a preset or a scenario (.toml).
+
+    *options* are the arguments that name the first and the second source.
+
+    Raises
+    ------
+    InputError
+        There is no such source, or every one is a saved run and an option for solving is given.
+    """
+    if all(is_saved(source) for source in sources):
+        _refuse_solving_options(context)
+    found = []
+    for number, source in enumerate(sources):
+        if is_saved(source):
+            from coaxshell.response import load_response
+
+            found.append(load_response(source))
+        else:
+            from coaxshell.apps.cli.comparison import load_reference
+            from coaxshell.apps.cli.running import load_system
+
+            load = load_reference if number else load_system
+            found.append(request.solve(load(source, changes or (), options[number > 0]), quiet=quiet))
+    return found
+
+
+def _refuse_solving_options(context: typer.Context) -> None:
+    for parameter, option in _FOR_SOLVING.items():
+        source = context.get_parameter_source(parameter)
+        if source is not None and source.name == "COMMANDLINE":
+            raise InputError(option, "has no effect on a saved run", "leave it out, or name a preset or a .toml file to solve")
+
+
+def tell_all_warnings(responses: Sequence[Response]) -> None:
+    """Tell the warnings of all responses, each once."""
+    tell_warnings(dict.fromkeys(text for response in responses for text in response.warnings))
+
+
+@contextmanager
+def study_options(store: Path, resume: bool, workers: str | None, dask: str | None, quiet: bool) -> Iterator[Execution]:
+    """Yield how a study is worked on: on a Dask cluster if there is the address of one, else by a pool of processes of our own.
+
+    Raises
+    ------
+    InputError
+        No number of processes, or one beside a cluster; no cluster at the address.
+    """
+    from coaxshell.solver.settings import whole
+    from coaxshell.studies import Execution
+    from coaxshell.studies.executors import MAX_WORKERS
+
+    with ExitStack() as stack:
+        with named_as_options(workers="workers", address="dask", dask="dask"):
+            number = None if workers is None else whole("workers", workers, MAX_WORKERS)
+            asked = Execution(workers=number, store=store, resume=resume, dask=dask)
+            ready = stack.enter_context(asked.started())
+        yield replace(ready, progress=stack.enter_context(progress(quiet, left=True)))
+
+
+def tell_study_time(systems: Sequence[System | InputError], resolution: Settings, count: int, execution: Execution, *, quiet: bool) -> None:
+    """Say how long a study of so many runs will take, from some of its systems."""
+    from coaxshell.studies.cost import case_cost
+
+    if resolution.modes != "auto":
+        cost = case_cost(systems, resolution).times(count, execution.capacity)
+        tell_time(cost, f"{count:,} runs", quiet)
+
+
+def tell_code(functions: list[str]) -> None:
+    """Say which functions of the user's are about to be run."""
+    sys.stderr.write(f"runs code: {', '.join(functions)}\n")

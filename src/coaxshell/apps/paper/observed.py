@@ -1,0 +1,115 @@
+"""What is kept of a run: histories at head and tail, the stress over the circle, peaks; small enough for hundreds of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coaxshell.apps.paper.cases import head_of
+from coaxshell.errors import InputError
+from coaxshell.model import Shell
+from coaxshell.numerics.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import Response
+    from coaxshell.response.summary import ShellSummary
+
+
+SHELLS = ("inner", "outer")
+SIDES = {"head": 0.0, "tail": 180.0}
+"""Degrees from the head."""
+
+
+@dataclass(frozen=True)
+class Observed:
+    """What is kept of one run.
+
+    Attributes
+    ----------
+    time : ndarray, shape (T,)
+        Transits.
+    transit_time : float
+        Seconds in a transit.
+    modes : int
+        Highest order.
+    shells : mapping of str to ShellSummary
+        Peaks and root mean squares of the "inner" and the "outer" shell, those that are elastic.
+    histories : mapping of (quantity, shell, side) to ndarray, shape (T,)
+        "stress" (Pa) and "displacement" (m, inward) at "head" and "tail"; empty if only peaks were kept.
+    circle : mapping of str to ndarray, shape (T,)
+        Root mean square of the stress over a shell's surface at every instant, Pa.
+    absorber : ndarray, shape (3, T)
+        Displacement of the first absorber's mass, m, and its forces on the inner and the outer shell, N/m; (3, 0) without absorbers.
+    warnings : tuple of str
+    """
+
+    time: FloatArray
+    transit_time: float
+    modes: int
+    shells: Mapping[str, ShellSummary]
+    histories: Mapping[tuple[str, str, str], FloatArray] = field(default_factory=dict)
+    circle: Mapping[str, FloatArray] = field(default_factory=dict)
+    absorber: FloatArray = field(default_factory=lambda: np.empty((3, 0)))
+    warnings: tuple[str, ...] = ()
+
+    def at(self, quantity: str, shell: str, side: str) -> FloatArray:
+        """Return a history at a point; InputError if the shell is rigid and has none."""
+        try:
+            return self.histories[quantity, shell, side]
+        except KeyError:
+            raise InputError("shells", f"the {shell} shell is rigid and has no {quantity}", "give an elastic one") from None
+
+    def stress(self, shell: str, side: str) -> FloatArray:
+        """Return the hoop stress at a point, Pa, shape (T,)."""
+        return self.at("stress", shell, side)
+
+    def displacement(self, shell: str, side: str) -> FloatArray:
+        """Return the inward displacement of a point, m, shape (T,)."""
+        return self.at("displacement", shell, side)
+
+
+def observe(response: Response, *, peaks_only: bool = False) -> Observed:
+    """Return what is kept of a response; with *peaks_only* no histories."""
+    summary = response.summary(segment="point")  # the paper's voltages are those at points
+    system = response.system
+    names = {name: system.shell_index(name) for name in SHELLS if isinstance(system.shells[system.shell_index(name)], Shell)}
+    elastic = [i for i, shell in enumerate(system.shells) if isinstance(shell, Shell)]
+    shells = {name: summary.shells[elastic.index(index)] for name, index in names.items()}
+    common = (response.time, float(summary.transit_time), response.modes, shells)
+    if peaks_only:
+        return Observed(*common, warnings=tuple(response.warnings))
+    return Observed(
+        *common,
+        histories=_histories(response, tuple(names)),
+        circle={name: _over_circle(response, name) for name in names},
+        absorber=_absorber(response, system),
+        warnings=tuple(response.warnings),
+    )
+
+
+def _histories(response: Response, shells: tuple[str, ...]) -> dict[tuple[str, str, str], FloatArray]:
+    head = head_of(response.system)
+    found: dict[tuple[str, str, str], FloatArray] = {}
+    for shell in shells:
+        for quantity in ("stress", "displacement"):
+            values = getattr(response, quantity)(shell, angle=[head + turn for turn in SIDES.values()])
+            for k, side in enumerate(SIDES):
+                found[quantity, shell, side] = np.asarray(values, dtype=np.float64)[:, k].copy()
+    return found
+
+
+def _over_circle(response: Response, shell: str) -> FloatArray:
+    from coaxshell.response.synthesis import mean_square
+
+    return np.sqrt(mean_square(np.asarray(response.modal(shell, "stress"), dtype=np.float64)))
+
+
+def _absorber(response: Response, system: System) -> FloatArray:
+    if not system.absorber_list:
+        return np.empty((3, 0))
+    force = np.asarray(response.absorber_force(), dtype=np.float64)[0]
+    return np.vstack([np.asarray(response.absorber_displacement(), dtype=np.float64)[:1], force])

@@ -1,0 +1,140 @@
+"""The parts of the reproduction, each independent of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from coaxshell.apps.paper import cases
+from coaxshell.apps.paper.absorbers import SHOWN
+from coaxshell.apps.paper.claims import systems
+from coaxshell.apps.paper.known_runs import CORRECTED
+from coaxshell.apps.paper.limiting_cases import limiting_systems
+from coaxshell.solver.settings import Settings
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+
+VARIANTS: Mapping[str, frozenset[str]] = MappingProxyType(
+    {
+        CORRECTED: frozenset(),
+        "radius factor": frozenset({"radius-factor"}),
+        "no projection": frozenset({"missing-projection"}),
+        "both slips": frozenset({"radius-factor", "missing-projection"}),
+    }
+)
+"""Models under which the claims are judged, by name, with the slips that are turned on."""
+
+WITH_FIELDS = (CORRECTED, "radius factor")
+"""Variants whose fields are computed."""
+
+QUICK = Settings(duration=5.0, time_step=1e-2, modes=24)
+"""The coarse resolution of a trial."""
+
+LIMITS = "of limiting cases"
+"""A group that slips, defined for two shells in three fluids, do not reach."""
+
+_CHUNK = 13
+DIRECT_SAMPLE = (10, 25, 50)
+"""Numbers of absorbers on which the direct engine's time is measured."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of the work: a kind (what is done), what to, and how it is called.
+
+    Attributes
+    ----------
+    kind : str
+        "runs", "fields", "figure", "film", "slips" or "direct".
+    about : str
+        Which one: a group of runs, a system, the number of a figure.
+    variant : str
+        Model.
+    """
+
+    kind: str
+    about: str
+    variant: str = CORRECTED
+
+    @property
+    def title(self) -> str:
+        """The part in words."""
+        model = "" if self.variant == CORRECTED else f", {self.variant}"
+        return f"{self.kind} {self.about}".strip() + model
+
+
+@dataclass(frozen=True)
+class Group:
+    """Runs that are solved together."""
+
+    systems: Mapping[str, System]
+    resolution: Settings
+    peaks_only: bool = False
+
+
+def groups(resolution: Settings) -> dict[str, Group]:
+    """Return all runs that figures and claims ask for, in groups that take comparable times."""
+    bare = systems.preset("bare")
+    coarse = resolution.modes if isinstance(resolution.modes, int) else 150
+    found = {
+        "of the presets": Group({name: systems.preset(name) for name in ("bare", "absorbers", "active", "hybrid")}, resolution),
+        "with half the time step": Group({"bare": bare}, replace(resolution, time_step=resolution.time_step / 2.0)),
+        "with twice the orders": Group({"bare": bare}, replace(resolution, modes=2 * coarse)),
+        LIMITS: Group(_limits(), resolution),
+        "of linear stiffnesses": Group(cases.linear_stiffness(bare) | {"rigid": systems.with_rigid_link()}, resolution),
+        "of masses": Group(cases.mass(bare), resolution),
+        "of cubic stiffnesses": Group(cases.cubic_stiffness(bare), resolution),
+        "of attachment positions": Group(cases.offset(bare), resolution.up_to(SHOWN)),
+        "of dampings": Group(cases.damping(bare), resolution),
+        "of gains": Group(cases.gains(bare), resolution),
+    }
+    counts = sorted({*cases.COUNTS, *cases.COARSE_COUNTS})
+    for start in range(0, len(counts), _CHUNK):
+        chunk = tuple(counts[start : start + _CHUNK])
+        found[f"of {chunk[0]} to {chunk[-1]} absorbers"] = Group(cases.count(bare, chunk), resolution, peaks_only=True)
+    return found
+
+
+def _limits() -> dict[str, System]:
+    made = (
+        systems.emptied_by_thin_fluid(),
+        systems.double_hollow_by_thin_fluid(),
+        systems.filled_by_shrinking(),
+        systems.hollow_inside(),
+    )
+    printed = (systems.preset(name) for name in ("iakovlev-evacuated", "iakovlev-filled", "iakovlev-double"))
+    drawn = limiting_systems([systems.preset(name) for name in ("iakovlev-evacuated", "iakovlev-filled", "iakovlev-double")])
+    return {system.name: system for system in (*printed, *made)} | drawn
+
+
+def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: bool = True) -> Iterator[Part]:
+    """Yield the parts in the order in which they are begun, long ones first.
+
+    Parameters
+    ----------
+    resolution : Settings
+    only : frozenset of str
+        Of "figures", "claims", "slips", "film" and "estimate"; all if empty.
+    film : bool
+        Whether a film is made.
+    """
+
+    def wanted(name: str) -> bool:
+        return not only or name in only
+
+    if wanted("slips"):
+        yield Part("slips", "one by one")
+    if film and wanted("film"):
+        yield Part("film", "bare against hybrid")
+    if wanted("figures"):
+        yield from (Part("figure", number) for number in ("13", "4", "14", "3", "12"))
+    if wanted("claims"):
+        yield from (Part("fields", name, variant) for variant in WITH_FIELDS for name in ("bare", "hybrid"))
+    if wanted("estimate"):
+        yield Part("direct", "engine on a sample")
+    if wanted("claims") or wanted("figures"):
+        for variant in VARIANTS if wanted("claims") else (CORRECTED,):
+            yield from (Part("runs", name, variant) for name in groups(resolution) if variant == CORRECTED or name != LIMITS)

@@ -1,0 +1,82 @@
+"""Responses with slips turned on: the ordinary solver, given other formulas."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from coaxshell.apps.paper.slips.growth import growth
+from coaxshell.apps.paper.slips.switches import slipped
+from coaxshell.errors import InputError
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver.settings import Settings
+from coaxshell.studies.structures import solve_each as solve_each_corrected
+
+if TYPE_CHECKING:
+    from coaxshell.model import System
+    from coaxshell.response import PreparedSystem, Response
+
+CORRECTED: frozenset[str] = frozenset()
+"""No slips: the theory manual's equations."""
+
+SELF_EXCITED = frozenset({"interior-derivative", "interior-function", "radiation-sign"})
+"""Slips under which a fluid need not be passive, so that growth is looked for; feedback is checked by the solver itself."""
+
+
+def simulate(system: System, resolution: Settings, slips: frozenset[str] = CORRECTED, progress: Progress | None = None) -> Response:
+    """Return the response of a system with some slips turned on; without any, exactly :func:`coaxshell.simulate`'s.
+
+    Raises
+    ------
+    InputError
+        If a slip is not known, the system is not the paper's kind, the engine is not the spectral one, or the slip makes the
+        system grow within the duration.
+    """
+    ((_, response),) = solve_each({"": system}, resolution, slips, progress)
+    return response
+
+
+def solve_each(
+    systems: Mapping[str, System], resolution: Settings, slips: frozenset[str] = CORRECTED, progress: Progress | None = None
+) -> Iterator[tuple[str, Response]]:
+    """Yield (name, response) of each system in turn, with some slips turned on.
+
+    Neighbours that differ only in their absorbers share one prepared structure.
+
+    Raises
+    ------
+    InputError
+        As :func:`simulate`.
+    """
+    if not slips:
+        yield from solve_each_corrected(systems, resolution, progress)
+        return
+    last: tuple[System, PreparedSystem] | None = None
+    for number, (name, system) in enumerate(systems.items()):
+        if progress:
+            progress(number / len(systems), "solving")
+        structure = system.replace(absorbers=())
+        if last is None or last[0] != structure:
+            last = (structure, _prepared(structure, resolution, slips))
+        yield name, last[1].simulate(system.absorbers)
+    if progress:
+        progress(1.0, "solving")
+
+
+def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> PreparedSystem:
+    from coaxshell.response import PreparedSystem
+    from coaxshell.solver import Prepared
+
+    if resolution.engine != "spectral":
+        raise InputError("engine", f"{resolution.engine!r} knows no slips", 'use engine="spectral"')
+    prepared = Prepared(slipped(system, slips), resolution)
+    if slips & SELF_EXCITED:
+        assert isinstance(prepared.settings.modes, int)
+        fastest = growth(system, slips, prepared.settings.modes, 1.0 / resolution.duration)
+        if fastest is not None:
+            raise InputError(
+                "slips",
+                f"{', '.join(sorted(slips))}: order {fastest.order} grows without bound, by e^({fastest.rate:.3g} t)",
+                f"use a duration below {1.0 / fastest.rate:.2g}",
+            )
+    return PreparedSystem(prepared)

@@ -1,0 +1,152 @@
+"""A response as the arrays and bars that the page draws."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from coaxshell.apps.studio import limits
+from coaxshell.apps.studio.arrays import Item, Packed, packed
+from coaxshell.model import RigidShell, Shell
+from coaxshell.model.places import shell_name
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.response import Response
+from coaxshell.response.peaks import Peak
+from coaxshell.response.quantities import QUANTITIES, Quantity, Where, columns
+from coaxshell.response.summary import Summary, summarise
+from coaxshell.response.tables import quantities_of
+
+_ABSORBER_FORCE = {"absorber_force": ("absorber force, inward", "N/m")}
+_PLACES: dict[Where, str] = {"head": "peak {} at the head", "tail": "peak {} at the tail", "anywhere": "peak {} anywhere", "rms": "RMS {}"}
+
+
+def quantities() -> dict[str, tuple[str, str]]:
+    """Return what is given at head and tail of each shell: label and unit by name."""
+    return {quantity.name: (quantity.label, quantity.unit) for quantity in columns()} | _ABSORBER_FORCE
+
+
+def bars() -> dict[str, tuple[str, str]]:
+    """Return the bars of a shell: label and unit by their keys in the summary."""
+    return {
+        quantity.key(where): (
+            f"peak {quantity.noun}, mean over a segment" if quantity.largest else _PLACES[where].format(quantity.noun),
+            quantity.unit,
+        )
+        for quantity in QUANTITIES.values()
+        for where in quantity.summary
+    }
+
+
+def curves(response: Response, seconds: float) -> Packed:
+    """Return header and arrays of a run as docs/studio-api.md says."""
+    system, count = response.system, len(response.system.shells)
+    summary = summarise(response.solution)  # without peaks of velocities and accelerations, which a slider would wait for
+    absorbers = _absorbers(response)
+    highest = {shell.name: shell.actuator_limit for shell in summary.shells}
+    header = {
+        "ok": True,
+        "resolution": limits.table_of(response.settings),
+        "seconds": seconds,
+        "transit_time_seconds": summary.transit_time,
+        "name": system.name,
+        "shells": [
+            {
+                "index": index,
+                "name": shell_name(index, count),
+                "radius": shell.radius,
+                "rigid": isinstance(shell, RigidShell),
+                "actuator_limit": highest.get(shell_name(index, count)),
+            }
+            for index, shell in enumerate(system.shells)
+        ],
+        "absorbers": absorbers,
+        "bars": _bars(response, summary),
+        "estimates": {
+            "stress": [_finite(value) for value in response.estimates.modal_stress],
+            "displacement": [_finite(value) for value in response.estimates.modal_displacement],
+            "time_window": _finite(response.estimates.time_window),
+            "errors": [shell.errors for shell in summary.shells],
+        },
+        "warnings": list(response.warnings),
+    }
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
+
+
+def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]:
+    """Return all histories at the ends of the shells; straight from the solution, since labels would take longer than the numbers."""
+    solution, head = response.solution, response.system.sources[0].angle
+    ends = np.array([head, head + 180.0])
+    items: dict[str, Item] = {}
+    for index in range(len(response.system.shells)):
+        for quantity in _given(response, index):
+            values = quantity.at(response.motion, index, ends)
+            items[f"{quantity.name}/{index}"] = Item(np.asarray(values, dtype=np.float32).T, quantity.unit)
+    if solution.absorber_force is not None and response.system.absorber_list:
+        forces = solution.problem.scales.line_force * solution.absorber_force
+        for index in range(len(response.system.shells)):
+            for side, first in ((0, index), (1, index - 1)):  # a shell is the inner one of the gap outside it, the outer one of that inside
+                pair = _nearest(response, head, first)
+                if pair is not None and f"absorber_force/{index}" not in items:
+                    items[f"absorber_force/{index}"] = Item(forces[list(pair), side], "N/m")
+    return items
+
+
+def _given(response: Response, index: int) -> list[Quantity]:
+    return quantities_of(response, index) if isinstance(response.system.shells[index], Shell) else []
+
+
+def _absorbers(response: Response) -> dict[str, Any]:
+    listed = response.system.absorber_list
+    pair = _nearest(response, response.system.sources[0].angle, None)
+    return {
+        "count": len(listed),
+        "angles": [absorber.angle for absorber in listed],
+        "inner_shells": [absorber.inner_shell for absorber in listed],
+        "head": None if pair is None else pair[0],
+        "tail": None if pair is None else pair[1],
+    }
+
+
+def _nearest(response: Response, head: float, inner_shell: int | None) -> tuple[int, int] | None:
+    """Return the numbers of the absorbers nearest to head and tail, of one gap or of all; None without any."""
+    numbers = [n for n, one in enumerate(response.system.absorber_list) if inner_shell in (None, one.inner_shell)]
+    if not numbers:
+        return None
+    listed = response.system.absorber_list
+
+    def nearest(angle: float) -> int:
+        return min(numbers, key=lambda n: round(abs((listed[n].angle - angle + 180.0) % 360.0 - 180.0), 9))
+
+    return nearest(head), nearest(head + 180.0)
+
+
+def _bars(response: Response, summary: Summary) -> list[dict[str, Any]]:
+    count = len(response.system.shells)
+    numbers = {shell_name(index, count): index for index in range(count)}
+    found: list[dict[str, Any]] = []
+    for shell in summary.shells:
+        for name, (label, unit) in bars().items():
+            value: Peak | float | None = getattr(shell, name)
+            if value is None:
+                continue
+            told = _peak(value) if isinstance(value, Peak) else {"value": _finite(value), "time": None, "angle": None}
+            found.append({"shell": numbers[shell.name], "name": name, "label": label, "unit": unit, **told})
+    for name, label, unit in (
+        ("absorber_displacement", "peak absorber displacement", "m"),
+        ("absorber_force", "peak absorber force", "N/m"),
+    ):
+        largest = getattr(summary, name)
+        if largest is not None:
+            told = {"value": _finite(largest), "time": None, "angle": None}
+            found.append({"shell": None, "name": name, "label": label, "unit": unit, **told})
+    return found
+
+
+def _peak(peak: Peak) -> dict[str, Any]:
+    return {"value": _finite(peak.value), "time": peak.time, "angle": peak.angle, "growing": peak.growing}
+
+
+def _finite(value: float | FloatArray) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None

@@ -1,0 +1,79 @@
+"""From what a page sends to a system, and back: JSON or TOML, normalised, with the numbers that follow from it at once."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from coaxshell.apps.studio import limits, refusals
+from coaxshell.apps.studio.record_views import viewed
+from coaxshell.errors import InputError
+from coaxshell.model import RigidShell, System
+from coaxshell.model.places import shell_phrase
+from coaxshell.model.toml import loads
+from coaxshell.studies.metrics import metric_names
+from coaxshell.studies.reading import absorber_mass, shell_mass
+
+
+def system_of(data: dict[str, Any]) -> System:
+    """Return the system of a request's ``system`` (table) or ``toml`` (text); InputError when it is not one or too large."""
+    text = data.get("toml")
+    if isinstance(text, str):
+        return _checked(loads(text))
+    table = data.get("system")
+    if not isinstance(table, dict):
+        raise InputError("system", "is missing" if table is None else f"{table!r:.60} is not a system", "give a table of its entries")
+    return _checked(table)
+
+
+def _checked(table: dict[str, Any]) -> System:
+    limits.check_raw(table)
+    with refusals.readable("system"):
+        system = System.model_validate(table)
+    limits.check_system(system)
+    return system
+
+
+def normalised(system: System) -> dict[str, Any]:
+    """Return a system as plain JSON in SI, from which an equal one is read."""
+    return dict(system.model_dump(mode="json"))
+
+
+def told(system: System) -> dict[str, Any]:
+    """Return the answer to a valid description."""
+    plain = {"system": normalised(system), "toml": system.to_toml_string()}
+    return {"ok": True, **plain, "derived": derived(system), "metrics": metric_names(system), "records": viewed(system)}
+
+
+def derived(system: System) -> list[dict[str, Any]]:
+    """Return what follows from a description without solving it: name, label, value, unit."""
+    transit = system.reference_radius / system.exterior.sound_speed
+    rows = [("transit_time", "transit time a/c", transit, "s")]
+    count = len(system.shells)
+    shells_mass = 0.0
+    for index, shell in enumerate(system.shells):
+        name = shell_phrase(index, count)
+        if isinstance(shell, RigidShell):
+            continue
+        mass = shell_mass(shell)
+        shells_mass += mass
+        rows += [
+            (f"mass/{index}", f"mass of the {name}", mass, "kg/m"),
+            (f"thickness/{index}", f"thickness of the {name}", shell.thickness, "m"),
+        ]
+        rows += [(f"slenderness/{index}", f"radius by thickness of the {name}", shell.radius / shell.thickness, "")]
+    added = absorber_mass(system)
+    rows += [("shell_mass", "mass of all shells", shells_mass, "kg/m"), ("absorber_mass", "mass of all absorbers", added, "kg/m")]
+    if shells_mass:
+        rows.append(("absorber_share", "absorbers by shells", added / shells_mass, ""))
+    for index, source in enumerate(system.sources):
+        of = "" if len(system.sources) == 1 else f" of source {index}"
+        rows.append((f"peak_pressure/{index}", f"free-field peak at the head{of}", _peak(source.pulse), "Pa"))
+        distance = system.source_distance(source)
+        if distance is not None:
+            rows.append((f"distance/{index}", f"distance from the axis{of}", distance, "m"))
+    return [{"name": name, "label": label, "value": value, "unit": unit} for name, label, value, unit in rows if math.isfinite(value)]
+
+
+def _peak(pulse: Any) -> float:
+    return float(pulse.peak)

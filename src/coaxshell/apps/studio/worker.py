@@ -1,0 +1,164 @@
+"""What runs in a worker process: systems solved, with structures and answers kept; all else is made from the answers."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+from threadpoolctl import ThreadpoolController
+
+from coaxshell.apps.studio import limits, memory
+from coaxshell.errors import InputError
+from coaxshell.model import System
+from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
+from coaxshell.response import PreparedSystem, Response, prepare
+from coaxshell.solver.settings import Settings
+from coaxshell.studies.executors import begin_worker
+
+STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
+STOP, FRACTION, HELD, FIRST = range(4)
+"""Places on the shared board: the task to be stopped, how far the present one is, bytes of memory after the last one, and before all."""
+
+
+class Stopped(BaseException):
+    """The task is no longer wanted; no except clause for mistakes may catch it."""
+
+
+class Outcome(NamedTuple):
+    """How a task ended: "done" with a value, "input" with (where, problem, remedy), or "stopped"."""
+
+    state: str
+    value: Any
+
+
+class _Here:
+    """The state of this process."""
+
+    number = 0
+    part: tuple[float, float, str] | None = None
+    board: Any = None
+    stage: Any = None
+    structures: ByteBoundedCache[PreparedSystem] = ByteBoundedCache(STRUCTURE_BYTES, held_bytes)
+    answers: ByteBoundedCache[Response] = ByteBoundedCache(ANSWER_BYTES, held_bytes)
+
+
+def begin(board: Any, stage: Any, niceness: int) -> None:
+    """Set up a worker process: Ctrl-C and a closed terminal are the server's to handle, and a worker whose server is gone goes too."""
+    begin_worker("SIGHUP")
+    _Here.board, _Here.stage = board, stage
+    os.nice(niceness)
+    ThreadpoolController().limit(limits=1, user_api="blas")  # the workers share the cores
+
+
+def ready() -> int:
+    """Import what every task needs, and return the process's number."""
+    import coaxshell.plotting.frames  # noqa: F401 - so that the first request need not wait for it
+
+    _Here.board[HELD] = memory.held()
+    _Here.board[FIRST] = _Here.board[FIRST] or _Here.board[HELD]
+    return os.getpid()
+
+
+def perform(number: int, task: Callable[..., Any], arguments: tuple[Any, ...]) -> Outcome:
+    """Carry out one task; what is wrong with its input comes back as a value."""
+    _Here.number, _Here.part = number, None
+    _Here.board[FRACTION] = 0.0
+    _Here.stage.value = b""
+    try:
+        return _outcome(task, arguments)
+    finally:
+        _Here.board[HELD] = memory.held()
+
+
+def _outcome(task: Callable[..., Any], arguments: tuple[Any, ...]) -> Outcome:
+    try:
+        return Outcome("done", task(*arguments))
+    except Stopped:
+        return Outcome("stopped", None)
+    except InputError as error:
+        return Outcome("input", (error.where, error.problem, error.remedy))
+    except (ArithmeticError, ValueError, MemoryError) as error:  # what numbers far out of the usual do to linear algebra
+        remedy = "look for a value far from usual, in the system or its resolution"
+        return Outcome("input", ("system", f"cannot be solved ({type(error).__name__}: {str(error)[:100]})", remedy))
+
+
+def report(fraction: float, stage: str) -> None:
+    """Tell the server how far the task is; Stopped when it is no longer wanted."""
+    if _Here.board is None:
+        return
+    if _Here.board[STOP] == _Here.number:
+        raise Stopped
+    if _Here.part is not None:
+        begun, share, stage = _Here.part
+        fraction = begun + share * fraction
+    _Here.board[FRACTION] = fraction
+    _Here.stage.value = stage.encode()[:60]
+
+
+@contextmanager
+def part(number: int, count: int, stage: str) -> Iterator[None]:
+    """Make the reports inside a ``with`` block those of one of several equal parts of the task."""
+    _Here.part = number / count, 1 / count, stage
+    try:
+        report(0.0, stage)
+        yield
+    finally:
+        _Here.part = None
+
+
+def structure_key(system: System, settings: Settings) -> str:
+    """Return what names all that does not depend on the absorbers."""
+    return answer_key(system.replace(absorbers=()), settings)
+
+
+def answer_key(system: System, settings: Settings) -> str:
+    """Return what names a system at a resolution; short, since a description with a record has hundreds of kilobytes."""
+    return hashlib.blake2b(f"{system.model_dump_json()}{settings}".encode(), digest_size=16).hexdigest()
+
+
+def answer(system: System, settings: Settings) -> Response:
+    """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``."""
+    key = answer_key(system, settings)
+    found = _Here.answers.get(key)
+    if found is not None:
+        return found
+    prepared = _at_hand(system, settings)
+    try:
+        response = prepared.simulate(system.absorbers, progress=report)
+    finally:
+        _Here.structures.put(structure_key(system, settings), prepared)  # weighed afterwards: it grows with the run
+    _Here.answers.put(key, response)
+    return response
+
+
+def structure(system: System, settings: Settings) -> PreparedSystem:
+    """Return all of a system but its absorbers, prepared: kept, or made and kept."""
+    prepared = _at_hand(system, settings)
+    _Here.structures.put(structure_key(system, settings), prepared)
+    return prepared
+
+
+def _at_hand(system: System, settings: Settings) -> PreparedSystem:
+    return _Here.structures.get(structure_key(system, settings)) or _structure(system.replace(absorbers=()), settings)
+
+
+def _structure(system: System, settings: Settings) -> PreparedSystem:
+    """Return a structure prepared from what the one used last shares with it, or from nothing."""
+    live = settings.steps * settings.refinement <= limits.PREVIEW_STEPS  # finer ones would share hundreds of megabytes
+    kin = _Here.structures.latest(lambda kept: kept.settings == settings) if live else None
+    if kin is not None:
+        return kin.retuned(system)
+    return prepare(system, settings=settings, retunable=live, progress=report)
+
+
+def solve(system: System, settings: Settings) -> Any:
+    """Return the curves of a run."""
+    from coaxshell.apps.studio.curves import curves
+
+    start = time.perf_counter()
+    response = answer(system, settings)
+    return curves(response, time.perf_counter() - start)

@@ -1,0 +1,119 @@
+"""One circumferential order: shells and fluids as M x'' + C x' + K x.
+
+In each fluid a velocity potential carries the motion, u = grad phi, p = -rho dphi/dt, the exterior one the scattered wave alone. It is
+truncated so far away that nothing returns. Lengths are in a, times in a/c_e, pressures in rho_e c_e^2; w is positive inward, so
+u_r = -dw/dt at a wall. Unknowns: V of all shells, W of all shells, the potentials from the inside out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.apps.verification.independent.elements import RadialMatrices, elements
+from coaxshell.apps.verification.independent.walls import Wall
+from coaxshell.model.fluids import Fluid
+from coaxshell.model.shells import Shell
+from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
+
+MARGIN = 0.1
+"""How far beyond the reach of the last echo the exterior is cut, in a."""
+
+
+class Region(NamedTuple):
+    """One fluid: density and slowness relative to the exterior's, and its elements."""
+
+    density: float
+    slowness: float
+    radial: RadialMatrices
+
+
+class Block(NamedTuple):
+    """Matrices of one order and the place of the potential at r = 1 outside."""
+
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    exterior_point: int
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """A system's scales, walls and fluid regions, ready to be assembled order by order."""
+
+    system: System
+    length: float
+    transit: float
+    pressure: float
+    walls: tuple[Wall, ...]
+    regions: tuple[Region | None, ...]
+
+    @classmethod
+    def of(cls, system: System, duration: float, element: float) -> Assembly:
+        """Return the assembly of a system of elastic shells for a duration in transits."""
+        a, c, rho = system.reference_radius, system.exterior.sound_speed, system.exterior.density
+        walls = tuple(Wall.of(shell) for shell in system.shells if isinstance(shell, Shell))
+        if len(walls) != len(system.shells):
+            raise NotImplementedError("the independent solver has no rigid shells")
+        edges = [0.0, *(w.radius / a for w in walls), 1.0 + duration / 2 + MARGIN]
+        regions = tuple(
+            Region(fluid.density / rho, c / fluid.sound_speed, elements(edges[j], edges[j + 1], element))
+            if isinstance(fluid, Fluid)
+            else None
+            for j, fluid in enumerate(system.fluids)
+        )
+        return cls(system, a, a / c, rho * c**2, walls, regions)
+
+    @property
+    def saturates(self) -> bool:
+        """Whether the controller's voltage is limited."""
+        return self.system.control is not None and self.system.control.saturation
+
+    def block(self, m: int) -> Block:
+        """Return the matrices of one order."""
+        n = len(self.walls)
+        sizes = [0 if region is None else region.radial.nodes.size for region in self.regions]
+        offset = 2 * n + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+        mass, damping, stiffness = (np.zeros((int(offset[-1]),) * 2) for _ in range(3))
+        for j, region in enumerate(self.regions):
+            if region is not None:
+                self._fluid(region, j, m, slice(int(offset[j]), int(offset[j + 1])), (mass, damping, stiffness))
+        for i in range(n):
+            self._shell(i, m, (mass, damping, stiffness))
+        return Block(mass, damping, stiffness, int(offset[-2]))
+
+    def _fluid(self, region: Region, j: int, m: int, rows: slice, matrices: tuple[FloatArray, FloatArray, FloatArray]) -> None:
+        mass, damping, stiffness = matrices
+        n, radial, rho = len(self.walls), region.radial, region.density
+        mass[rows, rows] = rho * region.slowness**2 * radial.mass
+        stiffness[rows, rows] = rho * (radial.radial + m * m * radial.angular)
+        for i, point, sign in ((j - 1, rows.start, 1), (j, rows.stop - 1, -1)):  # outside of shell j - 1, inside of shell j
+            if 0 <= i < n:
+                radius = self.walls[i].radius / self.length
+                damping[point, n + i] = -sign * rho * radius
+                damping[n + i, point] = sign * rho * radius
+        if radial.nodes[0] == 0 and m > 0:  # the potential of order m vanishes on the axis
+            axis = rows.start
+            mass[axis, :] = mass[:, axis] = stiffness[axis, :] = stiffness[:, axis] = 0.0
+            mass[axis, axis] = 1.0
+
+    def _shell(self, i: int, m: int, matrices: tuple[FloatArray, FloatArray, FloatArray]) -> None:
+        mass, damping, stiffness = matrices
+        n, wall = len(self.walls), self.walls[i]
+        at, radius = [i, n + i], wall.radius / self.length
+        mass[at, at] = wall.inertia / (self.system.exterior.density * self.length) * radius
+        stiffness[np.ix_(at, at)] += wall.stiffness(m) * self.length / self.pressure * radius
+        control = self.system.control
+        if control is not None and i in self.system.controlled_shells and not self.saturates:
+            volts = wall.sensor(m) * self.length
+            inward = self.inward(i)
+            stiffness[n + i, at] -= inward * control.proportional * volts
+            damping[n + i, at] -= inward * control.derivative * volts
+
+    def inward(self, i: int) -> float:
+        """Return the inward load of the actuator on the W equation of a shell per volt, -e32/R times the radius of the row."""
+        wall = self.walls[i]
+        return -wall.actuator.actuation / (wall.radius * self.pressure) * wall.radius / self.length

@@ -1,4 +1,0 @@
-"""The page in the browser: a server on this machine only, its routes, and the files of the page.
-
-:func:`coaxshell.studio.server.serve` runs it, :func:`coaxshell.studio.app.create_app` makes the application.
-"""
