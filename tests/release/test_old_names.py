@@ -38,5 +38,8 @@ def test_modules_inside_are_the_same_objects() -> None:
 
 
 def test_a_name_that_never_was_is_not_found() -> None:
-    with pytest.warns(DeprecationWarning), pytest.raises(ModuleNotFoundError, match=r"coaxshell\.apps\.paper\.nothing"):
+    with (
+        pytest.warns(DeprecationWarning, match="coaxshell.apps.paper"),
+        pytest.raises(ModuleNotFoundError, match=r"coaxshell\.apps\.paper\.nothing"),
+    ):
         __import__("coaxshell.paper.nothing")

@@ -122,8 +122,8 @@ def test_the_numerics_version_is_one(tmp_path, quick):
     from coaxshell.studies.store import digest
 
     assert numerics().endswith(f"numerics {NUMERICS_VERSION}")
-    assert origin("paper/slips") != origin()
-    assert key_of("run") == digest([origin("paper/observed.py", "paper/fields.py", "paper/slips"), "run"])
+    assert origin("apps/paper/slips") != origin()
+    assert key_of("run") == digest([origin("apps/paper/observed.py", "apps/paper/fields.py", "apps/paper/slips"), "run"])
     swept = cx.sweep("bare", {"source.peak_pressure": [1e4]}, workers=1, **quick)
     assert swept.attrs["numerics"] == numerics()
     path = cx.simulate("bare", **quick).save(tmp_path / "run.nc")

@@ -11,7 +11,7 @@ from pathlib import Path
 import coaxshell
 from coaxshell._version import __version__
 
-NUMERICS_VERSION = 6
+NUMERICS_VERSION = 7
 """Raised whenever a change alters the numbers that a run gives, so that kept results of another version are told from ours."""
 
 NUMERICAL = ("errors.py", "limits.py", "numerics", "model", "structure", "acoustics", "solver", "response", "studies")
@@ -38,6 +38,8 @@ def package_digest(*further: str) -> str:
     digest = hashlib.sha256()
     for name in (*NUMERICAL, *further):
         place = root / name
+        if not place.exists():
+            raise FileNotFoundError(place)
         for path in sorted(place.rglob("*")) if place.is_dir() else [place]:
             if path.suffix in (".py", ".toml"):
                 digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
