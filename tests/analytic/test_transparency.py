@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from coaxshell.verification import chosen, run
+
+from coaxshell.apps.verification import chosen, run
 
 SHELLS = ("inner", "outer")
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from coaxshell.verification.bench import Bench
-from coaxshell.verification.checks import engines
 
 import coaxshell as cx
+from coaxshell.apps.verification.bench import Bench
+from coaxshell.apps.verification.checks import engines
 
 CASES = engines.configurations()
 
