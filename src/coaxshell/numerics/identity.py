@@ -8,7 +8,6 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-import coaxshell
 from coaxshell._version import __version__
 
 NUMERICS_VERSION = 7
@@ -34,7 +33,7 @@ def origin(*further: str) -> str:
 @cache
 def package_digest(*further: str) -> str:
     """Return a digest of the source files that numbers come from, and of *further* parts of the package, as they are at the first call."""
-    root = Path(coaxshell.__file__).parent
+    root = Path(__file__).parents[1]
     digest = hashlib.sha256()
     for name in (*NUMERICAL, *further):
         place = root / name

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from coaxshell.apps.cli.output import echo, printable, tell_warnings
-from coaxshell.apps.cli.running import load_system
-from coaxshell.model.paths import parts
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -16,21 +14,7 @@ if TYPE_CHECKING:
     from coaxshell.response.peaks import Peak
     from coaxshell.response.summary import Summary
 
-_FITTINGS = ("absorbers", "control")
 _NONE = "-"
-
-
-def load_reference(scenario: str, changes: Sequence[str] = (), where: str = "--compare") -> System:
-    """Return the system to compare with. Changes to absorbers and control are for a system that has them; all others for both.
-
-    Raises
-    ------
-    InputError
-        No such preset or file, something wrong in the file, or a change that is not allowed.
-    """
-    plain = load_system(scenario, where=where)
-    missing = [[name] for name, there in zip(_FITTINGS, (plain.absorbers != (), plain.control is not None), strict=True) if not there]
-    return load_system(scenario, [change for change in changes if parts(change.partition("=")[0])[:1] not in missing], where)
 
 
 def labels(first: System, second: System) -> tuple[str, str]:

@@ -55,9 +55,9 @@ def run(
     With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them;
     --output saves the first run.
     """
-    from coaxshell.apps.cli.comparison import labels, load_reference, print_comparison
+    from coaxshell.apps.cli.comparison import labels, print_comparison
     from coaxshell.apps.cli.output import print_summary, tell_warnings
-    from coaxshell.apps.cli.running import load_system
+    from coaxshell.apps.cli.running import load_reference, load_system
 
     outputs = Outputs(force)
     if output is not None:

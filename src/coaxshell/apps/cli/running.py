@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 
 STANDARD_INPUT = ("-", "/dev/stdin")
+_FITTINGS = ("absorbers", "control")
 
 
 def load_system(scenario: str, changes: Sequence[str] = (), where: str = "SCENARIO") -> System:
@@ -55,6 +56,21 @@ def load_system(scenario: str, changes: Sequence[str] = (), where: str = "SCENAR
             option = where.startswith("-") and error.where != where
             raise InputError(f"{where}, {error.where}", error.problem, error.remedy) if option else error from None
     return system.with_overrides(wanted) if wanted else system
+
+
+def load_reference(scenario: str, changes: Sequence[str] = (), where: str = "--compare") -> System:
+    """Return the system to compare with. Changes to absorbers and control are for a system that has them; all others for both.
+
+    Raises
+    ------
+    InputError
+        No such preset or file, something wrong in the file, or a change that is not allowed.
+    """
+    from coaxshell.model.paths import parts
+
+    plain = load_system(scenario, where=where)
+    missing = [[name] for name, there in zip(_FITTINGS, (plain.absorbers != (), plain.control is not None), strict=True) if not there]
+    return load_system(scenario, [change for change in changes if parts(change.partition("=")[0])[:1] not in missing], where)
 
 
 def _of_input(where: str) -> System:
@@ -169,9 +185,6 @@ def answers(
 
             found.append(load_response(source))
         else:
-            from coaxshell.apps.cli.comparison import load_reference
-            from coaxshell.apps.cli.running import load_system
-
             load = load_reference if number else load_system
             found.append(request.solve(load(source, changes or (), options[number > 0]), quiet=quiet))
     return found
