@@ -87,3 +87,20 @@ def sharp_inverse() -> Callable[..., np.ndarray]:
         return grid.invert(spectrum - (basis @ fit).T) + fit.T @ (inverse * np.exp(-grid.time))
 
     return invert
+
+
+TOGETHER = ("tests/studio/browser/", "tests/studio/", "tests/paper/test_claims.py", "tests/paper/test_reproduction.py")
+"""What one test process carries out alone, for servers, browsers and runs take long to start; the two of the paper share theirs."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Keep these tests together by their place: xdist's marks of groups go unread by some versions of pytest."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByPlace(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            place = next((place for place in TOGETHER if nodeid.startswith(place)), nodeid)
+            return "tests/paper" if place.startswith("tests/paper/test_") and place in TOGETHER else place
+
+    return ByPlace(config, log)
