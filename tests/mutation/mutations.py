@@ -346,8 +346,8 @@ MUTATIONS = (
     Mutation(
         "saturation-limit",
         "structure/thin_wall.py",
-        "field / self.length) * actuator.thickness",
-        "field / self.length) * 2.0 * actuator.thickness",
+        "else field) * actuator.thickness",
+        "else field) * 2.0 * actuator.thickness",
         "voltage at which the actuator stops",
         "solver/test_saturation.py",
     ),

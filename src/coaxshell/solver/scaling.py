@@ -121,13 +121,10 @@ def _geometry(system: System, source: Source) -> SourceGeometry:
 
 def _wall(system: System, index: int, scales: Scales) -> ShellModel:
     shell = system.shells[index]
-    radius = shell.radius / system.reference_radius
     if isinstance(shell, RigidShell):
-        return RigidWall(radius=radius)
-    found = section(shell)
-    mass = found.mass / (system.exterior.density * scales.length)
-    gains = _gains(system, index)
-    return ThinWall(radius=radius, mass=mass, gains=gains, section=found, length=scales.length, pressure=scales.pressure)
+        return RigidWall(radius=shell.radius / scales.length)
+    in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
+    return ThinWall.of(in_units, _gains(system, index))
 
 
 def _gains(system: System, index: int) -> ControlGains | None:

@@ -18,7 +18,7 @@ from coaxshell.model.materials import Elastic, Piezoelectric
 
 @dataclass(frozen=True)
 class PiezoelectricLayer:
-    """Electromechanical constants of one piezoelectric layer (Eq. A.11), SI.
+    """Electromechanical constants of one piezoelectric layer (Eq. A.11), SI or in units of their own (:meth:`Section.in_units`).
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class PiezoelectricLayer:
 
 @dataclass(frozen=True)
 class Section:
-    """Section integrals of one shell (Eq. A.11), SI, per unit axial length.
+    """Section integrals of one shell (Eq. A.11), per unit axial length, SI or in units of their own (:meth:`in_units`).
 
     Attributes
     ----------
@@ -80,6 +80,33 @@ class Section:
     def layer(self, role: str) -> PiezoelectricLayer | None:
         """Return the piezoelectric layer of the given role, or None."""
         return next((layer for layer in self.piezoelectric if layer.role == role), None)
+
+    def in_units(self, length: float, pressure: float, mass: float) -> Section:
+        """Return the section of SI values in units of a length (m), a pressure (Pa), a mass per area (kg/m^2), and volts."""
+        charge = pressure * length  # per area, C/m^2: a volt times it is a pressure times a length
+        return Section(
+            radius=self.radius / length,
+            mass=self.mass / mass,
+            membrane=self.membrane / (pressure * length),
+            cross=self.cross / (pressure * length**2),
+            bending=self.bending / (pressure * length**3),
+            core_modulus=self.core_modulus / pressure,
+            layers=tuple((bottom / length, top / length, modulus / pressure) for bottom, top, modulus in self.layers),
+            piezoelectric=tuple(
+                PiezoelectricLayer(
+                    role=layer.role,
+                    thickness=layer.thickness / length,
+                    centre=layer.centre / length,
+                    coupling=layer.coupling / (charge * length),
+                    zeta33=layer.zeta33 / charge,
+                    zeta22=layer.zeta22 / (charge * length**2),
+                    reduced_coupling=layer.reduced_coupling / charge,
+                    actuator_coupling=layer.actuator_coupling / charge,
+                    field_limit=layer.field_limit * length,
+                )
+                for layer in self.piezoelectric
+            ),
+        )
 
 
 def plane_modulus(material: Elastic | Piezoelectric) -> float:

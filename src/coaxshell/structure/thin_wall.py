@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.structure.section import Section
-from coaxshell.structure.shell_model import Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
-from coaxshell.structure.stress import WallPoint, control_stress, design_stress_gain, stress_gain, wall_point
+from coaxshell.structure.shell_model import ControlGains, Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
+from coaxshell.structure.stress import control_stress, design_stress_gain, stress_gain, wall_point
 from coaxshell.structure.thin import bending_strain, open_circuit_stiffness, potential_gain, wall_stiffness
 
 THIN_SHELL_LIMIT = 0.1
@@ -29,19 +30,19 @@ class ThinWall(ShellModel):
     Attributes
     ----------
     section : Section
-        Its section integrals, SI.
-    length, pressure : float
-        a, m, and rho_e c_e^2, Pa.
+        Its section integrals, dimensionless but for volts.
     """
 
     section: Section
-    length: float
-    pressure: float
+
+    @classmethod
+    def of(cls, section: Section, gains: ControlGains | None = None) -> Self:
+        """Return the wall of a dimensionless section."""
+        return cls(radius=section.radius, mass=section.mass, gains=gains, section=section)
 
     def stiffness(self, orders: FloatArray) -> WallStiffness:
         """Return K, membrane, cross, bending and open-circuit stiffness together."""
-        factor = self.length / self.pressure
-        return WallStiffness(*(factor * entry for entry in wall_stiffness(self.section, orders)))
+        return wall_stiffness(self.section, orders)
 
     def passive(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
         """Return impedance and V/W without feedback."""
@@ -59,7 +60,7 @@ class ThinWall(ShellModel):
     def crossing_order(self) -> float:
         """R sqrt(a22/d22), where membrane and bending frequencies cross."""
         section = self.section
-        return section.radius * math.sqrt(section.membrane / section.bending) if section.bending > 0 else 0.0
+        return self.radius * math.sqrt(section.membrane / section.bending) if section.bending > 0 else 0.0
 
     def has(self, role: str) -> bool:
         """Return whether it has a piezoelectric layer of a role."""
@@ -70,39 +71,34 @@ class ThinWall(ShellModel):
         layer = self.section.layer(role)
         if layer is None:
             return super().sensor_gain(orders, role)
-        gain_v, gain_w = potential_gain(layer, orders, self.section.radius)
-        return Gain(self.length * gain_v, self.length * gain_w)
+        return potential_gain(layer, orders, self.radius)
 
     @property
     def actuator_pressure(self) -> float:
-        """-e32/(R rho_e c_e^2) (Eqs. 4, 13)."""
+        """-e32/R (Eqs. 4, 13)."""
         actuator = self.section.layer("actuator")
-        return 0.0 if actuator is None else -actuator.actuator_coupling / (self.section.radius * self.pressure)
+        return 0.0 if actuator is None else -actuator.actuator_coupling / self.radius
 
     def voltage_limit(self, field: float | None = None) -> float:
         """Return field limit times thickness of the actuator."""
         actuator = self.section.layer("actuator")
         if actuator is None:
             return super().voltage_limit(field)
-        return (actuator.field_limit if field is None else field / self.length) * actuator.thickness
+        return (actuator.field_limit if field is None else field) * actuator.thickness
 
     def stress_gain(self, orders: FloatArray, depth: float | None = None) -> Gain:
         """Return the hoop stress of the core at the mid-surface (Eq. 22), or at a depth (Eqs. A.4, A.5)."""
-        section, factor = self.section, self.length / self.pressure
-        gain = design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, self._point(depth))
-        return Gain(factor * gain.v, factor * gain.w)
+        section = self.section
+        return design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, wall_point(section, depth))
 
     def control_stress(self, depth: float) -> float:
         """Return -e32/t within the actuator, 0 elsewhere."""
-        return control_stress(self._point(depth)) / self.pressure
-
-    def _point(self, depth: float) -> WallPoint:
-        return wall_point(self.section, self.length * depth)
+        return control_stress(wall_point(self.section, depth))
 
     @property
     def faces(self) -> tuple[float, float]:
         """Depths of its inner and its outer face."""
-        return self.section.layers[0][0] / self.length, self.section.layers[-1][1] / self.length
+        return self.section.layers[0][0], self.section.layers[-1][1]
 
     def energy(self, motion: WallMotion) -> WallEnergy:
         """Return the energies of a motion, sums over the orders with weights (R/2) beta pi.
@@ -112,16 +108,15 @@ class ThinWall(ShellModel):
         """
         orders, section, (w, v) = motion.orders, self.section, (motion.w, motion.v)
         weight = 0.5 * self.radius * motion.circle
-        scale = self.length / self.pressure
         k = wall_stiffness(replace(section, piezoelectric=()), orders)
-        electric = sum((open_circuit_stiffness(x, orders, section.radius) for x in section.piezoelectric), 0.0 * weight)
-        bend_v, bend_w = bending_strain(orders, section.radius)
+        electric = sum((open_circuit_stiffness(x, orders, self.radius) for x in section.piezoelectric), 0.0 * weight)
+        bend_v, bend_w = bending_strain(orders, self.radius)
         bending = bend_v[:, None] * v + bend_w[:, None] * w
         strain = square(weight * k.vv, v, v) + 2.0 * square(weight * k.vw, v, w) + square(weight * k.ww, w, w)
         return WallEnergy(
             kinetic=self.mass * (square(weight, motion.w_rate, motion.w_rate) + square(weight, motion.v_rate, motion.v_rate)),
-            strain=scale * strain,
-            piezoelectric=scale * square(weight * electric, bending, bending),
+            strain=strain,
+            piezoelectric=square(weight * electric, bending, bending),
         )
 
     def remarks(self) -> list[str]:

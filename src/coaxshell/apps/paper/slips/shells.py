@@ -26,15 +26,15 @@ def doubled_curvature(problem: Problem) -> Problem:
 
     The integral is mu22 times that of cos^2(pi (z - z_c)/t)/(R + z)^2 over the layer; numbers in metres, since the two dimensions differ.
     """
+    metres = problem.scales.length
 
     def printed(section: Section, layer: PiezoelectricLayer) -> PiezoelectricLayer:
-        half = 0.5 * layer.thickness
-        permittivity = layer.zeta22 / half
+        radius, centre, half = metres * section.radius, metres * layer.centre, 0.5 * metres * layer.thickness
 
         def integrand(z: float) -> float:
-            return (math.cos(math.pi * (z - layer.centre) / layer.thickness) / (section.radius + z)) ** 2
+            return (math.cos(0.5 * math.pi * (z - centre) / half) / (radius + z)) ** 2
 
-        return replace(layer, zeta22=permittivity * quad(integrand, layer.centre - half, layer.centre + half)[0])
+        return replace(layer, zeta22=layer.zeta22 / half * quad(integrand, centre - half, centre + half)[0])
 
     return _with_layers(problem, printed)
 
@@ -53,11 +53,10 @@ class PrintedStrain(ThinWall):
         kv, kw = bending_strain(orders, section.radius)
         a, b, d = section.membrane, section.cross, section.bending
         electric = sum(open_circuit_stiffness(layer, orders, section.radius) for layer in section.piezoelectric)
-        factor = self.length / self.pressure
         return WallStiffness(
-            vv=factor * (a * ev * ev + 2 * b * ev * kv + (d + electric) * kv * kv),
-            vw=factor * (a * ev * ew + b * ew * kv + electric * kv * kw),
-            ww=factor * (a * ew * ew + electric * kw * kw),
+            vv=a * ev * ev + 2 * b * ev * kv + (d + electric) * kv * kv,
+            vw=a * ev * ew + b * ew * kv + electric * kv * kw,
+            ww=a * ew * ew + electric * kw * kw,
         )
 
 
