@@ -80,7 +80,7 @@ def test_responses_summaries_metrics_and_paths_share_the_names(count):
         assert response.stress(name, angle=0).attrs["shell_name"] == name
         assert response.stress(name, angle=0).attrs["shell"] == index
         (metric,) = metrics_of([f"shells[{index}].peak_stress"], system)
-        assert metric.long_name == f"largest hoop stress anywhere, {shell_phrase(index, count)}"
+        assert metric.long_name == f"largest stress anywhere, {shell_phrase(index, count)}"
         if name in ("inner", "middle", "outer", "shell"):
             assert f"{name}.peak_stress" in metric_names(system)
             assert metrics_of([f"{name}.peak_stress"], system)[0].identity == metric.identity
