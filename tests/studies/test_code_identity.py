@@ -13,8 +13,9 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.numerics import identity
 from coaxshell.numerics.identity import difference, environment
-from coaxshell.studies import executors, store
+from coaxshell.studies import executors
 from coaxshell.studies.code_identity import code_identity
 from coaxshell.studies.executors import Alike, OtherEnvironmentError, completed
 from coaxshell.studies.user_functions import OtherCodeError, UserCode, from_callable, from_text
@@ -161,12 +162,12 @@ def test_resume_refuses_a_store_of_other_code(study: Path, hybrid: cx.System, qu
 
 
 def test_another_package_or_library_is_another_origin(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = store.origin()
-    monkeypatch.setattr(store, "libraries", lambda: "numpy 99")
-    assert store.origin() != before
+    before = identity.origin()
+    monkeypatch.setattr(identity, "libraries", lambda: "numpy 99")
+    assert identity.origin() != before
     monkeypatch.undo()
-    monkeypatch.setattr(store, "package_digest", lambda: "other")
-    assert store.origin() != before
+    monkeypatch.setattr(identity, "package_digest", lambda *further: "other")
+    assert identity.origin() != before
 
 
 def test_a_worker_with_other_code_is_refused() -> None:
