@@ -1,4 +1,4 @@
-"""Fifty clients that move sliders at once, against a real server: latency, and memory before and after.
+"""Fifty clients that move sliders for three minutes, against a real server: latency, and memory before, after, and after five idle minutes.
 
 ``python -m benchmarks.studio``
 """
@@ -23,7 +23,7 @@ from coaxshell.apps.studio.limits import settings_of
 from coaxshell.apps.studio.worker import solve
 from coaxshell.model import presets
 
-CLIENTS, SECONDS, ROUNDS = 50, 15.0, 16
+CLIENTS, SECONDS, ROUNDS, IDLE = 50, 15.0, 12, 300.0
 SYSTEMS = {name: presets.load(name).model_dump(mode="json") for name in ("absorbers", "hybrid")}
 SLIDERS = (("absorbers", "absorbers.mass", 5.0), ("hybrid", "absorbers.mass", 5.0), ("hybrid", "control.derivative", -150.0))
 PAUSE = 0.05
@@ -43,7 +43,7 @@ def served() -> Iterator[tuple[str, int]]:
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
-            found = re.search(r"http://127\.0\.0\.1:\d+", process.stdout.readline())
+            found = re.search(r"http://127\.0\.0\.1:\S+", process.stdout.readline())
             assert found is not None
             yield found.group(), process.pid
         finally:
@@ -52,7 +52,10 @@ def served() -> Iterator[tuple[str, int]]:
 
 async def _measured(address: str, pid: int) -> None:
     limits = httpx2.Limits(max_connections=400)
-    async with httpx2.AsyncClient(base_url=address, timeout=120, limits=limits) as http:
+    base = re.match(r"http://127\.0\.0\.1:\d+", address)
+    assert base is not None
+    async with httpx2.AsyncClient(base_url=base.group(), timeout=120, limits=limits, follow_redirects=True) as http:
+        (await http.get(address)).raise_for_status()  # the key in the address becomes a cookie
         for preset, path, low in (
             ("absorbers", "absorbers.mass", 5.0),
             ("hybrid", "absorbers.mass", 5.0),
@@ -62,6 +65,7 @@ async def _measured(address: str, pid: int) -> None:
             assert {status for _, status in alone} == {200}
             told = f"median {_ms(statistics.median(x for x, _ in alone[4:]))}, first {_ms(alone[0][0])}"
             print(f"{preset}, {path}, one client at M = 60, dt = 4e-3: {told}; in this process {_plain(preset, path, low)}", flush=True)
+        print(f"memory of all processes before the clients {_memory(pid):.0f} MB", flush=True)
         for half in range(1, ROUNDS + 1):
             answered: list[float] = []
             replaced: list[float] = []
@@ -75,6 +79,8 @@ async def _measured(address: str, pid: int) -> None:
                 f"processor time of the server without its workers {server:.1f} s, of this client {own:.1f} s",
                 flush=True,
             )
+        await asyncio.sleep(IDLE)
+        print(f"memory of all processes after {IDLE / 60:g} idle minutes {_memory(pid):.0f} MB", flush=True)
 
 
 async def _hammer(http: Any, half: int, number: int, answered: list[float], replaced: list[float]) -> None:
