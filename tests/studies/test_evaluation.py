@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import sys
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from coaxshell.studies.evaluation import Case, batches, evaluate, forget
 from coaxshell.studies.executors import WorkerDiedError, completed
 from coaxshell.studies.metrics import metrics_of
 from coaxshell.studies.store import Store, StudyStore
+from coaxshell.studies.user_functions import UserFunction
 from coaxshell.studies.varied_fields import varied
 
 ASKED = ["inner.peak_stress", "outer.rms_stress", "absorbers.peak_force"]
@@ -128,3 +131,8 @@ def test_the_numerics_version_is_one(tmp_path, quick):
     assert swept.attrs["numerics"] == numerics()
     path = cx.simulate("bare", **quick).save(tmp_path / "run.nc")
     assert f"numerics {NUMERICS_VERSION}, " in info(path)
+
+
+def test_what_no_process_could_be_sent_is_not_looked_for_in_a_main_program_without_a_file(monkeypatch):
+    monkeypatch.setitem(sys.modules, "__main__", ModuleType("__main__"))  # as in a notebook
+    assert not UserFunction("f", "", "", "", target=lambda response: 1.0).only_here

@@ -103,7 +103,7 @@ class UserFunction:
         """Whether it stands in a main program that no other process can read: a notebook, an interactive session, a text after ``-c``."""
         main = sys.modules["__main__"]
         readable = getattr(main, "__file__", None) is not None or getattr(main, "__spec__", None) is not None
-        return self.target is not None and not readable and b"__main__" in pickle.dumps(self.target)
+        return self.target is not None and not readable and self.pickles and b"__main__" in pickle.dumps(self.target)
 
 
 class UserCode(NamedTuple):
