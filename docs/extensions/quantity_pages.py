@@ -10,27 +10,33 @@ Each is read by its name: `response.history(shell, angle, "NAME")`, `response.pl
 a study as `inner.peak_...`. All stand in one table of the program, from which this page is made;
 [contributing](../contributing.md) shows how to add one.
 
-| name | what it is | unit | positive | needs | metrics | summary | tables, files, comparisons |
-|---|---|---|---|---|---|---|---|
+| name | what it is | unit | positive | needs |
+|---|---|---|---|---|
+"""
+READ = """
+## Where else it is read
+
+| name | metrics | summary | tables, files, comparisons |
+|---|---|---|---|
 """
 _NEEDS = {"": "–", "elastic": "an elastic wall", "sensor": "a sensor layer", "control": "sensor, actuator and control"}
 
 
 def quantity_table() -> str:
-    """Return the page: one row for each quantity."""
-    return HEAD + "".join(_row(quantity) for quantity in QUANTITIES.values())
+    """Return the page: what each quantity is, and where it is read."""
+    rows = QUANTITIES.values()
+    return HEAD + "".join(_row(_what(one)) for one in rows) + READ + "".join(_row(_where(one)) for one in rows)
 
 
-def _row(quantity: Quantity) -> str:
-    metrics = ", ".join(f"`{quantity.metric(where)}`" for where in quantity.metrics)
-    cells = (
-        f"`{quantity.name}`",
-        quantity.long_name,
-        quantity.unit,
-        quantity.sign.removeprefix("positive "),
-        _NEEDS[quantity.needs],
-        metrics or "–",
-        ", ".join(quantity.summary) or "–",
-        "yes" if quantity.column else "–",
-    )
+def _row(cells: tuple[str, ...]) -> str:
     return f"| {' | '.join(cells)} |\n"
+
+
+def _what(quantity: Quantity) -> tuple[str, ...]:
+    sign = quantity.sign.removeprefix("positive ")
+    return f"`{quantity.name}`", quantity.long_name, quantity.unit, sign, _NEEDS[quantity.needs]
+
+
+def _where(quantity: Quantity) -> tuple[str, ...]:
+    metrics = ", ".join(f"`{quantity.metric(where)}`" for where in quantity.metrics)
+    return f"`{quantity.name}`", metrics or "–", ", ".join(quantity.summary) or "–", "yes" if quantity.column else "–"
