@@ -102,7 +102,7 @@ class Watched:
 
         self._heard = {
             "request": self._request,
-            "console": lambda message: message.type == "error" and self._fault(f"console: {message.text}"),
+            "console": lambda message: message.type == "error" and self._console(message.text, message.location.get("url", "")),
             "response": lambda response: response.status >= 400 and self._fault(f"{response.status}: {response.url}"),
             "pageerror": lambda error: self._fault(f"exception: {error}"),
         }
@@ -119,6 +119,10 @@ class Watched:
         parts = urlsplit(request.url)
         if parts.scheme not in ("data", "blob", "about") and parts.hostname != "127.0.0.1":
             self.faults.append(f"request that leaves this machine: {request.url}")
+
+    def _console(self, text: str, url: str) -> None:
+        if not url.endswith("/favicon.ico"):  # asked for by the browser where the kept page waits, a picture that names no icon
+            self._fault(f"console: {text} {url}".rstrip())
 
     def _fault(self, text: str) -> None:
         if not any(piece in text for piece in self.forgiven):
