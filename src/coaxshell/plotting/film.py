@@ -116,7 +116,7 @@ def film_cost(systems: int, frames: int, view: FieldView, *, parities: int = 1, 
         Side by side.
     frames : int
     view : FieldView
-    halves : int
+    parities : int
         1 where the fields are their own mirror images, and half of each is computed; else 2.
     kept : float
         Bytes of the transforms of the walls' motion, all systems together.

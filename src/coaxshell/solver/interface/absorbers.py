@@ -90,7 +90,7 @@ class AbsorberSet:
         return not np.any(self.cubic)
 
     def shapes(self, max_order: int) -> FloatArray:
-        """Return cos(m theta_n) and, with two halves, sin(m theta_n): shape (parities, N, M + 1)."""
+        """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
         modes = Modes.up_to(max_order)
         rows = [modes.projection(float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
         return np.array(rows).reshape(self.parities, self.count, modes.count)
