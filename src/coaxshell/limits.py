@@ -59,6 +59,7 @@ SAVED_STRUCTURE = Limit(250_000_000, "bytes", "what a saved run holds beside its
 SAVED_ARRAYS = Limit(16_000_000_000, "bytes", "the arrays of a saved run")
 SAVED_CHUNK = Limit(64_000_000, "bytes", "a chunk of a compressed array")
 RING = Limit(10_000, "absorbers", "a ring")
+STATIONS = Limit(200, "axial positions", "a list of stations")
 STUDIO_BODY = Limit(1_000_000, "bytes", "a request to the studio")
 STUDIO_UPLOAD = Limit(64_000_000, "bytes", "a run opened in the studio")
 STUDIO_NESTING = Limit(24, "levels", "the nesting of a request to the studio")
@@ -87,6 +88,7 @@ TABLE: tuple[Limit, ...] = (
     SAVED_ARRAYS,
     SAVED_CHUNK,
     RING,
+    STATIONS,
     STUDIO_BODY,
     STUDIO_UPLOAD,
     STUDIO_NESTING,

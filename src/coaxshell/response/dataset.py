@@ -6,7 +6,6 @@ import hashlib
 import json
 import platform
 from collections.abc import Mapping
-from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Any
 
@@ -100,7 +99,7 @@ def _attributes(solution: ModalSolution) -> dict[str, Any]:
         "pressure_scale": scales.pressure,
         "units_note": f"arrays are dimensionless: lengths in a = length_scale (m), times in {TRANSIT} = time_scale (s), pressures in "
         "rho_e c_e^2 = pressure_scale (Pa)",
-        "settings": json.dumps(asdict(solution.settings)),
+        "settings": json.dumps(solution.settings.arguments()),
         "warnings": json.dumps(list(solution.warnings)),
         "timings": json.dumps(solution.timings),
     }

@@ -40,6 +40,8 @@ def simulate(
         Relative error aimed at by ``modes="auto"``.
     refinement : int
         The run is made at time_step/refinement and every refinement-th instant is kept: for stiff absorbers.
+    dimensions, stations, axial_modes, axial_period
+        See :class:`coaxshell.Settings`: 2, all alike along the axis, or 3, answered at axial positions (m).
     settings : Settings or mapping, optional
         All of these at once, or a table of some; those given beside it change it.
     progress : callable, optional

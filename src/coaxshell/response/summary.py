@@ -163,7 +163,7 @@ def summarise(
         absorber_displacement=None if q is None or not len(q) else float(abs(q[..., span]).max()) * scales.length,
         absorber_force=None if f is None or not len(f) else float(abs(f[..., span]).max()) * scales.line_force,
         time_window_error=float(solution.estimates.time_window),
-        settings=asdict(solution.settings),
+        settings=solution.settings.arguments(),
         warnings=tuple(solution.warnings),
     )
 

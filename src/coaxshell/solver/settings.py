@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, TypedDict
 
 from coaxshell.errors import InputError
@@ -14,11 +14,14 @@ from coaxshell.model.naming import suggestion
 from coaxshell.model.paths import joined, within
 from coaxshell.model.system import System
 from coaxshell.numerics.scalars import plain
+from coaxshell.solver.stations import axial_length, stations_of
 
 MAX_MODES = 2000
 MAX_REFINEMENT = 64
 MAX_STEPS = 2_000_000
 ENGINES = ("spectral", "direct")
+AXIAL = ("stations", "axial_modes", "axial_period")
+"""What three dimensions alone have."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,14 @@ class Settings:
         Relative error aimed at by ``modes="auto"``.
     refinement : int
         The run is made at time_step/refinement and every refinement-th instant is kept: for stiff absorbers.
+    dimensions : int
+        2, all alike along the axis, or 3.
+    stations : tuple of float
+        Axial positions z (m) at which a run in three dimensions answers, at most 200; also one position, or texts such as "70 cm".
+    axial_modes : float or None
+        Largest axial wavenumber, as k a; None for as much as the highest order, k a = M.
+    axial_period : float or None
+        Distance L (m) after which the answer repeats along the axis; None for what causality asks.
 
     Raises
     ------
@@ -53,6 +64,10 @@ class Settings:
     engine: str = "spectral"
     tolerance: float = 1e-3
     refinement: int = 1
+    dimensions: int = 2
+    stations: tuple[float, ...] = (0.0,)
+    axial_modes: float | None = None
+    axial_period: float | None = None
 
     def __post_init__(self) -> None:
         for name, unit in (("duration", _TRANSITS), ("time_step", _TRANSITS), ("tolerance", "relative error")):
@@ -74,6 +89,28 @@ class Settings:
                 f"{self.time_step:g} over duration {self.duration:g} asks for {self.duration / self.time_step * self.refinement:.3g} steps",
                 f"at most {MAX_STEPS} are allowed: use a step of {self.duration * self.refinement / MAX_STEPS:.2g} or more",
             )
+        self._settle_dimensions()
+
+    def _settle_dimensions(self) -> None:
+        """Check what three dimensions need, and that two have none of it."""
+        number = plain(self.dimensions)
+        found = _number(number, int)
+        if found not in (2, 3) or (isinstance(number, float) and found != number):
+            raise InputError("dimensions", f"{shown(number)} is not allowed", "give 2 or 3")
+        object.__setattr__(self, "dimensions", found)
+        object.__setattr__(self, "stations", stations_of(self.stations))
+        if self.axial_modes is not None:
+            object.__setattr__(self, "axial_modes", _positive("axial_modes", self.axial_modes, "axial wavenumber times a"))
+        if self.axial_period is not None:
+            object.__setattr__(self, "axial_period", axial_length("axial_period", self.axial_period))
+        if self.axial_modes is not None and self.axial_modes > MAX_MODES:
+            raise InputError("axial_modes", f"{self.axial_modes:g} is not allowed", f"at most {MAX_MODES} (axial wavenumber times a)")
+        if found == 2:
+            for name in AXIAL:
+                if name in self.arguments():
+                    raise InputError(name, "has no effect in two dimensions", "use dimensions=3, or leave it out")
+        elif self.engine != "spectral":
+            raise InputError("engine", f"{shown(self.engine)} solves two dimensions only", 'use engine="spectral", or dimensions=2')
 
     @classmethod
     def of(cls, system: System | None, given: Any = None, *, base: Settings | None = None, where: str = "") -> Settings:
@@ -134,8 +171,16 @@ class Settings:
         return replace(self, duration=min(self.duration, duration))
 
     def arguments(self) -> dict[str, Any]:
-        """Return them by name: keyword arguments of :func:`coaxshell.simulate`, and the table of a study file."""
-        return asdict(self)
+        """Return them by name: keyword arguments of :func:`coaxshell.simulate`, and the table of a study file or a saved run.
+
+        What three dimensions brought is left out where it is as in two: such runs are told as they were before.
+        """
+        table = {name: getattr(self, name) for name in NAMES}
+        return {
+            name: list(value) if name == "stations" else value
+            for name, value in table.items()
+            if name not in _LATER or value != _LATER[name]
+        }
 
     @property
     def steps(self) -> int:
@@ -152,10 +197,15 @@ class SettingsKeywords(TypedDict, total=False):
     engine: str
     tolerance: float
     refinement: int
+    dimensions: int
+    stations: float | str | Sequence[float | str]
+    axial_modes: float | str | None
+    axial_period: float | str | None
     settings: Settings | Mapping[str, Any] | None
 
 
 NAMES = tuple(field.name for field in fields(Settings))
+_LATER = {field.name: field.default for field in fields(Settings) if field.name in ("dimensions", *AXIAL)}
 _TRANSITS = "acoustic transit times a/c_e"
 
 

@@ -16,6 +16,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks, estimates, recompute
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
+from coaxshell.solver.dimensions import require_dimensions
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
@@ -87,6 +88,7 @@ class Prepared:
     ) -> None:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
+        require_dimensions(settings)
         self._stopwatch, self._notes = Stopwatch(), list[str]()
         self._orders_above: SampledOrders | None = None
         self._progress, self._shared, self._asked = progress, shared, settings

@@ -11,6 +11,7 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model.paths import within
 from coaxshell.model.system import System
+from coaxshell.solver.dimensions import require_dimensions
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
@@ -65,10 +66,11 @@ def run_cases(
     Raises
     ------
     InputError
-        A function of the user's cannot be sent to another process.
+        A function of the user's cannot be sent to another process, or no case can be solved in the dimensions asked for.
     KeyboardInterrupt
         As it came; what was finished is in the store.
     """
+    require_dimensions(resolution)
     execution = _in_reach(execution, metrics)
     executor, workers_at_once = execution.executor, execution.capacity
     if executor is not None or workers_at_once > 1:

@@ -48,7 +48,7 @@ def sweep(
         "grid" (every combination), "zip" (lists side by side), "latin-hypercube" or "sobol" (*samples* points between two ends).
     samples, seed : int
         Number of sampled points, and what makes them repeatable.
-    duration, time_step, modes, tolerance, refinement, engine
+    duration, time_step, modes, tolerance, refinement, engine, dimensions, stations, axial_modes, axial_period
         As those of :func:`coaxshell.simulate`.
     executor, workers, store, resume, progress, dask
         See :class:`coaxshell.Execution`: where the work is done, and where finished cases are kept.

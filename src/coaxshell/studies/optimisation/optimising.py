@@ -112,7 +112,7 @@ def optimise(
         "auto" begins at the system's own values where they are inside their ranges; "system" insists on it.
     seed : int
         Makes the search repeatable, whatever the number of workers.
-    duration, time_step, modes, tolerance, refinement, engine
+    duration, time_step, modes, tolerance, refinement, engine, dimensions, stations, axial_modes, axial_period
         As those of :func:`coaxshell.simulate`.
     confirm : mapping, optional
         Settings of a finer resolution, as ``{"modes": 300}``: baseline and best are run there, and there at half the time step.

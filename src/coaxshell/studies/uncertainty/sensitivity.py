@@ -61,7 +61,7 @@ def sensitivity(
         Makes points and intervals repeatable.
     confidence : float
         Of the intervals, which are bootstrapped.
-    duration, time_step, modes, tolerance, refinement, engine
+    duration, time_step, modes, tolerance, refinement, engine, dimensions, stations, axial_modes, axial_period
         As those of :func:`coaxshell.simulate`.
     executor, workers, store, resume, progress, dask, settings, execution
         As those of :func:`coaxshell.sweep`.
