@@ -145,6 +145,14 @@ MUTATIONS = (
         "acoustics/test_free_field.py",
     ),
     Mutation(
+        "spherical-front-phase",
+        "acoustics/sources/spherical_front.py",
+        "/ (surface.kappa + basis.s)",
+        "/ (2.0 * surface.kappa)",
+        "phase of the spherical source at an axial wavenumber",
+        "acoustics/test_spherical_front.py",
+    ),
+    Mutation(
         "laplace-window",
         "numerics/laplace_grid.py",
         "np.exp(self.shift * self.time) / self.time_step",

@@ -6,12 +6,14 @@ from coaxshell.acoustics.sources.line import LineGeometry
 from coaxshell.acoustics.sources.plane import PlaneGeometry
 from coaxshell.acoustics.sources.source import FreeField, SourceGeometry, SurfaceLoad, TimeFunction
 from coaxshell.acoustics.sources.spherical import SphericalGeometry
+from coaxshell.acoustics.sources.spherical_front import SphericalFrontGeometry
 
 __all__ = [
     "FreeField",
     "LineGeometry",
     "PlaneGeometry",
     "SourceGeometry",
+    "SphericalFrontGeometry",
     "SphericalGeometry",
     "SurfaceLoad",
     "TimeFunction",

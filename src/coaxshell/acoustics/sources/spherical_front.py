@@ -1,0 +1,73 @@
+"""The true spherical source of three-dimensional runs, exact in space and time: one amplitude for each axial wavenumber k.
+
+With R the distance from it, S = R0 - 1 and x = t - (R - S) the time since the front, p = (S/R) f(x). Along z, D the distance in the
+plane of the cross-section, it is made of
+
+    integral of (e^{-sR}/R) e^{-ikz} dz = 2 K_0(kappa D),        K_0(kappa D) = sum_m eps_m I_m(kappa r) K_m(kappa R0) cos m theta,  r < R0.
+
+Amplitudes F(k) here leave the 2 out: what a wave of wavenumbers k_j = 2 pi j/L gives at z is
+
+    (2/L) [F(k_0) + 2 sum_{j>=1} F(k_j) cos k_j z].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import RadialFunctions
+from coaxshell.acoustics.sources.source import SurfaceLoad, TimeFunction, incident_of_regular
+from coaxshell.acoustics.sources.spherical import SphericalField
+from coaxshell.numerics import bessel_ratios as br
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+
+
+@dataclass(frozen=True)
+class SphericalFrontGeometry:
+    """A point source at distance R0 from the axis in the plane z = 0: an exact solution of the three-dimensional wave equation.
+
+    Attributes
+    ----------
+    distance : float
+        R0 > 1, in units of a.
+    """
+
+    distance: float
+    along_rays = False
+
+    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+        """Return the amplitude of incident and rigidly scattered pressure at r = 1, in units of a, per unit pressure at the head:
+
+            P_m = S e^{sS} eps_m K_m(kappa R0)/(kappa K_{m+1}(kappa) - m K_m(kappa)),
+
+        from the addition theorem (DLMF 10.44.3) and the Wronskian I_m K_m' - I_m' K_m = -1/kappa.
+
+        Re kappa >= Re s, so that e^{(s - kappa) S} and with it P_m are bounded for all s, k and m.
+        """
+
+        def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
+            surface, source = basis.surface, basis.passing(1.0, self.distance)
+            across = surface.keep(self._across(basis, surface, source))
+            return -modes.neumann * across * surface.exterior
+
+        return load
+
+    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+        """Return the amplitudes at r = 1 of the pressure S e^{sS} eps_m I_m(kappa) K_m(kappa R0) and of its slope, without scattering."""
+        return incident_of_regular(self, grid, basis)
+
+    def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> SphericalField:
+        """Return the wave at points of the source's own plane z = 0."""
+        return SphericalField(pulse, self.distance, x, y)
+
+    def _across(self, basis: RadialBasis, surface: RadialFunctions, source: RadialFunctions) -> ComplexArray:
+        """Return S e^{sS} K_m(kappa R0)/K_m(kappa) of all orders: e^{(s - kappa) S} of order 0, and ratios between orders.
+
+        s - kappa = -k^2/(kappa + s), without the cancellation that a distant source would show.
+        """
+        start, ahead = self.distance - 1.0, -(basis.modes.wavenumber**2) / (surface.kappa + basis.s)
+        order_zero = br.kve(0, source.argument) / br.kve(0, surface.argument) * (start * np.exp(ahead * start))
+        return br.running_product(order_zero, source.k_ratios / surface.k_ratios)
