@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 import coaxshell as cx
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem, dimensionless
 
 THICKNESS = 1e-4
@@ -21,7 +22,7 @@ def problem(ring: Callable[..., cx.Shell], water: cx.Fluid, shock: cx.PlaneShock
 
 def stiffness(problem: Problem, omega: float, m: int) -> float:
     """Return Z(i omega), real in vacuo."""
-    return float(problem.shells[0].operator(np.array([float(m)]), np.array([1j * omega])).impedance[0, 0].real)
+    return float(problem.shells[0].operator(Modes(np.array([float(m)])), np.array([1j * omega])).impedance[0, 0].real)
 
 
 def bending_speed(thickness: float) -> float:
@@ -46,7 +47,7 @@ def test_breathing_and_membrane(problem: Problem, m: int) -> None:
 
 def test_translation_has_only_mass(problem: Problem) -> None:
     # Slowly pushed, order 1 moves as a body: V = W, and twice the mass per normal load (V carries as much as W).
-    operator = problem.shells[0].operator(np.array([1.0]), np.array([1e-3 + 0j]))
+    operator = problem.shells[0].operator(Modes(np.array([1.0])), np.array([1e-3 + 0j]))
     np.testing.assert_allclose(operator.tangential[0, 0], 1.0, rtol=5e-7)
     np.testing.assert_allclose(operator.impedance[0, 0] / 1e-6, 2 * problem.shells[0].mass, rtol=4e-7)
 

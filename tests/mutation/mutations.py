@@ -114,7 +114,7 @@ MUTATIONS = (
     ),
     Mutation(
         "incident-beta",
-        "acoustics/basis.py",
+        "numerics/modes.py",
         "np.where(self.orders == 0, 1.0, 2.0)",
         "np.where(self.orders == 0, 2.0, 2.0)",
         "projection of the incident wave: beta of order 0",

@@ -90,11 +90,12 @@ def test_the_normal_acceleration_is_that_of_the_shell_on_both_faces(answer, shel
 def test_the_pressure_jump_is_the_shells_load(answer, shell):
     # I w'' + K (v, w) = p outside - p inside, order by order; orders summed at angles.
     spectra, problem = answer._spectra, answer.solution.problem
-    radius, grid, m = (0.5, 1.0)[shell], spectra.grid, all_orders(M)[:, None]
-    stiffness = problem.shells[shell].stiffness(m)
-    load = (problem.shells[shell].mass * grid.nodes**2 + stiffness.ww) * spectra.normal[shell] + stiffness.vw * spectra.tangential[shell]
+    radius, grid, m = (0.5, 1.0)[shell], spectra.grid, all_orders(M)
+    stiffness = problem.shells[shell].stiffness(Modes(m))
+    inertia = problem.shells[shell].mass * grid.nodes**2
+    load = (inertia + stiffness.ww[:, None]) * spectra.normal[shell] + stiffness.vw[:, None] * spectra.tangential[shell]
     history = grid.invert(load)[..., np.rint(TIME / STEP).astype(int)] * RHO * C**2
-    theta = np.radians(ANGLES)[:, None] * m.T
+    theta = np.radians(ANGLES)[:, None] * m
     wanted = (np.cos(theta) @ history[0] + np.sin(theta) @ history[1]).T
     p = answer.pressure(radius=[inside(radius), radius], angle=ANGLES, time=TIME, **FINE).values
     np.testing.assert_allclose(p[:, 1] - p[:, 0], wanted, rtol=0, atol=2e-7 * abs(p).max())

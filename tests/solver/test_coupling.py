@@ -29,7 +29,7 @@ def dense(problem: Problem, m: int, s: complex) -> np.ndarray:
     count = len(problem.shells)
     matrix = np.zeros((2 * count, 2 * count), complex)
     for i, shell in enumerate(problem.shells):
-        k = shell.stiffness(np.array([float(m)]))
+        k = shell.stiffness(Modes(np.array([float(m)])))
         block = slice(2 * i, 2 * i + 2)
         matrix[block, block] = [[k.vv[0], k.vw[0]], [k.vw[0], k.ww[0]]] + shell.mass * s * s * np.eye(2)
     radii = [shell.radius for shell in problem.shells]

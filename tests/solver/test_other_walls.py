@@ -14,6 +14,7 @@ from scipy.special import kv, kvp
 
 import coaxshell as cx
 from coaxshell.acoustics.operators import all_orders
+from coaxshell.numerics.modes import Modes
 from coaxshell.response import Response
 from coaxshell.solver import Prepared
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -31,19 +32,19 @@ class SprungWall(ShellModel):
     spring: float
     damper: float
 
-    def passive(self, orders, s):
-        alike = np.ones((orders.size, 1))
-        return WallOperator(alike * (self.mass * s * s + self.damper * s + self.spring), np.zeros((orders.size, s.size), complex))
+    def passive(self, modes, s):
+        alike = np.ones((modes.count, 1))
+        return WallOperator(alike * (self.mass * s * s + self.damper * s + self.spring), np.zeros((modes.count, s.size), complex))
 
-    def highest_frequency(self, orders):
-        return np.full_like(orders, np.sqrt(self.spring / self.mass))
+    def highest_frequency(self, modes):
+        return np.full_like(modes.orders, np.sqrt(self.spring / self.mass))
 
     @property
     def damping(self):
         return self.damper
 
-    def stress_gain(self, orders, depth=None):
-        return Gain(np.zeros_like(orders), np.full_like(orders, self.spring))
+    def stress_gain(self, modes, depth=None):
+        return Gain(np.zeros_like(modes.orders), np.full_like(modes.orders, self.spring))
 
     def energy(self, motion):
         weight = 0.5 * self.radius * motion.circle
@@ -150,4 +151,4 @@ def test_summary_and_fields_ask_for_nothing_else():
 
 def test_the_direct_engine_refuses_what_it_cannot_step():
     with pytest.raises(cx.InputError, match="direct"):
-        WALLS[0].stiffness(all_orders(M))
+        WALLS[0].stiffness(Modes.up_to(M))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import dimensionless
 
 LAYUP = [
@@ -57,7 +58,7 @@ def test_the_paper_in_its_own_units() -> None:
     np.testing.assert_allclose(problem.scales.pressure, 1.96e9, rtol=1e-14)
     assert [shell.radius for shell in problem.shells] == [0.5, 1.0]
     np.testing.assert_allclose([shell.mass for shell in problem.shells], 0.0612, rtol=1e-12)
-    stiffness = problem.shells[1].stiffness(np.array([0.0]))
+    stiffness = problem.shells[1].stiffness(Modes(np.array([0.0])))
     np.testing.assert_allclose(stiffness.ww, 9.852e8 / 1.96e9, rtol=1e-4)
 
 

@@ -9,6 +9,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.stability import unstable_poles, with_gains
 
@@ -52,10 +53,10 @@ def test_static_buckling_under_positive_gain(factor: float) -> None:
     system = ACTIVE.replace(shells=[wall], fluids=["vacuum", "water-1400"], control=cx.PDControl(proportional=1.0, derivative=0.0))
     problem = dimensionless(system)
     orders = np.arange(2.0, 13.0)
-    k = problem.shells[0].stiffness(orders)
+    k = problem.shells[0].stiffness(Modes(orders))
     ratio = -k.vw / k.vv
-    sensor_v, sensor_w = problem.shells[0].sensor_gain(orders)
-    critical = (k.ww + k.vw * ratio) / (problem.shells[0].actuator_pressure * (sensor_v * ratio + sensor_w))
+    sensor = problem.shells[0].sensor_gain(Modes(orders))
+    critical = (k.ww + k.vw * ratio) / (problem.shells[0].actuator_pressure * sensor.recovered(ratio))
     gain = factor * float(critical[critical > 0].min())
     expected = orders[(critical > 0) & (critical < gain)]
     found = unstable_poles(with_gains(problem, gain, 0.0), 12, 200.0)

@@ -10,6 +10,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.modes import Modes
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
@@ -44,7 +45,7 @@ def tangential_gain(solution: ModalSolution) -> Gain:
 def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None) -> Gain:
     """Return the gain of the hoop stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5)."""
     scales = solution.problem.scales
-    gain = elastic_wall(solution.problem, shell).stress_gain(orders(solution), None if depth is None else depth / scales.length)
+    gain = elastic_wall(solution.problem, shell).stress_gain(Modes(orders(solution)), None if depth is None else depth / scales.length)
     return Gain(scales.pressure * gain.v, scales.pressure * gain.w)
 
 
@@ -53,7 +54,7 @@ def voltage_gain(solution: ModalSolution, shell: int, role: str = "sensor") -> G
     wall = elastic_wall(solution.problem, shell)
     if not wall.has(role):
         raise InputError(f"shells[{shell}].layers", f"there is no {role}", f'give a piezoelectric layer the role "{role}"')
-    return wall.sensor_gain(orders(solution), role)
+    return wall.sensor_gain(Modes(orders(solution)), role)
 
 
 def amplitudes(solution: ModalSolution, shell: int, gain: Gain, window: slice = slice(None)) -> FloatArray:

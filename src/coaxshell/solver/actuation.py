@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 
@@ -26,11 +26,11 @@ def pressure_asked(
     ndarray, shape (shells, parities, M + 1, T)
         Positive inward; 0 on shells without feedback.
     """
-    pressure, orders = np.zeros_like(normal), all_orders(normal.shape[2] - 1)[:, None]
+    pressure, modes = np.zeros_like(normal), Modes.up_to(normal.shape[2] - 1)
     for i, wall in enumerate(problem.shells):
         if wall.gains is None:
             continue
-        sensor = wall.sensor_gain(orders)
+        sensor = wall.sensor_gain(modes).columns
         sensed, rate = (sensor.v * v[i] + sensor.w * w[i] for w, v in ((normal, tangential), (normal_rate, tangential_rate)))
         pressure[i] = wall.actuator_pressure * (wall.gains.proportional * sensed + wall.gains.derivative * rate)
     return pressure

@@ -17,6 +17,7 @@ from coaxshell.model.pulses import Sampled
 from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linked import AbsorberSolution
@@ -146,7 +147,7 @@ def _stretch(force: float, linear: float, cubic: float) -> float:
 def _resolved_membrane(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     warnings = []
     for i, wall in enumerate(problem.shells):
-        highest = float(wall.highest_frequency(np.array([float(max_order)]))[0])
+        highest = float(wall.highest_frequency(Modes(np.array([float(max_order)])))[0])
         if highest > grid.nyquist:
             warnings.append(
                 f"{shell_phrase(i, len(problem.shells))}: the membrane frequency of order {max_order} is {highest:.4g} per transit, above "

@@ -92,7 +92,7 @@ class ModalSystem:
     ) -> None:
         self.problem, self.s, self.modes, self._shared = problem, s, modes, shared
         self.radial: RadialBasis = RadialBasis(modes, s) if like is None else like.radial
-        self.shells = [wall.operator(modes.orders, s) for wall in problem.shells]
+        self.shells = [wall.operator(modes, s) for wall in problem.shells]
         self._assemble()
         self._factor()
 

@@ -27,6 +27,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.units import to_si
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import around, peak_on_circle
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 
@@ -89,7 +90,8 @@ def largest_demand(solution: ModalSolution, index: int, above: float) -> Largest
     length = segment_length(problem, index)
     orders = all_orders(solution.normal.shape[2] - 1)
     share = segment_mean(orders, length / problem.system.shells[index].radius)
-    sensor_v, sensor_w = (share * each for each in problem.shells[index].sensor_gain(orders))
+    sensor = problem.shells[index].sensor_gain(Modes(orders))
+    sensor_v, sensor_w = share * sensor.v, share * sensor.w
     voltage = sensor_w[:, None] * (gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index])
     voltage += sensor_v[:, None] * (gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index])
     highest = _largest(voltage, _NEAR * above)

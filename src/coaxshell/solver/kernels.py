@@ -18,15 +18,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 
 
 def initial_decay(problem: Problem, index: int, max_order: int) -> FloatArray:
     """Return b, shape (M + 1, 1): the rate at which fluids, derivative feedback and its own losses slow a shell just after an impulse."""
-    wall = problem.shells[index].leading(all_orders(max_order))
+    wall = problem.shells[index].leading(Modes.up_to(max_order))
     resistance = sum(fluid.density / fluid.slowness for fluid in problem.fluids[index : index + 2] if fluid is not None)
     return (np.full((max_order + 1, 1), resistance) + wall.damping) / wall.mass
 
@@ -46,7 +46,7 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
         for j in range(count):
             spectrum = compliance[i, j] * grid.nodes
             if i == j and problem.shells[i].moves:
-                mass, decay = problem.shells[i].leading(all_orders(max_order)).mass, initial_decay(problem, i, max_order)
+                mass, decay = problem.shells[i].leading(Modes.up_to(max_order)).mass, initial_decay(problem, i, max_order)
                 weights[i, j] = grid.invert((spectrum - 1.0 / (mass * (grid.nodes + decay))) * hat)
                 weights[i, j] += exponential_weights(decay, grid) / mass
             else:
@@ -61,7 +61,7 @@ def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArr
     """
     wall = problem.shells[index]
     assert wall.gains is not None
-    sensor = wall.sensor_gain(all_orders(ratio.shape[0] - 1)[:, None])
+    sensor = wall.sensor_gain(Modes.up_to(ratio.shape[0] - 1)).columns
     return np.asarray(wall.gains.at(s) * sensor.recovered(ratio), dtype=np.complex128)
 
 
@@ -75,11 +75,11 @@ def sensor_rate_weights(
     """
     count, max_order = compliance.shape[0], compliance.shape[2] - 1
     weights = np.empty((len(controlled), count, max_order + 1, grid.time.size))
-    hat, orders = grid.hat * grid.time_step, all_orders(max_order)
+    hat, modes = grid.hat * grid.time_step, Modes.up_to(max_order)
     for row, i in enumerate(controlled):
-        sensor = problem.shells[i].sensor_gain(orders[:, None])
+        sensor = problem.shells[i].sensor_gain(modes).columns
         sensed = grid.nodes * sensor.recovered(ratio[i])
-        decay, leading = initial_decay(problem, i, max_order), sensor.w / problem.shells[i].leading(orders).mass
+        decay, leading = initial_decay(problem, i, max_order), sensor.w / problem.shells[i].leading(modes).mass
         for j in range(count):
             if i == j:
                 weights[row, j] = grid.invert((sensed * compliance[i, j] - leading / (grid.nodes + decay)) * hat)

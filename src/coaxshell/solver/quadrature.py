@@ -18,7 +18,6 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
@@ -31,9 +30,9 @@ RESOLVED = 0.6
 
 def unresolved_orders(problem: Problem, grid: LaplaceGrid, max_order: int) -> npt.NDArray[np.bool_]:
     """Return which orders have a shell whose highest frequency the step does not resolve: shape (M + 1,)."""
-    orders, late = all_orders(max_order), np.zeros(max_order + 1, dtype=bool)
+    modes, late = Modes.up_to(max_order), np.zeros(max_order + 1, dtype=bool)
     for wall in problem.shells:
-        late |= wall.highest_frequency(orders) > RESOLVED * grid.nyquist
+        late |= wall.highest_frequency(modes) > RESOLVED * grid.nyquist
     return late
 
 
@@ -55,13 +54,14 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
     rate : ndarray, shape (len(sensors), shells, orders, T)
     """
     count, nodes = len(problem.shells), (2.0 / grid.time_step) * np.tanh(0.5 * grid.time_step * grid.nodes)
-    gains = [problem.shells[i].sensor_gain(orders[:, None]) for i in sensors]
+    modes = Modes(orders)
+    gains = [problem.shells[i].sensor_gain(modes).columns for i in sensors]
     velocity = np.empty((count, count, orders.size, nodes.size), np.complex128)
     rate = np.empty((len(sensors), count, orders.size, nodes.size), np.complex128)
 
     def work(block: slice) -> None:
         s = np.asarray(nodes[block], dtype=np.complex128)
-        modal = ModalSystem(problem, s, Modes(orders))
+        modal = ModalSystem(problem, s, modes)
         for j in range(count):
             normal = modal.solve(j, 1.0)
             for i, w in enumerate(normal):

@@ -63,9 +63,10 @@ class OpenLoop:
     @classmethod
     def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, shared: SharedParts | None) -> OpenLoop:
         """Return it for a problem, whose gains only tell which shells are controlled."""
-        system = ModalSystem(problem.open_loop, nodes, Modes(orders), shared=shared)
+        modes = Modes(orders)
+        system = ModalSystem(problem.open_loop, nodes, modes, shared=shared)
         fed_back = {
-            i: wall.fed_back(operator.tangential, orders)
+            i: wall.fed_back(modes, operator)
             for i, (wall, operator) in enumerate(zip(problem.shells, system.shells, strict=True))
             if wall.gains is not None
         }
@@ -89,14 +90,14 @@ def with_gains(problem: Problem, proportional: float, derivative: float) -> Prob
 
 def highest_frequency(problem: Problem, max_order: int) -> float:
     """Return a power of two above which feedback is less than half of every controlled shell's inertia."""
-    highest = max(1.0, *(wall.feedback_frequency(all_orders(max_order)) for wall in problem.shells))
+    highest = max(1.0, *(wall.feedback_frequency(Modes.up_to(max_order)) for wall in problem.shells))
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
 def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, FloatArray]:
     """Return sigma_0 and the frequencies: evenly spaced as far as shells resonate, then by a growing step to where feedback fades."""
-    order = np.array([float(max_order)])
-    resonance = max(float(wall.highest_frequency(order)[0]) for wall in problem.shells)
+    highest = Modes(np.array([float(max_order)]))
+    resonance = max(float(wall.highest_frequency(highest)[0]) for wall in problem.shells)
     dense = min(1.2 * resonance, highest_frequency(problem, max_order))
     shift = max(1.0 / duration, dense / (_SPACING * _MAX_NODES))
     even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)

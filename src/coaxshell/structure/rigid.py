@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
 from coaxshell.structure.shell_model import ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness
 
 
@@ -22,18 +23,18 @@ class RigidWall(ShellModel):
         """False."""
         return False
 
-    def passive(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
+    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
         """Return an infinite impedance and V = 0."""
-        shape = orders.size, s.size
+        shape = modes.count, s.size
         return WallOperator(np.full(shape, np.inf + 0j), np.zeros(shape, np.complex128))
 
-    def highest_frequency(self, orders: FloatArray) -> FloatArray:
+    def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return zeros: nothing resonates."""
-        return np.zeros_like(orders)
+        return np.zeros_like(modes.orders)
 
-    def stiffness(self, orders: FloatArray) -> WallStiffness:
+    def stiffness(self, modes: Modes) -> WallStiffness:
         """Return zeros: it is held by its mass."""
-        return WallStiffness(*(np.zeros_like(orders) for _ in range(3)))
+        return WallStiffness(*(np.zeros_like(modes.orders) for _ in range(3)))
 
     def energy(self, motion: WallMotion) -> WallEnergy:
         """Return zeros."""

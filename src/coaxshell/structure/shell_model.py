@@ -1,10 +1,12 @@
 """What a wall tells the rest of the house: the protocol behind which thin, rigid and any other walls stand.
 
 Everything that goes in and comes out is dimensionless (lengths in a, times in a/c_e, pressures in rho_e c_e^2), voltages are in volts.
-A wall is linear; per order m and Laplace node s its normal displacement W (positive inward) answers the net inward pressure on it by its
-impedance Z, and every other quantity is recovered from W:
+A wall is linear; per mode, an order m at an axial wavenumber k, and Laplace node s its normal displacement W (positive inward) answers
+the net inward pressure on it by its impedance Z, and every other quantity is recovered from W:
 
-    Z W = p,      V = (V/W) W,      a quantity = gain.v V + gain.w W.
+    Z W = p,      V = (V/W) W,      U = (U/W) W,      a quantity = gain.v V + gain.w W + gain.u U.
+
+In the first parities w = W cos m theta cos kz, v = V sin m theta cos kz and u = U cos m theta sin kz (axial); the others share all of it.
 
 A wall of another theory is a subclass of :class:`ShellModel`; nothing else needs to know of it.
 """
@@ -19,6 +21,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
 
 Ratio = TypeVar("Ratio", FloatArray, ComplexArray)
 
@@ -39,23 +42,38 @@ class ControlGains:
         return ControlGains(proportional * self.proportional, derivative * self.derivative)
 
 
+def _column(entry: FloatArray) -> FloatArray:
+    return entry if entry.ndim == 2 else entry[:, None]
+
+
 class Gain(NamedTuple):
-    """A quantity per unit amplitude V and W, each of the shape of the orders."""
+    """A quantity per unit amplitude V, W and U, each of the shape of the orders; U counts where there is an axial wavenumber."""
 
     v: FloatArray
     w: FloatArray
+    u: FloatArray | None = None
 
-    def recovered(self, tangential: Ratio) -> Ratio:
-        """Return the quantity per unit W where V is ``tangential`` times W."""
-        return self.v * tangential + self.w
+    @property
+    def columns(self) -> Gain:
+        """Gains with an axis for the nodes."""
+        return Gain(_column(self.v), _column(self.w), None if self.u is None else _column(self.u))
+
+    def recovered(self, tangential: Ratio, axial: Ratio | None = None) -> Ratio:
+        """Return the quantity per unit W where V is ``tangential`` and U ``axial`` times W."""
+        found = self.v * tangential + self.w
+        return found if self.u is None or axial is None else found + self.u * axial
 
 
 @dataclass
 class WallOperator:
-    """One wall at some orders and nodes, each of shape (orders, nodes): dynamic stiffness Z (load per W), feedback included, and V/W."""
+    """One wall at some modes and nodes, each of shape (orders, nodes): dynamic stiffness Z (load per W), feedback included, V/W and U/W.
+
+    ``axial`` is None where nothing moves along the axis, at k = 0.
+    """
 
     impedance: ComplexArray
     tangential: ComplexArray
+    axial: ComplexArray | None = None
 
 
 class Leading(NamedTuple):
@@ -136,12 +154,12 @@ class ShellModel(ABC):
         return True
 
     @abstractmethod
-    def passive(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
-        """Return impedance and V/W without feedback."""
+    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
+        """Return impedance, V/W and U/W without feedback."""
 
     @abstractmethod
-    def highest_frequency(self, orders: FloatArray) -> FloatArray:
-        """Return the highest frequency at which each order resonates by itself, radians per transit: steps and contours resolve it."""
+    def highest_frequency(self, modes: Modes) -> FloatArray:
+        """Return the highest frequency at which each mode resonates by itself, radians per transit: steps and contours resolve it."""
 
     @property
     def damping(self) -> float:
@@ -153,22 +171,22 @@ class ShellModel(ABC):
         """An order above which its stress may rise again before it falls, 0 if there is none: orders left out are sampled beyond it."""
         return 0.0
 
-    def stiffness(self, orders: FloatArray) -> WallStiffness:
+    def stiffness(self, modes: Modes) -> WallStiffness:
         """Return K of a wall that is M d2(v, w)/dt2 + K (v, w), as the direct engine steps it; InputError if it is none."""
         raise InputError("engine", "'direct' cannot step a wall of this kind", 'use engine="spectral"')
 
-    def operator(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
-        """Return impedance and V/W with feedback, which adds - (k_p + k_d s) times what it feeds back per unit gain (Eqs. 4, 17, 20)."""
-        found = self.passive(orders, s)
+    def operator(self, modes: Modes, s: ComplexArray) -> WallOperator:
+        """Return impedance, V/W and U/W with feedback, which adds -(k_p + k_d s) times what it feeds back per gain (Eqs. 4, 17, 20)."""
+        found = self.passive(modes, s)
         if self.gains is not None:
-            found.impedance -= self.gains.at(s) * self.fed_back(found.tangential, orders)
+            found.impedance -= self.gains.at(s) * self.fed_back(modes, found)
         return found
 
-    def leading(self, orders: FloatArray) -> Leading:
+    def leading(self, modes: Modes) -> Leading:
         """Return mass and damping at once: its own, and what derivative feedback adds."""
         if self.gains is None:
             return Leading(self.mass, self.damping)
-        sensed = self.sensor_gain(orders[:, None]).w
+        sensed = self.sensor_gain(modes).columns.w
         return Leading(self.mass, self.damping - self.actuator_pressure * self.gains.derivative * sensed)
 
     # Transducers
@@ -177,9 +195,9 @@ class ShellModel(ABC):
         """Return whether it has a piezoelectric layer of a role, "sensor" or "actuator"."""
         return False
 
-    def sensor_gain(self, orders: FloatArray, role: str = "sensor") -> Gain:
-        """Return volts of an open-circuit layer per unit (V, W) (Eq. 20); zeros if it has no such layer."""
-        return Gain(np.zeros_like(orders), np.zeros_like(orders))
+    def sensor_gain(self, modes: Modes, role: str = "sensor") -> Gain:
+        """Return volts of an open-circuit layer per unit (V, W, U) (Eq. 20); zeros if it has no such layer."""
+        return Gain(np.zeros_like(modes.orders), np.zeros_like(modes.orders))
 
     @property
     def actuator_pressure(self) -> float:
@@ -190,22 +208,23 @@ class ShellModel(ABC):
         """Return the largest voltage of its actuator, V, by its material's field limit or another (V per a); infinite without one."""
         return float("inf")
 
-    def fed_back(self, tangential: ComplexArray, orders: FloatArray) -> ComplexArray:
-        """Return the actuator's pressure per W and unit gain: pressure per volt times the sensor's voltage per W; V/W is given."""
-        return np.asarray(self.actuator_pressure * self.sensor_gain(orders[:, None]).recovered(tangential))
+    def fed_back(self, modes: Modes, moving: WallOperator) -> ComplexArray:
+        """Return the actuator's pressure per W and unit gain: pressure per volt times the sensor's voltage per W; V/W and U/W are given."""
+        volts = self.sensor_gain(modes).columns.recovered(moving.tangential, moving.axial)
+        return np.asarray(self.actuator_pressure * volts)
 
-    def feedback_frequency(self, orders: FloatArray) -> float:
+    def feedback_frequency(self, modes: Modes) -> float:
         """Return a frequency above which feedback is less than half of its inertia; 0 without feedback."""
         if self.gains is None:
             return 0.0
-        volts = np.abs(np.stack(self.sensor_gain(orders))).max(axis=0) * abs(self.actuator_pressure)
+        volts = np.abs(np.stack([x for x in self.sensor_gain(modes) if x is not None])).max(axis=0) * abs(self.actuator_pressure)
         damping = float((volts * abs(self.gains.derivative)).max()) / self.mass
         stiffness = float((volts * abs(self.gains.proportional)).max()) / self.mass
         return 2.0 * damping + 2.0 * float(np.sqrt(stiffness))
 
     # Stress, energy, range of the theory
 
-    def stress_gain(self, orders: FloatArray, depth: float | None = None) -> Gain:
+    def stress_gain(self, modes: Modes, depth: float | None = None) -> Gain:
         """Return the hoop stress per unit (V, W): of the core at the mid-surface (Eq. 22), or at a depth (outward of the mid-surface).
 
         Raises

@@ -91,8 +91,8 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> Gain:
     layer = where.piezoelectric
     if layer is not None:
         per_volt = layer.reduced_coupling * math.pi / layer.thickness * math.sin(math.pi * (where.z - layer.centre) / layer.thickness)
-        phi_v, phi_w = potential_gain(layer, m, section.radius)
-        gain_v, gain_w = gain_v + per_volt * phi_v, gain_w + per_volt * phi_w
+        phi = potential_gain(layer, m, section.radius)
+        gain_v, gain_w = gain_v + per_volt * phi.v, gain_w + per_volt * phi.w
     return Gain(gain_v, gain_w)
 
 

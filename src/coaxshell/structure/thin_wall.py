@@ -14,6 +14,7 @@ from typing import Self
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
 from coaxshell.structure.section import Section
 from coaxshell.structure.shell_model import ControlGains, Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
 from coaxshell.structure.stress import control_stress, design_stress_gain, stress_gain, wall_point
@@ -40,21 +41,20 @@ class ThinWall(ShellModel):
         """Return the wall of a dimensionless section."""
         return cls(radius=section.radius, mass=section.mass, gains=gains, section=section)
 
-    def stiffness(self, orders: FloatArray) -> WallStiffness:
+    def stiffness(self, modes: Modes) -> WallStiffness:
         """Return K, membrane, cross, bending and open-circuit stiffness together."""
-        return wall_stiffness(self.section, orders)
+        return wall_stiffness(self.section, modes.orders)
 
-    def passive(self, orders: FloatArray, s: ComplexArray) -> WallOperator:
+    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
         """Return impedance and V/W without feedback."""
-        m = orders[:, None]
-        stiffness = self.stiffness(m)
+        stiffness = WallStiffness(*(entry[:, None] for entry in self.stiffness(modes)))
         inertia = self.mass * s * s
-        tangential = -stiffness.vw / (inertia + np.where(m == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
+        tangential = -stiffness.vw / (inertia + np.where(modes.column == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
         return WallOperator(inertia + stiffness.ww + stiffness.vw * tangential, tangential)
 
-    def highest_frequency(self, orders: FloatArray) -> FloatArray:
+    def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return the membrane frequency of each order, sqrt(K_vv/M)."""
-        return np.asarray(np.sqrt(self.stiffness(orders).vv / self.mass))
+        return np.asarray(np.sqrt(self.stiffness(modes).vv / self.mass))
 
     @property
     def crossing_order(self) -> float:
@@ -66,12 +66,12 @@ class ThinWall(ShellModel):
         """Return whether it has a piezoelectric layer of a role."""
         return self.section.layer(role) is not None
 
-    def sensor_gain(self, orders: FloatArray, role: str = "sensor") -> Gain:
+    def sensor_gain(self, modes: Modes, role: str = "sensor") -> Gain:
         """Return volts of an open-circuit layer per unit (V, W) (Eq. 20)."""
         layer = self.section.layer(role)
         if layer is None:
-            return super().sensor_gain(orders, role)
-        return potential_gain(layer, orders, self.radius)
+            return super().sensor_gain(modes, role)
+        return potential_gain(layer, modes.orders, self.radius)
 
     @property
     def actuator_pressure(self) -> float:
@@ -86,9 +86,9 @@ class ThinWall(ShellModel):
             return super().voltage_limit(field)
         return (actuator.field_limit if field is None else field) * actuator.thickness
 
-    def stress_gain(self, orders: FloatArray, depth: float | None = None) -> Gain:
+    def stress_gain(self, modes: Modes, depth: float | None = None) -> Gain:
         """Return the hoop stress of the core at the mid-surface (Eq. 22), or at a depth (Eqs. A.4, A.5)."""
-        section = self.section
+        section, orders = self.section, modes.orders
         return design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, wall_point(section, depth))
 
     def control_stress(self, depth: float) -> float:

@@ -6,6 +6,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import integrate
+from coaxshell.numerics.modes import Modes
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.shell_model import WallEnergy, WallMotion
@@ -44,7 +45,7 @@ def actuator_work(motion: Motion) -> FloatArray:
         if given is not None:
             pressure = grid.transform_linear(given[i])
         else:
-            sensor = wall.sensor_gain(motion.orders[:, None])
+            sensor = wall.sensor_gain(Modes(motion.orders)).columns
             volts = sensor.v * motion.spectra.tangential[i] + sensor.w * motion.spectra.normal[i]
             pressure = wall.actuator_pressure * wall.gains.at(s) * volts
         total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)

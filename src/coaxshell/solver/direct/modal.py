@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 
 
@@ -20,15 +20,16 @@ class ModalStep:
 
     def __init__(self, problem: Problem, grid: LaplaceGrid, max_order: int, parities: int) -> None:
         self.problem, self.step = problem, grid.time_step
-        self.orders = all_orders(max_order)
+        modes = Modes.up_to(max_order)
+        self.orders = modes.orders
         count = len(problem.shells)
         walls = problem.shells
         self.free = np.array([wall.moves for wall in walls])
         self.mass = np.array([wall.mass for wall in walls])
-        stiffness = [wall.stiffness(self.orders) for wall in walls]
+        stiffness = [wall.stiffness(modes) for wall in walls]
         self.vv, self.vw, self.ww = (np.stack([k[entry] for k in stiffness])[:, None] for entry in range(3))
-        sensors = [wall.sensor_gain(self.orders) for wall in walls]
-        self.sensor_v, self.sensor_w = (np.stack([pair[k] for pair in sensors])[:, None] for k in (0, 1))
+        sensors = [wall.sensor_gain(modes) for wall in walls]
+        self.sensor_v, self.sensor_w = (np.stack(x)[:, None] for x in ([gain.v for gain in sensors], [gain.w for gain in sensors]))
         gains = [wall.gains for wall in walls]
         self.proportional = np.array([0.0 if g is None else g.proportional for g in gains])[:, None, None]
         self.derivative = np.array([0.0 if g is None else g.derivative for g in gains])[:, None, None]

@@ -98,14 +98,14 @@ def _root(problem: Problem, reference: Problem, order: float, shift: float) -> f
 
 def _highest(problem: Problem, modes: int) -> float:
     """Return a frequency above all resonances of the shells and above which feedback no longer matters."""
-    order = np.array([float(modes)])
+    order = Modes(np.array([float(modes)]))
     resonances = [float(wall.highest_frequency(order)[0]) for wall in problem.shells]
     return 1.2 * max(*resonances, highest_frequency(problem, modes))
 
 
 def _contour(problem: Problem, modes: int, shift: float) -> FloatArray:
     """Return frequencies evenly spaced as far as the shells resonate, then by a growing step to where slips and feedback fade."""
-    order = np.array([float(modes)])
+    order = Modes(np.array([float(modes)]))
     resonance = 1.2 * max(float(wall.highest_frequency(order)[0]) for wall in problem.shells)
     even = np.arange(0.0, resonance + 2.0 * shift, _SPACING * shift)
     top = 10.0 * max(_highest(problem, modes), even[-1])

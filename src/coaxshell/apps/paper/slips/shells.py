@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields, replace
 
 from scipy.integrate import quad
 
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.structure.section import PiezoelectricLayer, Section
 from coaxshell.structure.shell_model import WallStiffness
@@ -46,9 +46,9 @@ class PrintedStrain(ThinWall):
     Only section stiffness is changed; the open-circuit stiffening of piezoelectric layers keeps Eq. 20, which has both terms.
     """
 
-    def stiffness(self, orders: FloatArray) -> WallStiffness:
+    def stiffness(self, modes: Modes) -> WallStiffness:
         """Return K with that strain."""
-        section = self.section
+        section, orders = self.section, modes.orders
         ev, ew = membrane_strain(orders, section.radius)
         kv, kw = bending_strain(orders, section.radius)
         a, b, d = section.membrane, section.cross, section.bending

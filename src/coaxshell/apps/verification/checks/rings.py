@@ -14,6 +14,7 @@ from coaxshell.apps.verification.systems import STEEL, WATER, thin_shell
 from coaxshell.model.fluids import VACUUM, Fluid
 from coaxshell.model.sources import PlaneShock
 from coaxshell.model.system import System
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem, dimensionless
 
 RADIUS, THIN = 0.6, 1e-4
@@ -54,7 +55,7 @@ def _zero(problem: Problem, guess: float, m: int) -> float:
     """Return the frequency next to a guess at which the dynamic stiffness, real in vacuo, vanishes."""
 
     def stiffness(omega: float) -> float:
-        return float(problem.shells[0].operator(np.array([float(m)]), np.array([1j * omega])).impedance[0, 0].real)
+        return float(problem.shells[0].operator(Modes(np.array([float(m)])), np.array([1j * omega])).impedance[0, 0].real)
 
     return float(brentq(stiffness, 0.99 * guess, 1.01 * guess, xtol=1e-14))
 

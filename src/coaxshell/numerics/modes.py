@@ -1,0 +1,86 @@
+"""The functions in which every field is expanded on a cylinder.
+
+A mode is cos m theta or sin m theta times cos kz or sin kz. Its parities share every operator: only the order m and the axial
+wavenumber k (in 1/a; 0 for the plane problem) tell modes apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Circumferential orders at one axial wavenumber.
+
+    Attributes
+    ----------
+    orders : ndarray, shape (M,)
+        Ascending, all or a sample.
+    wavenumber : float
+        k, in units of 1/a.
+    """
+
+    orders: FloatArray
+    wavenumber: float = 0.0
+
+    @classmethod
+    def up_to(cls, max_order: int, wavenumber: float = 0.0) -> Modes:
+        """Return the orders 0, 1, ..., max_order."""
+        return cls(np.arange(max_order + 1, dtype=np.float64), wavenumber)
+
+    @property
+    def max_order(self) -> int:
+        """The highest order."""
+        return int(self.orders[-1])
+
+    @property
+    def count(self) -> int:
+        """Number of orders."""
+        return int(self.orders.size)
+
+    @property
+    def column(self) -> FloatArray:
+        """The orders with an axis for the nodes."""
+        return self.orders[:, None]
+
+    @property
+    def key(self) -> tuple[bytes, float]:
+        """What tells these modes from others, for caches."""
+        return self.orders.tobytes(), self.wavenumber
+
+    @property
+    def neumann(self) -> FloatArray:
+        """Neumann's factor as a column: 1 for order 0, else 2."""
+        return np.where(self.orders == 0, 1.0, 2.0)[:, None]
+
+    def kappa(self, slowness: float, s: ComplexArray) -> ComplexArray:
+        """Return sqrt(alpha^2 s^2 + k^2), the root with a positive real part for Re s > 0."""
+        along = slowness * s
+        if self.wavenumber == 0.0:
+            return along
+        return np.asarray(np.sqrt(along - 1j * self.wavenumber) * np.sqrt(along + 1j * self.wavenumber))
+
+    def gradient_squared(self, radius: float) -> FloatArray:
+        """Return (m/r)^2 + k^2: the mean square of a mode's gradient along the wall per mean square of the mode."""
+        return np.asarray((self.orders / radius) ** 2 + self.wavenumber**2)
+
+    def projection(self, angle: float, parity: int) -> FloatArray:
+        """Return cos(m angle), or sin(m angle) for parity 1, as a column; exact at multiples of 90 degrees: symmetric systems stay so.
+
+        Parameters
+        ----------
+        angle : float
+            Degrees.
+        parity : int
+        """
+        turns = np.mod(self.orders * angle, 360.0)[:, None]
+        exact = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+        value = np.cos(np.radians(turns)) if parity == 0 else np.sin(np.radians(turns))
+        for multiple, pair in exact.items():
+            value = np.where(turns == multiple, pair[parity], value)
+        return value
