@@ -6,10 +6,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import LineGeometry, PlaneGeometry, SphericalFrontGeometry
 from coaxshell.numerics.bessel_ratios import kve
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
 
 GRID = LaplaceGrid(2e-2, 100)
 

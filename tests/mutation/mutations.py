@@ -153,6 +153,22 @@ MUTATIONS = (
         "acoustics/test_spherical_front.py",
     ),
     Mutation(
+        "axial-reach",
+        "solver/axial/causality.py",
+        "return speed * time + start / (speed + _faster(speed))",
+        "return speed * time + start / (2.0 * speed)",
+        "how far a head wave gets along the axis, and with it the axial period",
+        "solver/test_axial_sampling.py",
+    ),
+    Mutation(
+        "axial-shares",
+        "solver/axial/sampling.py",
+        "np.where(self.wavenumbers == 0.0, 2.0, 4.0)",
+        "np.where(self.wavenumbers == 0.0, 4.0, 4.0)",
+        "sum over axial wavenumbers: that of k = 0 counts once",
+        "solver/test_axial_sampling.py",
+    ),
+    Mutation(
         "laplace-window",
         "numerics/laplace_grid.py",
         "np.exp(self.shift * self.time) / self.time_step",

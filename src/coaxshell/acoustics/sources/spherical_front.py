@@ -16,13 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.sources.source import SurfaceLoad, TimeFunction, incident_of_regular
 from coaxshell.acoustics.sources.spherical import SphericalField
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
 
 
 @dataclass(frozen=True)

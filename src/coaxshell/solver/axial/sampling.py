@@ -1,0 +1,145 @@
+"""The axial wavenumbers of a three-dimensional run: k_j = 2 pi j/L, the orders that go with each, and their shares at stations.
+
+An amplitude F(k) that is even in z, and one that is odd, give at z
+
+    (2/L) [F(k_0) + 2 sum_{j>=1} F(k_j) cos k_j z],        (4/L) sum_{j>=1} F(k_j) sin k_j z :
+
+by Poisson's sum the answer to a source and its images at nL, of which causality keeps the images out
+(:mod:`coaxshell.solver.axial.causality`). Orders and wavenumbers end on the ellipse (m/M)^2 + (k/k_max)^2 = 1, within which waves along
+the wall are resolved alike in all directions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.acoustics.sources import SphericalFrontGeometry
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.causality import Front, least_period
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.settings import Settings
+from coaxshell.structure.shell_model import ShellModel
+from coaxshell.structure.thin_wall import ThinWall
+
+
+@dataclass(frozen=True, eq=False)
+class AxialSampling:
+    """Axial wavenumbers k_j = 2 pi j/L up to a highest one.
+
+    Attributes
+    ----------
+    period : float
+        L, in a.
+    max_order : int
+        M, the highest order, that of k = 0.
+    highest : float
+        k_max, in 1/a.
+    """
+
+    period: float
+    max_order: int
+    highest: float
+
+    @property
+    def spacing(self) -> float:
+        """2 pi/L."""
+        return 2.0 * math.pi / self.period
+
+    @cached_property
+    def wavenumbers(self) -> FloatArray:
+        """k_j, ascending from k_0 = 0, shape (waves,)."""
+        return self.spacing * np.arange(math.floor(self.highest / self.spacing * (1.0 + 1e-12)) + 1, dtype=np.float64)
+
+    @cached_property
+    def modes(self) -> list[Modes]:
+        """Orders with (m/M)^2 + (k/k_max)^2 <= 1 at every wavenumber."""
+        room = np.maximum(1.0 - (self.wavenumbers / self.highest) ** 2, 0.0)
+        tops = np.floor(self.max_order * np.sqrt(room) + 1e-9)
+        return [Modes.up_to(int(top), float(k)) for top, k in zip(tops, self.wavenumbers, strict=True)]
+
+    @cached_property
+    def weights(self) -> FloatArray:
+        """c_j: 2/L for k_0, 4/L for the others, shape (waves,)."""
+        return np.where(self.wavenumbers == 0.0, 2.0, 4.0) / self.period
+
+    @property
+    def mean(self) -> FloatArray:
+        """Mean squares along the axis of c_j cos k_j z, shape (waves,)."""
+        return np.asarray(self.weights**2 * np.where(self.wavenumbers == 0.0, 1.0, 0.5))
+
+    def shares(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return c_j cos k_j z and c_j sin k_j z, each (stations, waves).
+
+        Parameters
+        ----------
+        z : ndarray, shape (stations,)
+            Distances from the source's plane, in a.
+        """
+        phase = np.multiply.outer(z, self.wavenumbers)
+        return self.weights * np.cos(phase), self.weights * np.sin(phase)
+
+
+def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
+    """Return the axial wavenumbers of a run; k = 0 alone where all sources are uniform along the axis or travel along it.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its spherical sources in three dimensions.
+    settings : Settings
+        With ``modes`` a number; ``axial_modes`` and ``axial_period`` where they are to be other than M and the least that causality asks.
+
+    Raises
+    ------
+    InputError
+        The period given is too short.
+    """
+    assert isinstance(settings.modes, int)
+    highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
+    fronts = _fronts(problem)
+    places = [z / length for z in settings.stations]
+    needed = least_period(settings.duration, places, fronts, fastest_wave(problem, highest))
+    given = None if settings.axial_period is None else settings.axial_period / length
+    if given is not None and given < needed * (1.0 - 1e-12):
+        raise InputError(
+            "axial_period",
+            f"{settings.axial_period:g} m is too short: images of the source, one period away, are felt at the stations within the run",
+            f"give at least {_rounded_up(needed * length):g} m, or leave it out",
+        )
+    if not fronts:
+        return AxialSampling(math.pi / highest, settings.modes, highest)  # the next wavenumber would be 2 k_max
+    return AxialSampling(given or needed, settings.modes, highest)
+
+
+def fastest_wave(problem: Problem, highest: float) -> float:
+    """Return the greatest speed of any wave along the axis, in c_e, at wavenumbers up to a highest one (in 1/a)."""
+    fluids = [1.0 / fluid.slowness for fluid in problem.fluids if fluid is not None]
+    return max(fluids + [_fastest_in_wall(wall, highest) for wall in problem.shells])
+
+
+def _fastest_in_wall(wall: ShellModel, highest: float) -> float:
+    """Return sqrt(a22/I) of membrane waves, or the group speed 2 k_max sqrt(d22/I) of bending waves if it is more; 0 of no thin wall."""
+    if not isinstance(wall, ThinWall):
+        return 0.0
+    return max(math.sqrt(wall.section.membrane / wall.mass), 2.0 * highest * math.sqrt(wall.section.bending / wall.mass))
+
+
+def _fronts(problem: Problem) -> list[Front]:
+    length, time = problem.scales.length, problem.scales.time
+    return [
+        Front(getattr(source, "z", 0.0) / length, geometry.distance - 1.0, source.delay / time)
+        for source, geometry in zip(problem.system.sources, problem.sources, strict=True)
+        if isinstance(geometry, SphericalFrontGeometry)
+    ]
+
+
+def _rounded_up(value: float) -> float:
+    """Return a number of four digits that is no less."""
+    digits = 3 - math.floor(math.log10(value))
+    return math.ceil(value * 10.0**digits) / 10.0**digits
