@@ -103,6 +103,17 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "negative decay": (lambda: cx.PlaneShock(peak_pressure=1, decay_time=-1), ("decay_time:", "-1.0 s", "greater than 0")),
     "negative delay": (lambda: cx.PlaneWave(pulse=STEP, delay=-1), ("delay:", "-1.0 s", "at least 0")),
     "angle too far": (lambda: cx.PlaneWave(pulse=STEP, angle=400), ("angle:", "400.0 deg", "at least -360 and at most 360")),
+    "along the axis": (
+        lambda: cx.PlaneWave(pulse=STEP, inclination=-90),
+        ("inclination:", "-90.0 deg", "greater than -90 and less than 90"),
+    ),
+    "a time for z": (lambda: BARE.with_overrides({"source.z": "1 s"}), ("source.z:", "'1 s'", "not a length")),
+    "z of a line": (lambda: cx.LineWave(distance=5, pulse=STEP, z=1), ("z:", "not an entry of LineWave")),  # type: ignore[call-arg]
+    "inclined sphere": (
+        lambda: BARE.with_overrides({"source.inclination": 30}),
+        ("source.inclination:", "not an entry of SphericalShock"),
+    ),
+    "inside at any z": (lambda: BARE.with_overrides({"source.distance": 0.8, "source.z": 50.0}), ("source.distance:", "0.8 m", "1.006 m")),
     "acausal Gaussian": (
         lambda: cx.Gaussian(peak_pressure=1, width=1, centre=5),
         ("centre:", "5.0 s", "width 1.0 s", "at least 6 widths, 6.0 s"),

@@ -20,6 +20,7 @@ def at(system: cx.System, path: str) -> Any:
     ("path", "value", "where", "expected"),
     [
         ("source.peak_pressure", "30 kPa", "source.peak_pressure", 3e4),
+        ("source.z", "-70 cm", "source.z", -0.7),
         ("shells[0].radius", 0.4, "shells[0].radius", 0.4),
         ("shells.0.radius", "40 cm", "shells[0].radius", 0.4),
         ("shells.inner.radius", "400 mm", "shells[0].radius", 0.4),

@@ -94,14 +94,41 @@ def test_two_dimensions_are_told_as_before(tmp_path):
     assert cx.load_response(tmp_path / "run.nc").settings == Settings(**QUICK)
 
 
-def test_no_solver_takes_three_dimensions_for_two(tmp_path):
-    asked = {**QUICK, "dimensions": 3}
-    over, store = {"source.peak_pressure": [1e4]}, tmp_path / "store"
-    for call in (
-        lambda: cx.simulate("bare", **asked),
-        lambda: cx.prepare("bare", **asked),
-        lambda: cx.sweep("bare", over, workers=1, store=store, **asked),
-        lambda: cx.optimise("bare", variables={"source.peak_pressure": [1e4, 2e4]}, objectives="inner.peak_stress", workers=1, **asked),
+BARE = cx.presets.load("bare")
+OVER = {"source.peak_pressure": [1e4, 2e4]}
+CALLS = {
+    "simulate": cx.simulate,
+    "prepare": cx.prepare,
+    "direct": lambda system, **asked: cx.simulate(system, engine="direct", **asked),
+    "sweep": lambda system, **asked: cx.sweep(system, OVER, workers=1, **asked),
+    "robustness": lambda system, **asked: cx.robustness(system, {"source.distance": {"relative": 0.1}}, samples=8, workers=1, **asked),
+    "optimise": lambda system, **asked: cx.optimise(system, variables=OVER, objectives="inner.peak_stress", workers=1, **asked),
+    "prepared problem": lambda system, **asked: cx.prepare("bare", **asked).retuned(system),
+}
+
+
+@pytest.mark.parametrize("call", [name for name in CALLS if name not in ("direct", "prepared problem")])
+def test_no_solver_takes_three_dimensions_for_two(call):
+    with pytest.raises(cx.InputError, match=r"dimensions: (no case is possible: )?3 is not solved yet; use dimensions=2$"):
+        CALLS[call](BARE, **QUICK, dimensions=3)
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_what_leaves_the_plane_needs_three_dimensions(call):
+    oblique = cx.PlaneShock(peak_pressure=1e4, decay_time=1e-4, inclination=30)
+    off, turned = BARE.with_overrides({"source.z": "70 cm"}), BARE.replace(source=[BARE.source, oblique])
+    with pytest.raises(
+        cx.InputError, match=r"source\.z: (.*: )?0\.7 m is off the plane of a run in two dimensions; use dimensions=3, or z = 0$"
     ):
-        with pytest.raises(cx.InputError, match=r"^dimensions: 3 is not solved yet; use dimensions=2$"):
-            call()
+        CALLS[call](off, **QUICK)
+    if call not in ("sweep", "robustness", "optimise"):
+        problem = "30 degrees lead out of the plane of a run in two dimensions; use dimensions=3, or inclination = 0"
+        with pytest.raises(cx.InputError, match=rf"^source\[1\]\.inclination: {problem}$"):
+            CALLS[call](turned, **QUICK)
+
+
+def test_a_case_off_the_plane_tells_why():
+    with pytest.warns(cx.PhysicsWarning, match="off the plane"):
+        found = cx.sweep(BARE, {"source.z": [0.0, "70 cm"]}, workers=1, **QUICK)
+    assert found["source.z"].attrs["units"] == "m"
+    assert np.isfinite(found["inner.peak_stress"]).to_numpy().tolist() == [True, False]

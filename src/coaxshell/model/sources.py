@@ -2,6 +2,9 @@
 
 In every geometry the pulse is the free-field pressure at the head point, the point of the outermost shell nearest to
 the source, and its clock starts when the front gets there (plus *delay*). Distances are measured from the shells' axis.
+
+In three dimensions the head point lies at the axial position of a spherical source, and at z = 0 for the others: waves of lines, which
+are parallel to the axis, and plane waves, whose front may be inclined.
 """
 
 from __future__ import annotations
@@ -16,9 +19,11 @@ from coaxshell.model.base import Described, shown
 from coaxshell.model.explosives import EXPLOSIVES, Explosive
 from coaxshell.model.naming import lookup
 from coaxshell.model.pulses import AnyPulse, Exponential
-from coaxshell.model.units import Angle, Delay, Length, Mass, Pressure, Time
+from coaxshell.model.units import Angle, Delay, Inclination, Length, Mass, Position, Pressure, Time
 
 Geometry = Literal["spherical", "plane", "line"]
+OFF_THE_PLANE = ("z", "inclination")
+"""What takes a source out of the cross-section's plane: 0 in two dimensions, and left out of descriptions where it is 0."""
 
 
 class _Directed(Described):
@@ -28,6 +33,20 @@ class _Directed(Described):
     """Direction of the source seen from the axis (degrees)."""
     delay: Delay = 0.0
     """Time by which its front reaches the head point later than t = 0 (s)."""
+
+
+class _Placed(Described):
+    """Hold what point sources have beyond other ones."""
+
+    z: Position = 0.0
+    """Axial position of the source (m); 0 in two dimensions."""
+
+
+class _Inclined(Described):
+    """Hold what plane waves have beyond other ones."""
+
+    inclination: Inclination = 0.0
+    """Angle by which the direction of travel leaves the cross-section's plane towards +z (degrees); 0 in two dimensions."""
 
 
 class _Shock(_Directed):
@@ -42,7 +61,7 @@ class _Shock(_Directed):
         return Exponential(peak_pressure=self.peak_pressure, decay_time=self.decay_time)
 
 
-class SphericalShock(_Shock):
+class SphericalShock(_Placed, _Shock):
     """Describe the paper's source (Eq. 2): a spherical front with an exponential tail and its afterflow."""
 
     geometry: ClassVar[Geometry] = "spherical"
@@ -51,7 +70,7 @@ class SphericalShock(_Shock):
     """Distance of the source from the axis (m)."""
 
 
-class PlaneShock(_Shock):
+class PlaneShock(_Inclined, _Shock):
     """Describe a plane front with an exponential tail: a spherical shock from infinitely far away."""
 
     geometry: ClassVar[Geometry] = "plane"
@@ -68,7 +87,7 @@ class LineShock(_Shock):
     """Distance of the line from the axis (m)."""
 
 
-class SphericalWave(_Directed):
+class SphericalWave(_Placed, _Directed):
     """Describe a spherical wave of any history."""
 
     geometry: ClassVar[Geometry] = "spherical"
@@ -79,7 +98,7 @@ class SphericalWave(_Directed):
     """Free-field pressure at the head point."""
 
 
-class PlaneWave(_Directed):
+class PlaneWave(_Inclined, _Directed):
     """Describe a plane wave of any history."""
 
     geometry: ClassVar[Geometry] = "plane"
@@ -105,7 +124,7 @@ def as_explosive(name: Any) -> str:
     return lookup(EXPLOSIVES, str(name), "explosive").name
 
 
-class UnderwaterExplosion(_Directed):
+class UnderwaterExplosion(_Placed, _Directed):
     """Describe the shock of an underwater charge by similitude: p = K1 (W^(1/3)/S)^A1, theta = K2 W^(1/3) (W^(1/3)/S)^A2.
 
     W is *charge_mass* (kg) and S *stand_off* (m). The distance from the axis needs the outermost radius: ask

@@ -12,7 +12,7 @@ from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_mater
 from coaxshell.model.naming import slug, suggestion
 from coaxshell.model.paths import within
 from coaxshell.model.pulses import Sampled
-from coaxshell.model.sources import LineWave, PlaneWave, Source, SphericalWave
+from coaxshell.model.sources import OFF_THE_PLANE, LineWave, PlaneWave, Source, SphericalWave
 from coaxshell.model.toml_text import parsed
 from coaxshell.numerics.reading import decoded, regular_bytes
 
@@ -112,10 +112,14 @@ def _plain(model: System | Material | Any) -> dict[str, Any]:
 
 
 def _source(source: Source, beside: Path | None, *, hashed: bool = False) -> dict[str, Any]:
-    """Return a source as plain data, its record as a table of its own: for a hash no more than what it means."""
+    """Return a source as plain data, its record as a table of its own: for a hash no more than what it means.
+
+    A source in the cross-section's plane is written as before there were others.
+    """
+    in_plane = {name for name in OFF_THE_PLANE if getattr(source, name, None) == 0.0}
     if not (isinstance(source, SphericalWave | PlaneWave | LineWave) and isinstance(source.pulse, Sampled)):
-        return _plain(source)
-    data: dict[str, Any] = _pruned(source.model_dump(mode="json", exclude={"pulse"}))
+        return _pruned(source.model_dump(mode="json", exclude=in_plane))  # type: ignore[no-any-return]
+    data: dict[str, Any] = _pruned(source.model_dump(mode="json", exclude={"pulse", *in_plane}))
     if hashed:
         return {**data, "pulse": {"type": "sampled", "curve": source.pulse.digest}}
     from coaxshell.model.records import storing

@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 from coaxshell.errors import InputError
+from coaxshell.model.sources import OFF_THE_PLANE
+from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
 
+_WORDS = {"z": "{:g} m is off the plane", "inclination": "{:g} degrees lead out of the plane"}
 
-def require_dimensions(settings: Settings) -> None:
-    """Raise InputError if no solver has the dimensions that a run asks for."""
+
+def require_dimensions(system: System, settings: Settings) -> None:
+    """Raise InputError if a system cannot be solved in the dimensions that a run asks for."""
     if settings.dimensions == 3:
         raise InputError("dimensions", "3 is not solved yet", "use dimensions=2")
+    for number, source in enumerate(system.sources):
+        where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
+        for name in OFF_THE_PLANE:
+            value = getattr(source, name, 0.0)
+            if value != 0.0:
+                problem = f"{_WORDS[name].format(value)} of a run in two dimensions"
+                raise InputError(f"{where}.{name}", problem, f"use dimensions=3, or {name} = 0")

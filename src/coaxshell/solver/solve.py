@@ -88,11 +88,11 @@ class Prepared:
     ) -> None:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
-        require_dimensions(settings)
         self._stopwatch, self._notes = Stopwatch(), list[str]()
         self._orders_above: SampledOrders | None = None
         self._progress, self._shared, self._asked = progress, shared, settings
         self.problem = system if isinstance(system, Problem) else dimensionless(system)
+        require_dimensions(self.problem.system, settings)
         if like is not None and like.differs_by_absorbers(self.problem):
             self._adopt(like)
             return

@@ -31,6 +31,7 @@ def run_study(
     where: str = "",
 ) -> list[Outcome]:
     """Return the outcome of every case, in order; InputError, within *where*, if none of them is possible."""
+    systems = [_solvable(item, resolution) for item in systems]
     refused = [item for item in systems if isinstance(item, InputError)]
     if len(refused) == len(systems):
         first = refused[0]
@@ -66,11 +67,10 @@ def run_cases(
     Raises
     ------
     InputError
-        A function of the user's cannot be sent to another process, or no case can be solved in the dimensions asked for.
+        A function of the user's cannot be sent to another process.
     KeyboardInterrupt
         As it came; what was finished is in the store.
     """
-    require_dimensions(resolution)
     execution = _in_reach(execution, metrics)
     executor, workers_at_once = execution.executor, execution.capacity
     if executor is not None or workers_at_once > 1:
@@ -137,6 +137,16 @@ class WorkerPool:
             for k, outcome in zip(lost, again, strict=True):
                 outcomes[k] = outcome
         return outcomes
+
+
+def _solvable(system: System | InputError, resolution: Settings) -> System | InputError:
+    """Return a system, or why it cannot be solved in the dimensions asked for."""
+    try:
+        if isinstance(system, System):
+            require_dimensions(system, resolution)
+    except InputError as error:
+        return error
+    return system
 
 
 def _look_up(keys: Mapping[int, str], store: StudyStore | None, outcomes: dict[int, Outcome]) -> None:

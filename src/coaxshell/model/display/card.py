@@ -97,6 +97,8 @@ def _source(system: System, source: Source) -> str:
     distance = system.source_distance(source)
     where = "" if distance is None else f" {_length(distance)} from the axis,"
     turned = f" at {source.angle:g}°," if source.angle else ""
+    z, inclination = getattr(source, "z", 0.0), getattr(source, "inclination", 0.0)
+    turned += (f" at z = {_length(z)}," if z else "") + (f" inclined by {inclination:g}°," if inclination else "")
     return f"{source.type.replace('-', ' ')},{where}{turned} peak {_pressure(abs(source.pulse.peak))}"
 
 
@@ -113,7 +115,7 @@ def _absorbers(system: System) -> str:
 
 
 def _length(value: float) -> str:
-    return f"{1e3 * value:.4g} mm" if value < 0.1 else f"{value:.4g} m"
+    return f"{1e3 * value:.4g} mm" if abs(value) < 0.1 else f"{value:.4g} m"
 
 
 def _pressure(value: float) -> str:

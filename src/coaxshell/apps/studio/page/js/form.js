@@ -11,6 +11,7 @@ const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
 const KEPT_OPEN = new Map();
 const SAMPLES = new Set(["time", "pressure"]);
+const OFF_THE_PLANE = new Set(["z", "inclination"]); // of sources, in three dimensions: shown where a description has them
 
 let world, change, shells = 1; // what /api/schema says; (path, value, { live }) => void; how many shells there are
 
@@ -106,7 +107,7 @@ function entry(schema, path, name, value, bare = false) {
 
 function table(schema, path, name, value, bare) {
   const isRecord = resolve(schema.properties?.type).const === "sampled"; // its samples are read from a file or a text, not typed one by one
-  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !isRecord || !SAMPLES.has(key)).map(([key, part]) => entry(part, join(path, key), key, value[key]));
+  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !(isRecord && SAMPLES.has(key)) && !(OFF_THE_PLANE.has(key) && !value[key])).map(([key, part]) => entry(part, join(path, key), key, value[key]));
   if (isRecord) fields.unshift(editor(path, change));
   return bare ? el("div", {}, ...fields) : group(path, label(path, name), false, summary(path, value), ...fields);
 }
