@@ -72,6 +72,6 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 4.6) -> Figure:
 
     from coaxshell.plotting.notebook_figure import NotebookFigure
 
-    figure = NotebookFigure(figsize=(width, height), layout="constrained")
+    figure = NotebookFigure(style, figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
