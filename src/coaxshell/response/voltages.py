@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
-from importlib import import_module
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +11,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
+from coaxshell.numerics.renamed import renamed
 from coaxshell.response.modal import amplitudes, elastic_wall, orders, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
@@ -152,7 +151,5 @@ def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice) -> Pe
 
 def __getattr__(name: str) -> Any:
     """Find the labelled voltages where they live now; deprecated."""
-    if name in ("sensor_voltage", "actuator_voltage"):
-        warnings.warn(f"coaxshell.response.voltages.{name} is now coaxshell.response.histories.{name}", DeprecationWarning, stacklevel=2)
-        return getattr(import_module("coaxshell.response.histories"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    histories = "coaxshell.response.histories"
+    return renamed(__name__, name, sensor_voltage=f"{histories}.sensor_voltage", actuator_voltage=f"{histories}.actuator_voltage")
