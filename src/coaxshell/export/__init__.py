@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from coaxshell.export.paraview import check_grid, export_paraview
-from coaxshell.export.tables import export_csv, export_mat
-from coaxshell.response.tables import history_table
+from coaxshell.export.tables import export_csv, export_mat, history_table
 
 __all__ = ["check_grid", "export_csv", "export_mat", "export_paraview", "history_table"]

@@ -16,8 +16,8 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing
 from coaxshell.numerics.memory import words_of
 from coaxshell.plotting.saving import known_suffix
+from coaxshell.response import tables
 from coaxshell.response.quantities import columns
-from coaxshell.response.tables import at_ends, history_table, quantities_of
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -26,6 +26,11 @@ _LARGEST = 2**31 - 2**20
 """Bytes that MATLAB reads in one variable of this format, here the struct array of the shells."""
 _HELD = 5.0
 """Copies of the modal amplitudes that stand side by side: read, gathered, written out and compressed."""
+
+
+def history_table(response: Response) -> dict[str, npt.NDArray[np.float64]]:
+    """Return all histories at head and tail as columns by names with units; see :func:`coaxshell.response.tables.history_table`."""
+    return tables.history_table(response.motion)
 
 
 def export_csv(response: Response, path: str | Path) -> Path:
@@ -93,9 +98,9 @@ def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
     structs = []
     for shell, described in enumerate(response.system.shells):
         struct: dict[str, Any] = {"radius": described.radius, "rigid": isinstance(described, RigidShell)}
-        given = [] if struct["rigid"] else quantities_of(response, shell)
+        given = [] if struct["rigid"] else tables.quantities_of(response.motion, shell)
         for quantity in columns():
-            struct[quantity.name] = at_ends(response, quantity, shell) if quantity in given else np.empty((0, 2))
+            struct[quantity.name] = tables.at_ends(response.motion, quantity, shell) if quantity in given else np.empty((0, 2))
         struct["modal_normal"] = np.asarray(response.modal(shell, "displacement"))
         struct["modal_tangential"] = np.asarray(response.modal(shell, "tangential"))
         structs.append(struct)

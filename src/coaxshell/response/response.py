@@ -274,7 +274,7 @@ class Response:
 
         Columns carry their units; they are those of :func:`coaxshell.export.export_csv`.
         """
-        columns = history_table(self)
+        columns = history_table(self.motion)
         time = columns.pop("time (a/c)")
         rows = xr.Dataset({name: ("time (a/c)", values) for name, values in columns.items()}, coords={"time (a/c)": time})
         return rows.to_dataframe()

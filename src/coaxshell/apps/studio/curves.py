@@ -93,7 +93,7 @@ def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]
 
 
 def _given(response: Response, index: int) -> list[Quantity]:
-    return quantities_of(response, index) if isinstance(response.system.shells[index], Shell) else []
+    return quantities_of(response.motion, index) if isinstance(response.system.shells[index], Shell) else []
 
 
 def _absorbers(response: Response) -> dict[str, Any]:
