@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 from coaxshell._moved import keep_old_names
 from coaxshell._version import __version__
 from coaxshell.errors import InputError, PhysicsWarning
+from coaxshell.numerics.late import supply
 
 if TYPE_CHECKING:
     from coaxshell import export, plotting
@@ -141,6 +142,7 @@ __all__ = [
 
 
 keep_old_names()
+supply(figure_curves="coaxshell.plotting.curves")
 
 
 def __getattr__(name: str) -> Any:

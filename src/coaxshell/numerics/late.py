@@ -1,6 +1,7 @@
-"""Libraries that take long to import, imported when something of them is first used.
+"""What takes long to import, imported when something of it is first used.
 
-xarray brings pandas, half a second and more; a run that only prints its peaks labels nothing.
+xarray brings pandas, half a second and more; a run that only prints its peaks labels nothing. Functions that a room offers although they
+live above it, such as the figure of a response, are supplied by the root of the package, which alone knows all rooms.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-__all__ = ["integrate", "linalg", "signal", "xarray"]
+__all__ = ["integrate", "linalg", "signal", "supplied", "supply", "xarray"]
 
 
 class Late(ModuleType):
@@ -27,3 +28,15 @@ if TYPE_CHECKING:
     from scipy import integrate, linalg, signal
 else:
     integrate, linalg, signal, xarray = map(Late, ("scipy.integrate", "scipy.linalg", "scipy.signal", "xarray"))
+
+_HOMES: dict[str, str] = {}
+
+
+def supply(**homes: str) -> None:
+    """Tell in which modules functions live that rooms below offer by their names."""
+    _HOMES.update(homes)
+
+
+def supplied(name: str) -> Any:
+    """Return a function that was supplied, its module imported now."""
+    return getattr(import_module(_HOMES[name]), name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -11,7 +10,7 @@ import numpy.typing as npt
 
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.late import Late
+from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage
@@ -266,8 +265,7 @@ class Response:
 
         Show it as the last line of a cell, or ``figure.savefig(path)``. See :func:`coaxshell.plotting.figure_curves`.
         """
-        # Drawing lives floors below and must not come with every response: found by its name, as pandas finds its plotting backends.
-        return import_module("coaxshell.plotting.curves").figure_curves(self, quantity, shell, arguments.angles(angle))
+        return supplied("figure_curves")(self, quantity, shell, arguments.angles(angle))
 
     def to_dataframe(self) -> Any:
         """Return all histories at head and tail as a pandas DataFrame, one row an instant, indexed by time in transits.
