@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from coaxshell.errors import InputError
+from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.fluids import Vacuum
-from coaxshell.model.places import shell_number, shell_words
+from coaxshell.model.parts import SystemParts
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
-from coaxshell.numerics.scalars import plain
-
-if TYPE_CHECKING:
-    from coaxshell.model.absorbers import Absorber, AbsorberRing
-    from coaxshell.model.system import System
 
 
-def check(system: System) -> None:
+def check(system: SystemParts) -> None:
     """Check the whole; InputError on the first thing that does not fit."""
     _shells(system)
     _fluids(system)
@@ -26,17 +21,7 @@ def check(system: System) -> None:
     _control(system)
 
 
-def index_of(shell: int | str, count: int) -> int:
-    """Return the number of a shell among *count*, from a number, digits, "inner", "outer" or another of its names; InputError otherwise."""
-    number = shell_number(shell, count) if isinstance(shell, str) else plain(shell)
-    if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < count:
-        return number
-    numbers = "0" if count == 1 else f"0 to {count - 1}"
-    words = " or ".join(repr(word) for word in shell_words(count))
-    raise InputError("shell", f"{shell!r} is not a shell of this system", f"must be {numbers} (from the inside), {words}")
-
-
-def _shells(system: System) -> None:
+def _shells(system: SystemParts) -> None:
     if not system.shells:
         raise InputError("shells", "the list is empty", "give at least 1 shell")
     for number, (inner, outer) in enumerate(pairwise(system.shells)):
@@ -48,7 +33,7 @@ def _shells(system: System) -> None:
             )
 
 
-def _fluids(system: System) -> None:
+def _fluids(system: SystemParts) -> None:
     wanted = len(system.shells) + 1
     if len(system.fluids) != wanted:
         raise InputError(
@@ -60,7 +45,7 @@ def _fluids(system: System) -> None:
         raise InputError(f"fluids[{wanted - 1}]", "'vacuum' is not allowed for the exterior", "must be a fluid, since it carries the shock")
 
 
-def _sources(system: System) -> None:
+def _sources(system: SystemParts) -> None:
     if not system.sources:
         raise InputError("source", "the list is empty", "give at least 1 source")
     radius = system.shells[-1].outer_radius
@@ -81,7 +66,7 @@ def _sources(system: System) -> None:
             )
 
 
-def _absorbers(system: System) -> None:
+def _absorbers(system: SystemParts) -> None:
     single = isinstance(system.absorbers, tuple)
     listed: tuple[Absorber | AbsorberRing, ...] = system.absorbers if isinstance(system.absorbers, tuple) else (system.absorbers,)
     if len(system.shells) < 2 and len(system.absorbers) == 0:
@@ -102,7 +87,7 @@ def _absorbers(system: System) -> None:
                 raise InputError(f"{where}.inner_shell", f"{inner} links shells[{end}], which is rigid", "must link two elastic shells")
 
 
-def _control(system: System) -> None:
+def _control(system: SystemParts) -> None:
     if system.control is None:
         return
     for shell in () if system.control.shells == "all" else system.control.shells:

@@ -6,24 +6,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
 from coaxshell.model.layers import Layer
 from coaxshell.model.naming import plain, slug, suggestion
+from coaxshell.model.parts import SystemParts
 from coaxshell.model.paths import joined, parsed, within
 from coaxshell.model.places import item_words
 from coaxshell.model.shells import Shell
 
-if TYPE_CHECKING:
-    from coaxshell.model.system import System
-
-S = TypeVar("S", bound="System")
+S = TypeVar("S", bound=SystemParts)
 Tree = dict[str, Any]
 
 
-def entry(system: System, way: Sequence[str]) -> Any:
+def entry(system: SystemParts, way: Sequence[str]) -> Any:
     """Return what the parts of a path lead to in a system, a mapping by name for ``materials``; None if to nothing."""
     node: Any = system
     for number, part in enumerate(way):
@@ -123,11 +121,11 @@ def _index(part: str, count: int, where: str) -> int:
     return number
 
 
-def _layers(system: System) -> list[Layer]:
+def _layers(system: SystemParts) -> list[Layer]:
     return [layer for shell in system.shells if isinstance(shell, Shell) for layer in shell.layers]
 
 
-def _materials(system: System) -> dict[str, Any]:
+def _materials(system: SystemParts) -> dict[str, Any]:
     """Return the materials of all layers by their names as keys."""
     return {slug(layer.material.name): layer.material for layer in _layers(system)}
 

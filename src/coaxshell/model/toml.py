@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
 from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
+from coaxshell.model.parts import SystemParts
 from coaxshell.model.paths import within
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.sources import OFF_THE_PLANE, LineWave, PlaneWave, Source, SphericalWave
 from coaxshell.model.toml_text import parsed
 from coaxshell.numerics.reading import decoded, regular_bytes
-
-if TYPE_CHECKING:
-    from coaxshell.model.system import System
 
 
 def read(path: Path) -> str:
@@ -56,7 +54,7 @@ def resolved(data: dict[str, Any], folder: Path | None = None) -> dict[str, Any]
     return data
 
 
-def dumps(system: System, beside: Path | None = None) -> str:
+def dumps(system: SystemParts, beside: Path | None = None) -> str:
     """Return TOML text from which an equal system can be read; numbers are plain SI, floats exact.
 
     The samples of a long record are packed into one text, or, with *beside*, the path of the TOML file to be, written to a file in its
@@ -77,7 +75,7 @@ def dumps(system: System, beside: Path | None = None) -> str:
     return text
 
 
-def tables(system: System, beside: Path | None = None) -> dict[str, Any]:
+def tables(system: SystemParts, beside: Path | None = None) -> dict[str, Any]:
     """Return what :func:`dumps` writes, as nested tables."""
     data = _plain(system)
     written = [_source(source, beside) for source in system.sources]
@@ -92,7 +90,7 @@ def tables(system: System, beside: Path | None = None) -> dict[str, Any]:
     return {**ordered, **data}
 
 
-def canonical(system: System) -> dict[str, Any]:
+def canonical(system: SystemParts) -> dict[str, Any]:
     """Return the physics of a system as plain data: no names, no references, a ring written out as its absorbers."""
     data = _plain(system)
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
@@ -102,11 +100,9 @@ def canonical(system: System) -> dict[str, Any]:
     return _nameless(data)  # type: ignore[no-any-return]
 
 
-def _plain(model: System | Material | Any) -> dict[str, Any]:
+def _plain(model: SystemParts | Material | Any) -> dict[str, Any]:
     """Return a model as plain data without what is unset or empty; ``type`` stays, since it tells the kind."""
-    from coaxshell.model.system import System
-
-    if isinstance(model, System):  # sources are written by themselves: their records may be long
+    if isinstance(model, SystemParts):  # sources are written by themselves: their records may be long
         return _pruned({**model.model_dump(mode="json", exclude={"source"}), "source": {}})  # type: ignore[no-any-return]
     return _pruned(model.model_dump(mode="json"))  # type: ignore[no-any-return]
 

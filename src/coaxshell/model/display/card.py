@@ -1,35 +1,48 @@
-"""The drawing beside a table, as HTML for notebooks: no script, no style sheet, nothing from outside."""
+"""A system in one line, and its drawing beside a table, as HTML for notebooks: no script, no style sheet, nothing from outside."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 from coaxshell.model.absorbers import AbsorberRing
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
 from coaxshell.model.fluids import Fluid, Vacuum
+from coaxshell.model.parts import SystemParts
 from coaxshell.model.places import region_side, shell_phrase
+from coaxshell.model.prefixes import engineering
 from coaxshell.model.shells import RigidShell, Shell
-
-if TYPE_CHECKING:
-    from coaxshell.model.sources import Source
-    from coaxshell.model.system import System
+from coaxshell.model.sources import Source
 
 Cells = Sequence[str]
 
 
-def system_card(system: System) -> str:
+def system_line(system: SystemParts) -> str:
+    """Return name, shells with their radii, fluids, sources, absorbers and control in one line."""
+    radii = ", ".join(engineering(shell.radius, "m") for shell in system.shells)
+    count = len(system.shells)
+    fluids = " | ".join((fluid.name or "a fluid") if isinstance(fluid, Fluid) else "vacuum" for fluid in system.fluids)
+    sources = ", ".join(f"{source.type} of {engineering(source.pulse.peak, 'Pa')}" for source in system.sources)
+    parts = [f"{count} shell{'s' * (count != 1)} ({radii})", f"fluids {fluids}", sources]
+    if system.absorber_list:
+        parts.append(f"{len(system.absorber_list)} absorbers")
+    if system.control is not None:
+        parts.append("saturating control" if system.control.saturation else "control")
+    name = f"{system.name!r}, " if system.name else ""
+    return f"<System: {name}{'; '.join(parts)}>"
+
+
+def system_card(system: SystemParts) -> str:
     """Return a system's drawing and a table of its parts as HTML."""
     return card(system, system.name or "unnamed system", [("", "part", "what it is"), *_parts(system)])
 
 
-def card(system: System, heading: str, rows: Sequence[Cells], notes: Sequence[str] = ()) -> str:
+def card(system: SystemParts, heading: str, rows: Sequence[Cells], notes: Sequence[str] = ()) -> str:
     """Return a system's drawing beside a table of plain text, the first row its headings, and notes below, as HTML.
 
     Parameters
     ----------
-    system : System
+    system : SystemParts
         What is drawn.
     heading : str
     rows : sequence of sequences of str
@@ -61,7 +74,7 @@ def _cell(text: str) -> str:
     return f'<td style="text-align:left;padding:1px 10px 1px 0;vertical-align:top">{escape(text)}</td>'
 
 
-def _parts(system: System) -> list[Cells]:
+def _parts(system: SystemParts) -> list[Cells]:
     rows: list[Cells] = []
     for number, shell in enumerate(system.shells):
         rows.append(("", region_side(number, len(system.shells)), _fluid(system.fluids[number])))
@@ -93,7 +106,7 @@ def _fluid(fluid: Fluid | Vacuum) -> str:
     return f"{fluid.name}, {constants}" if fluid.name else constants
 
 
-def _source(system: System, source: Source) -> str:
+def _source(system: SystemParts, source: Source) -> str:
     distance = system.source_distance(source)
     where = "" if distance is None else f" {_length(distance)} from the axis,"
     turned = f" at {source.angle:g}°," if source.angle else ""
@@ -102,7 +115,7 @@ def _source(system: System, source: Source) -> str:
     return f"{source.type.replace('-', ' ')},{where}{turned} peak {_pressure(abs(source.pulse.peak))}"
 
 
-def _absorbers(system: System) -> str:
+def _absorbers(system: SystemParts) -> str:
     many = system.absorber_list
     first = many[0]
     alike = len({one.replace(angle=0.0) for one in many}) == 1

@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from html import escape
-from typing import TYPE_CHECKING
 
+from coaxshell.model.absorbers import Absorber
 from coaxshell.model.fluids import Fluid, Vacuum
 from coaxshell.model.layers import Shell
+from coaxshell.model.parts import SystemParts
 from coaxshell.model.shells import RigidShell
-
-if TYPE_CHECKING:
-    from coaxshell.model.absorbers import Absorber
-    from coaxshell.model.sources import Source
-    from coaxshell.model.system import System
+from coaxshell.model.sources import Source
 
 SIZE = 300
 """Width and height, pixels."""
@@ -31,7 +28,7 @@ _WATER = "#2F7FC1"
 _SHOCK = "#B5232A"
 
 
-def wall_factor(system: System) -> float:
+def wall_factor(system: SystemParts) -> float:
     """Return by how much walls are drawn thicker than they are: at least 1, and so that neighbours never touch."""
     shells = [shell for shell in system.shells if shell.thickness > 0]
     if not shells:
@@ -42,7 +39,7 @@ def wall_factor(system: System) -> float:
     return max(1.0, min(wanted, centre, *room))
 
 
-def cross_section(system: System) -> str:
+def cross_section(system: SystemParts) -> str:
     """Return the drawing as an ``<svg>`` element that needs nothing outside itself and takes the page's text colour."""
     factor = wall_factor(system)
     said = f"walls drawn {factor:.3g} times as thick" if factor > 1 else "to scale"
@@ -61,15 +58,15 @@ def cross_section(system: System) -> str:
     )
 
 
-def _neighbours(system: System) -> Iterator[tuple[Shell | RigidShell, Shell | RigidShell]]:
+def _neighbours(system: SystemParts) -> Iterator[tuple[Shell | RigidShell, Shell | RigidShell]]:
     return ((a, b) for a, b in zip(system.shells, system.shells[1:], strict=False) if a.thickness + b.thickness > 0)
 
 
-def _pixels(system: System, length: float) -> float:
+def _pixels(system: SystemParts, length: float) -> float:
     return length / system.reference_radius * SIZE / 2 / REACH
 
 
-def _at(system: System, radius: float, angle: float) -> tuple[float, float]:
+def _at(system: SystemParts, radius: float, angle: float) -> tuple[float, float]:
     turn = math.radians(angle)
     r = _pixels(system, radius)
     return r * math.cos(turn), -r * math.sin(turn)
@@ -79,7 +76,7 @@ def _opacity(fluid: Fluid | Vacuum) -> float:
     return 0.0 if isinstance(fluid, Vacuum) else 0.05 + 0.15 * min(1.0, fluid.density / 1000.0)
 
 
-def _fluids(system: System) -> Iterator[str]:
+def _fluids(system: SystemParts) -> Iterator[str]:
     half = SIZE / 2
     outside = _opacity(system.fluids[-1])
     edge = f"M{-half:g} {-half:g}H{half:g}V{half:g}H{-half:g}Z"
@@ -98,7 +95,7 @@ def _circle(radius: float) -> str:
     return f"M{radius:.2f} 0{arc} {-radius:.2f} 0{arc} {radius:.2f} 0Z"
 
 
-def _shell(system: System, shell: Shell | RigidShell, factor: float) -> Iterator[str]:
+def _shell(system: SystemParts, shell: Shell | RigidShell, factor: float) -> Iterator[str]:
     if isinstance(shell, RigidShell):
         yield f'<circle r="{_pixels(system, shell.radius):.2f}" fill="none" stroke="currentColor" stroke-width="3"/>'
         return
@@ -113,12 +110,12 @@ def _shell(system: System, shell: Shell | RigidShell, factor: float) -> Iterator
         bottom += width
 
 
-def _absorbers(system: System, factor: float) -> Iterator[str]:
+def _absorbers(system: SystemParts, factor: float) -> Iterator[str]:
     for absorber in system.absorber_list:
         yield from _absorber(system, absorber, factor)
 
 
-def _absorber(system: System, absorber: Absorber, factor: float) -> Iterator[str]:
+def _absorber(system: SystemParts, absorber: Absorber, factor: float) -> Iterator[str]:
     inner, outer = system.shells[absorber.inner_shell], system.shells[absorber.inner_shell + 1]
     low = inner.radius + factor * inner.thickness / 2
     high = outer.radius - factor * outer.thickness / 2
@@ -127,7 +124,7 @@ def _absorber(system: System, absorber: Absorber, factor: float) -> Iterator[str
     yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.4" fill="currentColor"/>'
 
 
-def _source(system: System, source: Source) -> Iterator[str]:
+def _source(system: SystemParts, source: Source) -> Iterator[str]:
     """Yield the front, coming in along the source's ray, an arrow, and the source itself where it is in the picture."""
     distance = system.source_distance(source)
     a = system.reference_radius
