@@ -71,6 +71,39 @@ def test_the_check_sees_an_arrow_that_runs_the_wrong_way():
     assert {room_of(name) for name, _ in imported(source)} >= {"apps.cli", "response", "plotting"}
 
 
+def circles(arrows: dict[str, set[str]]) -> list[set[str]]:
+    """Return the groups of files that import each other, directly or through others: two files of a group reach one another."""
+    reached: dict[str, set[str]] = {}
+    for start in arrows:
+        waiting, seen = [start], set[str]()
+        while waiting:
+            for each in arrows[waiting.pop()] - seen:
+                seen.add(each)
+                waiting.append(each)
+        reached[start] = seen
+    groups = {frozenset(other for other in seen if start in reached[other]) for start, seen in reached.items() if start in seen}
+    return sorted(map(set, groups), key=sorted)
+
+
+def arrows_between_files() -> dict[str, set[str]]:
+    """Return what each file of the package imports: at its top, in functions, for types alone, and by a name given to the import system."""
+    files = {".".join((PACKAGE.name, *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__"): path for path in modules()}
+    found: dict[str, set[str]] = {}
+    for name, path in files.items():
+        wanted = {name for name, _ in imported(tree(path))}
+        for node in ast.walk(tree(path)):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                wanted |= {f"{node.module}.{alias.name}" for alias in node.names}
+            elif isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("import_module", "__import__", "Late"):
+                wanted |= {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
+        # A name from a package that is a file of its own is an arrow to that file, not to the package's list of names.
+        packages = {one.rpartition(".")[0] for one in wanted if one in files}
+        plain = {node.module for node in ast.walk(tree(path)) if isinstance(node, ast.ImportFrom) and node.module in packages
+                 and all(f"{node.module}.{alias.name}" in files for alias in node.names)}
+        found[name] = {one for one in wanted if one in files and one != name and one not in plain}
+    return found
+
+
 # pydantic is left out: typer itself imports it to show the help of a command.
 HEAVY = ("xarray", "matplotlib", "scipy", "numpy", "pandas", "pint", "h5py", "finufft", "numba")
 

@@ -7,15 +7,14 @@ import pytest
 from mutated_files import RECORD_PIECES, SCENARIO_PIECES, differences, loose_reading, plain_reading, record, scenario, seeded, spoilt
 
 from coaxshell.errors import InputError
-from coaxshell.model import System
-from coaxshell.model.records.reader import read_record
+from coaxshell.model import Sampled, System
 
 COUNTS = [pytest.param(60, id="60"), pytest.param(2000, id="2000", marks=pytest.mark.slow)]
 
 
 def _read(content):
     try:
-        return read_record(content, "spoilt.csv")
+        return Sampled.from_bytes(content, "spoilt.csv")
     except InputError as error:
         assert "\n" not in str(error)  # noqa: PT017 - refused is right, if on one line
         return None

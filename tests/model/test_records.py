@@ -15,8 +15,7 @@ from scipy.io import savemat, wavfile
 
 import coaxshell.model as cx
 from coaxshell.errors import InputError
-from coaxshell.model import presets
-from coaxshell.model.records.reader import read_data, read_record
+from coaxshell.model import Sampled, presets
 
 TIME, PRESSURE = (0.0, 1e-4, 2.5e-4), (250e3, 100e3, -5e3)
 DIALECTS = {
@@ -67,7 +66,7 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", DIALECTS)
 def test_one_record_in_many_dialects(name):
-    found = read_record(DIALECTS[name].encode(), "gauge.csv")
+    found = Sampled.from_bytes(DIALECTS[name].encode(), "gauge.csv")
     assert found.time == pytest.approx(TIME, rel=1e-14)
     assert found.pressure == pytest.approx(PRESSURE, rel=1e-14)
     assert found.reference.startswith("gauge.csv: time")
@@ -76,7 +75,7 @@ def test_one_record_in_many_dialects(name):
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "utf-32"])
 def test_encodings(encoding):
-    found = read_record(DIALECTS["micro"].encode(encoding))
+    found = Sampled.from_bytes(DIALECTS["micro"].encode(encoding))
     assert (found.time, found.pressure) == (TIME, PRESSURE)
 
 
@@ -84,31 +83,31 @@ def test_encodings(encoding):
 def test_what_can_be_read_in_two_ways_is_refused(name):
     text, told = REFUSED[name]
     with pytest.raises(InputError) as caught:
-        read_record(text.encode(), "gauge.csv")
+        Sampled.from_bytes(text.encode(), "gauge.csv")
     assert told in str(caught.value)
 
 
 def test_units_that_were_taken_are_told_and_absurd_ones_remarked():
-    taken = read_record(b"time,pressure\n0,250\n3600,100\n7200,0")
+    taken = Sampled.from_bytes(b"time,pressure\n0,250\n3600,100\n7200,0")
     assert "time 'time' without a unit, taken as s, pressure 'pressure' without a unit, taken as Pa" in taken.reference
     assert "lasts 7200 s" in " ".join(taken.remarks)
-    assert "0.25 Pa" in " ".join(read_record(b"t (ms),p (mPa)\n0,250\n1,0").remarks)
-    assert read_record(b"t (ms),p (kPa)\n0,250\n1,0").remarks == ()
-    told = read_record(b"t,p\n0,250\n1,0", options={"time_unit": "ms", "pressure_unit": "kPa"})
+    assert "0.25 Pa" in " ".join(Sampled.from_bytes(b"t (ms),p (mPa)\n0,250\n1,0").remarks)
+    assert Sampled.from_bytes(b"t (ms),p (kPa)\n0,250\n1,0").remarks == ()
+    told = Sampled.from_bytes(b"t,p\n0,250\n1,0", time_unit="ms", pressure_unit="kPa")
     assert (told.time, told.pressure) == ((0.0, 1e-3), (250e3, 0.0))
-    assert "40 % of its peak" in " ".join(read_record(b"t (ms),p (kPa)\n0,250\n1,100").remarks)
+    assert "40 % of its peak" in " ".join(Sampled.from_bytes(b"t (ms),p (kPa)\n0,250\n1,100").remarks)
 
 
 def test_columns_by_name_and_number():
     text = b"t (s),p1 (kPa),p2 (kPa)\n0,1,2\n1,3,4\n"
-    assert [read_record(text, options={"pressure_column": c}).pressure[0] for c in (2, "2", "p2", "p2 (kPa)", 3)] == [
+    assert [Sampled.from_bytes(text, pressure_column=c).pressure[0] for c in (2, "2", "p2", "p2 (kPa)", 3)] == [
         1e3,
         1e3,
         2e3,
         2e3,
         2e3,
     ]
-    assert read_record(text, options={"interval": "1 ms", "pressure_column": 2}).time == (0.0, 1e-3)
+    assert Sampled.from_bytes(text, interval="1 ms", pressure_column=2).time == (0.0, 1e-3)
     for column, told in (
         (1, "is the column of times"),
         (4, "no column 4"),
@@ -117,7 +116,7 @@ def test_columns_by_name_and_number():
         (0, "no column 0"),
     ):
         with pytest.raises(InputError, match=told):
-            read_record(text, options={"pressure_column": column})
+            Sampled.from_bytes(text, pressure_column=column)
 
 
 def test_matlab_and_sound(tmp_path):
@@ -133,13 +132,13 @@ def test_matlab_and_sound(tmp_path):
     sound = io.BytesIO()
     wavfile.write(sound, 1000, np.array([[0, 1], [16384, 2], [-32768, 3]], np.int16))
     with pytest.raises(InputError, match="scale: is missing"):
-        read_record(sound.getvalue(), options={"pressure_column": 1})
-    found = read_record(sound.getvalue(), options={"scale": 2e5, "pressure_column": "channel 1"})
+        Sampled.from_bytes(sound.getvalue(), pressure_column=1)
+    found = Sampled.from_bytes(sound.getvalue(), scale=2e5, pressure_column="channel 1")
     np.testing.assert_array_equal(found.curve[1], [0, 1e5, -2e5])
     np.testing.assert_allclose(found.curve[0], [0, 1e-3, 2e-3])
     for content in (b"MATLAB 5.0" + b"x" * 300, path.read_bytes()[:150], sound.getvalue()[:30], b"PK\x03\x04", b"\x89HDF", b"\x00" * 50):
         with pytest.raises(InputError):
-            read_record(content, options={"scale": 1.0})
+            Sampled.from_bytes(content, scale=1.0)
 
 
 def test_objects_of_other_libraries():
@@ -157,7 +156,7 @@ def test_objects_of_other_libraries():
         assert found.pressure == PRESSURE
     for bad in ([1, 2], "x", pd.Series([1.0, 2]), pd.DataFrame({"t": [0, 1], "p": ["a", "b"]}), xr.DataArray(np.ones((2, 2))), None):
         with pytest.raises(InputError):
-            read_data(bad)
+            Sampled.from_data(bad)
 
 
 def test_what_is_made_of_a_record():
@@ -281,7 +280,7 @@ def test_many_samples_are_read_and_described_fast():
     _ = list(map(float, cells))
     floor = process_time() - start  # what the machine needs for the numbers alone
     start = process_time()
-    record = read_record(content)
+    record = Sampled.from_bytes(content)
     again = pickle.loads(pickle.dumps(record))
     system = _system(record).with_overrides({"source[0].pulse.scale": 2.0})
     assert again == record

@@ -9,7 +9,6 @@ import pytest
 from asking import described
 
 from coaxshell.model import Sampled, System
-from coaxshell.model.records.reader import read_record
 
 HEADER = {"Content-Type": "application/octet-stream"}
 TEXT = b"time (ms);p1 (kPa);p2 (kPa)\n-0,1;1;2\n0;250;3\n0,1;100;1\n1;5;0\n"
@@ -30,7 +29,7 @@ def test_a_record_becomes_a_pulse(send, client):
     assert answer["ok"], answer
     assert answer["columns"] == ["time (ms)", "p1 (kPa)", "p2 (kPa)"]
     options = {"pressure_column": 2, "baseline": "pre-trigger", "taper": "0.1 ms"}
-    assert Sampled.model_validate(answer["pulse"]) == read_record(TEXT, options=options)
+    assert Sampled.model_validate(answer["pulse"]) == Sampled.from_bytes(TEXT, **options)
     assert answer["pulse"]["reference"].startswith("gauge.csv: time 'time' in ms")
     system = {**described("bare"), "source": {"type": "plane-wave", "pulse": answer["pulse"]}}
     again = client.post("/api/validate", json={"system": system}).json()

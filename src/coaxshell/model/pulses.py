@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from coaxshell.errors import InputError
-from coaxshell.model.base import UNSTATED, Described, shown, stated
+from coaxshell.model.base import Described, shown
 from coaxshell.model.naming import lookup
-from coaxshell.model.samples import Samples, Series, not_increasing
-from coaxshell.model.units import AnyPressure, AnyTime, Delay, Pressure, Time, quantity, to_si
+from coaxshell.model.records.sampled import Sampled
+from coaxshell.model.units import Delay, Pressure, Time
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from coaxshell.numerics.arrays import ComplexArray, FloatArray
+__all__ = ["OF_A_FILE", "PULSES", "AnyPulse", "Exponential", "Gaussian", "Pulse", "Sampled", "Step", "as_pulse"]
 
 
 class Exponential(Described):
@@ -87,173 +82,6 @@ class Gaussian(Described):
         return self
 
 
-def _window(value: Any) -> Any:
-    """Return a window of time in s, greater than 0, or "pre-trigger"."""
-    if value is None or value == "pre-trigger":
-        return value
-    window = to_si(value, "time")
-    if window <= 0:
-        raise InputError("", f"{window!r} s is not allowed", 'must be greater than 0, or "pre-trigger"')
-    return window
-
-
-class Sampled(Described):
-    """Describe a sampled history: linear between the samples, zero before the first and after the last.
-
-    A measured record is kept as it was read; the options say what is made of it, in this order: *scale*, *offset* and *baseline* on the
-    pressures, the part from *start* to *end*, *shift* of the times, *resample*, *taper*. Samples before t = 0 (before a trigger) are
-    then left out. :attr:`curve` is the history that results, and all that is solved.
-    """
-
-    type: Literal["sampled"] = "sampled"
-    time: Annotated[Samples, Series("time")]
-    """Times (s), strictly increasing, at least two."""
-    pressure: Annotated[Samples, Series("pressure")]
-    """Pressures at these times (Pa)."""
-    scale: Annotated[float, quantity("number", nonzero=True)] = 1.0
-    """Factor on the pressures, such as a calibration."""
-    offset: AnyPressure = 0.0
-    """Pressure of the baseline, subtracted after scaling (Pa)."""
-    baseline: Annotated[float | Literal["pre-trigger"] | None, BeforeValidator(_window)] = None
-    """Time from the first sample over which the mean is taken and subtracted (s), or "pre-trigger": all samples before t = 0."""
-    start: AnyTime | None = None
-    """Time of the record from which it is kept (s); it becomes t = 0 unless *shift* says otherwise."""
-    end: AnyTime | None = None
-    """Time of the record up to which it is kept (s)."""
-    shift: AnyTime | None = None
-    """Time added to those of the record (s)."""
-    resample: Time | None = None
-    """Interval of a new, even grid of samples (s)."""
-    taper: Delay = 0.0
-    """Length of the last part of the history, which is brought to zero by half a cosine (s)."""
-    reference: str = ""
-    """Where the samples come from."""
-
-    def __init__(
-        self,
-        *,
-        time: Sequence[float] | npt.ArrayLike = UNSTATED,
-        pressure: Sequence[float] | npt.ArrayLike = UNSTATED,
-        **options: Any,
-    ) -> None:
-        super().__init__(**stated({"time": time, "pressure": pressure}), **options)
-
-    @model_validator(mode="after")
-    def _regular(self) -> Self:
-        if len(self.time) < 2:
-            raise InputError("time", f"{len(self.time)} samples are too few", "must be at least 2")
-        if len(self.time) != len(self.pressure):
-            raise InputError(
-                "pressure", f"{len(self.pressure)} pressures do not match {len(self.time)} times", "must be as many pressures as times"
-            )
-        late = not_increasing(self.time)
-        if late is not None:
-            raise InputError(
-                f"time[{late}]", f"{self.time[late]!r} s does not follow {self.time[late - 1]!r} s", "times must be strictly increasing"
-            )
-        _ = self.curve  # what an option makes impossible is told now
-        return self
-
-    @cached_property
-    def curve(self) -> tuple[FloatArray, FloatArray]:
-        """The history that the record stands for: times (s), from 0 on, and pressures (Pa), read-only arrays."""
-        from coaxshell.model.records.conditioning import conditioned
-
-        times, values = conditioned(self)
-        times.flags.writeable = values.flags.writeable = False
-        return times, values
-
-    @cached_property
-    def digest(self) -> str:
-        """SHA-256 of the history, its times and then its pressures as little-endian doubles."""
-        from coaxshell.model.records.binary_text import digest
-
-        return digest(*self.curve)
-
-    @cached_property
-    def transforms(self) -> deque[tuple[FloatArray, ComplexArray]]:
-        """The latest transforms of the history, each with the numbers of its contour: a place for the solver to keep them."""
-        return deque(maxlen=2)
-
-    @property
-    def peak(self) -> float:
-        """Largest magnitude of the pressure (Pa)."""
-        return float(abs(self.curve[1]).max())
-
-    @cached_property
-    def spectrum(self) -> tuple[FloatArray, FloatArray]:
-        """Frequencies (Hz) and the energy density ``|P(f)|^2`` (Pa^2 s^2) of the history."""
-        from coaxshell.model.records.measures import spectrum
-
-        return spectrum(*self.curve)
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """What a reader of the record should know: where it is cut off, absurd magnitudes, a baseline that is left."""
-        from coaxshell.model.records.remarks import remarks
-
-        return remarks(self)
-
-    def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and self._fields == other._fields
-
-    def __hash__(self) -> int:
-        return hash(self._fields)
-
-    @property
-    def _fields(self) -> tuple[Any, ...]:
-        """What the record is: its fields, without what is computed from them; where it comes from makes it no other."""
-        return tuple(getattr(self, name) for name in type(self).model_fields if name != "reference")
-
-    def __getstate__(self) -> dict[Any, Any]:
-        """Travel between processes without what is computed from the fields."""
-        state = super().__getstate__()
-        return {**state, "__dict__": {k: v for k, v in state["__dict__"].items() if k in type(self).model_fields}}
-
-    def __repr_args__(self) -> Iterable[tuple[str | None, Any]]:
-        return [(name, value) for name, value in super().__repr_args__() if name is None or value != self.default_of(name)]
-
-    @classmethod
-    def default_of(cls, name: str) -> Any:
-        """Return the default of a field."""
-        return cls.model_fields[name].default
-
-    @classmethod
-    def from_file(cls, path: str | Path, **options: Any) -> Sampled:
-        """Read a record from a CSV or other text file, a MATLAB file (up to version 7) or a sound file.
-
-        Parameters
-        ----------
-        path : str or Path
-        **options
-            ``time_column``, ``pressure_column`` (heading, or number from 1 on), ``time_unit``, ``pressure_unit`` (instead of those in the
-            headings), ``interval`` (s, without a column of times), ``sha256`` of the file, and the other entries of this class.
-
-        Raises
-        ------
-        InputError
-            Naming the file and the line, the column or the option.
-        """
-        from coaxshell.model.records.reader import read_file
-
-        return read_file(path, options)
-
-    @classmethod
-    def from_csv(cls, path: str | Path, **options: Any) -> Sampled:
-        """Read a record from a text file; the same as :meth:`from_file`."""
-        return cls.from_file(path, **options)
-
-    @classmethod
-    def from_data(cls, data: Any, **options: Any) -> Sampled:
-        """Read a record from a pandas Series or DataFrame, an xarray DataArray or Dataset (units in ``attrs``), or an array (n, 2).
-
-        Options as those of :meth:`from_file`; times are the index, or a column called time; InputError says what does not fit.
-        """
-        from coaxshell.model.records.reader import read_data
-
-        return read_data(data, options)
-
-
 Pulse = Exponential | Step | Gaussian | Sampled
 PULSES: dict[str, type[Pulse]] = {kind.model_fields["type"].default: kind for kind in get_args(Pulse)}
 """Kinds of pulse by the ``type`` that names them in a file."""
@@ -278,18 +106,17 @@ def as_pulse(value: Any) -> Pulse:
 
 def _stored(data: Mapping[str, Any]) -> Sampled:
     """Return the record of a table that names a file, or holds its samples as one text."""
-    from coaxshell.model.records.reader import read_file
-    from coaxshell.model.records.storing import from_text
-
     options = {key: value for key, value in data.items() if key not in ("type", "file", "samples")}
     if "file" not in data:
+        from coaxshell.model.records.storing import from_text
+
         return from_text(data["samples"], options)
     for key in ("samples", "time", "pressure"):
         if key in data:
             raise InputError(key, "has no effect beside file", "give the samples, or the file that holds them")
     if not isinstance(data["file"], str | Path):
         raise InputError("file", f"{shown(data['file'])} is no file", "give its name")
-    return read_file(data["file"], options)
+    return Sampled.from_file(data["file"], **options)
 
 
 AnyPulse = Annotated[Exponential | Step | Gaussian | Sampled, BeforeValidator(as_pulse)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coaxshell.model.prefixes import PREFIXES, exponent_of
-from coaxshell.model.records.measures import Measures, measures, spectrum
+from coaxshell.model.records.measures import Measures
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def figure_record(record: Sampled, title: str = "") -> Figure:
     with style():
         figure = new_figure(PAGE_WIDTH, 2.9)
         left, right = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
-        found = measures(record)
+        found = record.measures
         plot_record(record, left, found)
         plot_spectrum(record, right, found)
         if title:
@@ -41,7 +41,7 @@ def figure_record(record: Sampled, title: str = "") -> Figure:
 
 def plot_record(record: Sampled, ax: Axes, found: Measures | None = None) -> Axes:
     """Draw the samples that were read, where they differ, and the history that is solved, with its peak; return *ax*."""
-    found = found or measures(record)
+    found = found or record.measures
     time, pressure = record.curve
     t, p = exponent_of(max(float(np.abs(time).max()), 1e-12)), exponent_of(abs(found.peak) or 1.0)
     read = np.asarray(record.time), np.asarray(record.pressure)
@@ -59,8 +59,8 @@ def plot_record(record: Sampled, ax: Axes, found: Measures | None = None) -> Axe
 
 def plot_spectrum(record: Sampled, ax: Axes, found: Measures | None = None) -> Axes:
     """Draw the magnitude of the history's transform against frequency, and the band that 99 % of its energy lies in; return *ax*."""
-    found = found or measures(record)
-    frequency, density = spectrum(*record.curve)
+    found = found or record.measures
+    frequency, density = record.spectrum
     kept = (frequency > 0) & (frequency <= found.nyquist)
     f = exponent_of(found.band or found.nyquist)
     bins = np.unique(np.geomspace(1, max(2, kept.sum()), 600).astype(int)) - 1

@@ -201,7 +201,7 @@ def _unresolved_records(problem: Problem, grid: LaplaceGrid, max_order: int) -> 
     orders, step = max_order * hertz, (1.0 - ROLL_OFF) * grid.nyquist * hertz
     lowest, warnings = min(orders, step), []
     for pulse in (source.pulse for source in problem.system.sources):
-        if not isinstance(pulse, Sampled) or (share := energy_above(pulse, lowest)) <= UNRESOLVED_LIMIT:
+        if not isinstance(pulse, Sampled) or (share := energy_above(*pulse.spectrum, lowest)) <= UNRESOLVED_LIMIT:
             continue
         needed = share_below(*pulse.spectrum, 1.0 - UNRESOLVED_LIMIT) / hertz
         remedies = [f"modes={int(np.ceil(needed))}"] if max_order < needed <= MAX_MODES else []

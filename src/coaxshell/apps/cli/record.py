@@ -86,17 +86,14 @@ def content(found: Sampled) -> dict[str, Any]:
     """Return measures, remarks and account of a record as plain data, SI."""
     from dataclasses import asdict
 
-    from coaxshell.model.records.measures import measures
-
-    return {"reference": found.reference, **asdict(measures(found)), "remarks": list(found.remarks)}
+    return {"reference": found.reference, **asdict(found.measures), "remarks": list(found.remarks)}
 
 
 def _print(found: Sampled, path: Path, wanted: dict[str, str]) -> None:
     from coaxshell.model.prefixes import engineering
-    from coaxshell.model.records.measures import measures
     from coaxshell.response.summary_text import aligned
 
-    told = measures(found)
+    told = found.measures
     even = told.largest_interval - told.interval <= 1e-6 * told.interval
     interval = engineering(told.interval, "s") + ("" if even else f" to {engineering(told.largest_interval, 's')}")
     rows = [

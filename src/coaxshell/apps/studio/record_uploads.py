@@ -11,6 +11,7 @@ from starlette.routing import BaseRoute, Route
 
 from coaxshell.apps.studio import bodies, limits, refusals
 from coaxshell.errors import InputError
+from coaxshell.model import Sampled
 from coaxshell.model.naming import suggestion
 from coaxshell.model.records import reader, storing
 
@@ -28,7 +29,7 @@ def understood(content: bytes, name: str, options: dict[str, str]) -> dict[str, 
         table = reader.table_of(content, name)
         headings = [column.heading for column in table.columns]
         columns = [heading if heading and headings.count(heading) == 1 else str(k) for k, heading in enumerate(headings, start=1)]
-        record = reader.read_record(content, name, options)
+        record = Sampled.from_bytes(content, name, **options)
     except InputError as error:
         return {**refusals.told(error), "columns": columns}
     if len(record.time) > limits.SAMPLES:

@@ -9,8 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import Sampled, System
-from coaxshell.model.records.measures import measures
-from coaxshell.model.records.remarks import remarks
 from coaxshell.numerics.arrays import FloatArray
 
 INTERVALS = 150
@@ -29,13 +27,13 @@ def viewed(system: System) -> list[dict[str, Any]]:
 
 def _view(pulse: Sampled) -> dict[str, Any]:
     time, pressure = (np.asarray(values, dtype=np.float64) for values in pulse.curve)
-    found = measures(pulse)
+    found = pulse.measures
     kept = thinned(time, pressure)
     return {
         "recorded": found.samples,
         "samples": len(time),
         **{name: getattr(found, name) for name in ("duration", "peak", "peak_time", "decay_time", "impulse")},
-        "remarks": list(remarks(pulse)),
+        "remarks": list(pulse.remarks),
         "time": [float(value) for value in time[kept]],
         "pressure": [float(value) for value in pressure[kept]],
     }

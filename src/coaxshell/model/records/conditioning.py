@@ -13,7 +13,7 @@ Between samples a record is linear. The steps are taken in this order, each only
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,30 +21,39 @@ from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_SAMPLES
 from coaxshell.numerics.arrays import FloatArray
 
-if TYPE_CHECKING:
-    from coaxshell.model.pulses import Sampled
 
-
-def conditioned(record: Sampled) -> tuple[FloatArray, FloatArray]:
-    """Return times (s), from 0 on, and pressures (Pa) of the history that a record stands for.
+def conditioned(
+    recorded_time: Sequence[float],
+    recorded_pressure: Sequence[float],
+    *,
+    scale: float,
+    offset: float,
+    baseline: float | str | None,
+    start: float | None,
+    end: float | None,
+    shift: float | None,
+    resample: float | None,
+    taper: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Return times (s, from 0 on) and pressures (Pa) of a record's history; options are those of :class:`coaxshell.Sampled`.
 
     Raises
     ------
     InputError
         An option leaves nothing of the record, or does not fit it.
     """
-    time = np.asarray(record.time)
+    time = np.asarray(recorded_time)
     with np.errstate(over="ignore"):  # told below
-        pressure = record.scale * np.asarray(record.pressure) - record.offset
+        pressure = scale * np.asarray(recorded_pressure) - offset
     if not np.isfinite(pressure).all():
-        raise InputError("scale", f"{record.scale!r} makes pressures that are not finite", "give a smaller one")
-    if record.baseline is not None:
-        pressure = pressure - _baseline(time, pressure, record.baseline)
-    time, pressure = _cut(time, pressure, record)
-    if record.resample is not None:
-        time, pressure = _resampled(time, pressure, record.resample)
-    if record.taper:
-        pressure = _tapered(time, pressure, record.taper)
+        raise InputError("scale", f"{scale!r} makes pressures that are not finite", "give a smaller one")
+    if baseline is not None:
+        pressure = pressure - _baseline(time, pressure, baseline)
+    time, pressure = _cut(time, pressure, start, end, shift)
+    if resample is not None:
+        time, pressure = _resampled(time, pressure, resample)
+    if taper:
+        pressure = _tapered(time, pressure, taper)
     return time, pressure
 
 
@@ -57,14 +66,14 @@ def _baseline(time: FloatArray, pressure: FloatArray, window: float | str) -> fl
     return float(pressure[inside].mean())
 
 
-def _cut(time: FloatArray, pressure: FloatArray, record: Sampled) -> tuple[FloatArray, FloatArray]:
-    shift = record.shift if record.shift is not None else -record.start if record.start is not None else 0.0
-    first = max(float(time[0]), -math.inf if record.start is None else record.start, 0.0 - shift)
-    last = min(float(time[-1]), math.inf if record.end is None else record.end)
+def _cut(
+    time: FloatArray, pressure: FloatArray, start: float | None, end: float | None, told: float | None
+) -> tuple[FloatArray, FloatArray]:
+    shift = told if told is not None else -start if start is not None else 0.0
+    first = max(float(time[0]), -math.inf if start is None else start, 0.0 - shift)
+    last = min(float(time[-1]), math.inf if end is None else end)
     if first >= last:
-        where = (
-            "start" if record.start is not None else "end" if record.end is not None else "shift" if record.shift is not None else "time"
-        )
+        where = "start" if start is not None else "end" if end is not None else "shift" if told is not None else "time"
         raise InputError(
             where,
             f"nothing of the record is left between {first:g} s and {last:g} s",

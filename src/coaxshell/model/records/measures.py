@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.fft import next_fast_len, rfft, rfftfreq
@@ -12,10 +11,6 @@ from scipy.fft import next_fast_len, rfft, rfftfreq
 from coaxshell.limits import RECORD_SAMPLES
 from coaxshell.model.records.conditioning import integral
 from coaxshell.numerics.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from coaxshell.model.pulses import Sampled
-
 
 BAND = 0.99
 """Share of the energy that lies below the upper end of the band."""
@@ -66,16 +61,15 @@ class Measures:
     nyquist: float
 
 
-def measures(record: Sampled) -> Measures:
-    """Return the measures of the history that a record stands for."""
-    time, pressure = record.curve
+def measures(samples: int, time: FloatArray, pressure: FloatArray, frequency: FloatArray, density: FloatArray) -> Measures:
+    """Return the measures of a history of which so many samples were read, and of its :func:`spectrum`."""
     steps = np.diff(time)
     at = int(np.abs(pressure).argmax())
     peak = float(pressure[at])
     relative = pressure / (peak or 1.0)
     sums = integral(time, pressure, time)
     return Measures(
-        samples=len(record.time),
+        samples=samples,
         duration=float(time[-1] - time[0]),
         interval=float(steps.min()),
         largest_interval=float(steps.max()),
@@ -86,7 +80,7 @@ def measures(record: Sampled) -> Measures:
         impulse=float(sums[-1]),
         largest_impulse=float(sums[np.abs(sums).argmax()]),
         positive_duration=_fall(time[at:], relative[at:], 0.0),
-        band=share_below(*record.spectrum, BAND),
+        band=share_below(frequency, density, BAND),
         nyquist=0.5 / float(steps.min()),
     )
 
@@ -132,9 +126,8 @@ def share_below(frequency: FloatArray, density: FloatArray, share: float) -> flo
     return float(frequency[min(int(np.searchsorted(sums, share * sums[-1])), len(frequency) - 1)]) if sums[-1] > 0 else 0.0
 
 
-def energy_above(record: Sampled, frequency: float) -> float:
-    """Return the share of a record's energy that lies above a frequency (Hz)."""
-    found, density = record.spectrum
+def energy_above(found: FloatArray, density: FloatArray, frequency: float) -> float:
+    """Return the share of the energy of a :func:`spectrum` that lies above a frequency (Hz)."""
     below = np.cumsum(density) - density[0] / 2  # up to the upper edge of each piece; the first is half as wide
     if below[-1] <= 0:
         return 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RECORD_BYTES, RECORD_COLUMNS, Limit
@@ -15,9 +15,6 @@ from coaxshell.model.records.choosing import READING, choose
 from coaxshell.model.records.columns import Table
 from coaxshell.model.records.text_tables import text_table
 from coaxshell.numerics.reading import regular_bytes
-
-if TYPE_CHECKING:
-    from coaxshell.model.pulses import Sampled
 
 CONDITIONING = ("scale", "offset", "baseline", "start", "end", "shift", "resample", "taper", "reference")
 OPTIONS = (*READING, *CONDITIONING, "sha256")
@@ -34,13 +31,13 @@ _FOREIGN = {
 }
 
 
-def read_file(path: str | Path, options: Mapping[str, Any] | None = None) -> Sampled:
-    """Return the record of a regular file; see :func:`read_record`."""
-    return read_record(regular_bytes(Path(path), RECORD_BYTES, "give the path of a record: CSV, .mat or .wav"), str(path), options)
+def of_file(path: str | Path, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entries of the record in a regular file; see :func:`of_bytes`."""
+    return of_bytes(regular_bytes(Path(path), RECORD_BYTES, "give the path of a record: CSV, .mat or .wav"), str(path), options)
 
 
-def read_record(content: bytes, name: str = "record", options: Mapping[str, Any] | None = None) -> Sampled:
-    """Return the record in the bytes of a file.
+def of_bytes(content: bytes, name: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entries of :class:`coaxshell.Sampled` for the record in the bytes of a file.
 
     Parameters
     ----------
@@ -48,7 +45,7 @@ def read_record(content: bytes, name: str = "record", options: Mapping[str, Any]
         Text of any common dialect, a MATLAB file up to version 7, or a sound file.
     name : str
         What errors and the record's reference call it.
-    options : mapping, optional
+    options : mapping
         Any of :data:`OPTIONS`: ``time_column``, ``pressure_column`` (name or number from 1 on), ``time_unit``, ``pressure_unit``,
         ``interval`` (without a column of times), ``sha256`` of the bytes, and the entries of :class:`coaxshell.Sampled`.
 
@@ -58,19 +55,19 @@ def read_record(content: bytes, name: str = "record", options: Mapping[str, Any]
         Naming the file, the line or the option.
     """
     RECORD_BYTES.check(len(content), name)
-    given = checked_options(options or {})
+    given = checked_options(options)
     _verify(content, given.pop("sha256", None), name)
-    return _sampled(table_of(content, name), given, name)
+    return _entries(table_of(content, name), given, name)
 
 
-def read_data(data: Any, options: Mapping[str, Any] | None = None, name: str = "data") -> Sampled:
-    """Return the record in a pandas Series or DataFrame, an xarray DataArray or Dataset, or an array of two columns."""
+def of_data(data: Any, options: Mapping[str, Any], name: str = "data") -> dict[str, Any]:
+    """Return the entries of the record in a pandas Series or DataFrame, an xarray DataArray or Dataset, or an array of two columns."""
     from coaxshell.model.records.objects import object_table
 
-    given = checked_options(options or {})
+    given = checked_options(options)
     if "sha256" in given:
         raise InputError("sha256", "belongs to a file", "leave it out")
-    return _sampled(object_table(data, name), given, name)
+    return _entries(object_table(data, name), given, name)
 
 
 def checked_options(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -93,14 +90,12 @@ def table_of(content: bytes, name: str, most: Limit = RECORD_COLUMNS) -> Table:
     return text_table(content, name, most)
 
 
-def _sampled(table: Table, given: dict[str, Any], name: str) -> Sampled:
-    from coaxshell.model.pulses import Sampled
-
+def _entries(table: Table, given: dict[str, Any], name: str) -> dict[str, Any]:
     if table.full_scale and "scale" not in given:
         raise InputError("scale", f"is missing: {name} holds shares of a full scale, not pressures", "give the pressure at full scale (Pa)")
     chosen = choose(table, given, name)
     rest = {key: value for key, value in given.items() if key not in READING}
-    return Sampled(**{"reference": f"{Path(name).name}: {chosen.account}", **rest}, time=chosen.time, pressure=chosen.pressure)
+    return {"reference": f"{Path(name).name}: {chosen.account}", **rest, "time": chosen.time, "pressure": chosen.pressure}
 
 
 def _verify(content: bytes, wanted: Any, name: str) -> None:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from coaxshell.model.prefixes import engineering
-
-if TYPE_CHECKING:
-    from coaxshell.model.pulses import Sampled
+from coaxshell.numerics.arrays import FloatArray
 
 CUT_OFF = 0.1
 """Share of the peak that the last sample may have."""
@@ -21,13 +17,36 @@ LEAST, MOST = 1.0, 1e10
 """Pascals of its peak."""
 
 
-def remarks(record: Sampled) -> tuple[str, ...]:
-    """Return the remarks on a record, each with its numbers and what to do."""
-    time, pressure = record.curve
+def remarks(
+    time: FloatArray,
+    pressure: FloatArray,
+    recorded_time: FloatArray,
+    recorded: FloatArray,
+    *,
+    start: float | None,
+    shift: float | None,
+    baseline: bool,
+) -> tuple[str, ...]:
+    """Return the remarks on a record, each with its numbers and what to do.
+
+    Parameters
+    ----------
+    time, pressure : ndarray, shape (N,)
+        The history that it stands for (s, Pa).
+    recorded_time, recorded : ndarray, shape (R,)
+        Times and scaled pressures as they were read.
+    start, shift : float, optional
+        Options of the record.
+    baseline : bool
+        Whether its baseline is taken off.
+    """
     peak = float(np.abs(pressure).max())
     if peak == 0:
         return ("the record is zero throughout",)
-    return tuple(text for text in (*_magnitudes(time[-1], peak), _cut_off(pressure, peak), _before(record, peak)) if text)
+    before = recorded_time + (shift if shift is not None else 0.0) < 0
+    left_out = recorded[before] if start is None else recorded[:0]
+    told = _before(left_out, recorded_time[0], peak, baseline) if left_out.size else ""
+    return tuple(text for text in (*_magnitudes(time[-1], peak), _cut_off(pressure, peak), told) if text)
 
 
 def _magnitudes(end: float, peak: float) -> tuple[str, ...]:
@@ -45,7 +64,7 @@ def _magnitudes(end: float, peak: float) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _cut_off(pressure: np.ndarray, peak: float) -> str:
+def _cut_off(pressure: FloatArray, peak: float) -> str:
     share = abs(float(pressure[-1])) / peak
     if share <= CUT_OFF:
         return ""
@@ -55,21 +74,15 @@ def _cut_off(pressure: np.ndarray, peak: float) -> str:
     )
 
 
-def _before(record: Sampled, peak: float) -> str:
+def _before(values: FloatArray, first: float, peak: float, baseline: bool) -> str:
     """Tell of samples before t = 0: those left out, if they hold more than noise, or a baseline that they show."""
-    time = np.asarray(record.time)
-    shift = record.shift if record.shift is not None else -record.start if record.start is not None else 0.0
-    before = time + shift < 0
-    if record.start is not None or not before.any():
-        return ""
-    values = record.scale * np.asarray(record.pressure)[before] - record.offset
     largest, mean = float(np.abs(values - values.mean()).max()), float(values.mean())
-    if record.baseline is None and abs(mean) > BASELINE * peak:
+    if not baseline and abs(mean) > BASELINE * peak:
         text = f"before t = 0 the record stands at {engineering(mean, 'Pa')}, {100 * abs(mean) / peak:.0f} % of its peak"
         return f'{text}; remove its baseline ("pre-trigger")'
     if largest > CUT_OFF * peak:
         return (
-            f"{before.sum()} samples before t = 0 are left out, which reach {engineering(largest, 'Pa')}, "
-            f"{100 * largest / peak:.0f} % of the peak; start = {time[0]:g} keeps them"
+            f"{values.size} samples before t = 0 are left out, which reach {engineering(largest, 'Pa')}, "
+            f"{100 * largest / peak:.0f} % of the peak; start = {first:g} keeps them"
         )
     return ""

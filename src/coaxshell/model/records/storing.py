@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,10 +14,8 @@ from coaxshell.model.base import shown
 from coaxshell.model.naming import suggestion
 from coaxshell.model.records.binary_text import digest, packed, unpacked
 from coaxshell.model.records.reader import CONDITIONING
+from coaxshell.model.records.sampled import Sampled
 from coaxshell.numerics.files import replacing
-
-if TYPE_CHECKING:
-    from coaxshell.model.pulses import Sampled
 
 LISTED = 1000
 """Samples up to which they are written as lists of numbers that a person can read."""
@@ -63,8 +61,6 @@ def csv_text(record: Sampled) -> bytes:
 
 def from_text(samples: Any, options: Mapping[str, Any]) -> Sampled:
     """Return the record whose samples are one text, and its other entries *options*; InputError if it is damaged."""
-    from coaxshell.model.pulses import Sampled
-
     allowed = (*CONDITIONING, "sha256")
     for key in options:
         if key not in allowed:
