@@ -21,15 +21,15 @@ class Modes:
     ----------
     orders : ndarray, shape (M,)
         Ascending, all or a sample.
-    wavenumber : float
-        k, in units of 1/a.
+    wavenumber : float or ndarray of complex, shape (nodes,)
+        k, in units of 1/a; one for each Laplace node where a wave runs along the axis, k = -i s sin(alpha).
     """
 
     orders: FloatArray
-    wavenumber: float = 0.0
+    wavenumber: float | ComplexArray = 0.0
 
     @classmethod
-    def up_to(cls, max_order: int, wavenumber: float = 0.0) -> Modes:
+    def up_to(cls, max_order: int, wavenumber: float | ComplexArray = 0.0) -> Modes:
         """Return the orders 0, 1, ..., max_order."""
         return cls(np.arange(max_order + 1, dtype=np.float64), wavenumber)
 
@@ -49,9 +49,14 @@ class Modes:
         return self.orders[:, None]
 
     @property
-    def key(self) -> tuple[bytes, float]:
+    def key(self) -> tuple[bytes, bytes]:
         """What tells these modes from others, for caches."""
-        return self.orders.tobytes(), self.wavenumber
+        return self.orders.tobytes(), np.asarray(self.wavenumber).tobytes()
+
+    @property
+    def two_dimensional(self) -> bool:
+        """Whether nothing changes along the axis: k = 0."""
+        return not np.any(self.wavenumber)
 
     @property
     def neumann(self) -> FloatArray:
@@ -61,7 +66,7 @@ class Modes:
     def kappa(self, slowness: float, s: ComplexArray) -> ComplexArray:
         """Return sqrt(alpha^2 s^2 + k^2), the root with a positive real part for Re s > 0."""
         along = slowness * s
-        if self.wavenumber == 0.0:
+        if self.two_dimensional:
             return along
         return np.asarray(np.sqrt(along - 1j * self.wavenumber) * np.sqrt(along + 1j * self.wavenumber))
 

@@ -11,9 +11,41 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from coaxshell.model.layers import Layer, Shell
 from coaxshell.model.materials import Elastic, Piezoelectric
+from coaxshell.structure.laminate import Laminate, laminate
+
+
+class AxialCoupling(NamedTuple):
+    """What a piezoelectric layer does along the axis, beside what it does along the hoop.
+
+    Attributes
+    ----------
+    coupling : float
+        E_31 = e31~ 2 t/pi, C/m: potential per axial curvature.
+    zeta11 : float
+        mu11 t/2, F.
+    reduced_coupling : float
+        e31~ = e31 - c13 e33/c33, C/m^2.
+    actuator_coupling : float
+        The e31 that multiplies the control voltage, C/m^2, reduced as that of the hoop is.
+    """
+
+    coupling: float
+    zeta11: float
+    reduced_coupling: float
+    actuator_coupling: float
+
+    def in_units(self, length: float, charge: float) -> AxialCoupling:
+        """Return it in units of a length (m) and a charge per area (C/m^2)."""
+        return AxialCoupling(
+            self.coupling / (charge * length),
+            self.zeta11 / (charge * length**2),
+            self.reduced_coupling / charge,
+            self.actuator_coupling / charge,
+        )
 
 
 @dataclass(frozen=True)
@@ -36,6 +68,8 @@ class PiezoelectricLayer:
         The e32 that multiplies the control voltage, C/m^2: e32 as printed, or e32~ (plane stress).
     field_limit : float
         Largest field strength, V/m.
+    axial : AxialCoupling or None
+        None if its material lacks the constants.
     """
 
     role: str
@@ -47,6 +81,7 @@ class PiezoelectricLayer:
     reduced_coupling: float
     actuator_coupling: float
     field_limit: float
+    axial: AxialCoupling | None = None
 
 
 @dataclass(frozen=True)
@@ -66,6 +101,8 @@ class Section:
     layers : tuple of (float, float, float)
         Bottom z, top z (m) and plane-strain modulus (Pa) of every layer, from the inside out.
     piezoelectric : tuple of PiezoelectricLayer
+    laminate : Laminate or None
+        Stiffness in both directions of the wall, for an axial wavenumber; None if a material lacks the constants.
     """
 
     radius: float
@@ -76,6 +113,7 @@ class Section:
     core_modulus: float
     layers: tuple[tuple[float, float, float], ...]
     piezoelectric: tuple[PiezoelectricLayer, ...]
+    laminate: Laminate | None = None
 
     def layer(self, role: str) -> PiezoelectricLayer | None:
         """Return the piezoelectric layer of the given role, or None."""
@@ -103,9 +141,11 @@ class Section:
                     reduced_coupling=layer.reduced_coupling / charge,
                     actuator_coupling=layer.actuator_coupling / charge,
                     field_limit=layer.field_limit * length,
+                    axial=None if layer.axial is None else layer.axial.in_units(length, charge),
                 )
                 for layer in self.piezoelectric
             ),
+            laminate=None if self.laminate is None else self.laminate.in_units(length, pressure),
         )
 
 
@@ -140,6 +180,20 @@ def piezoelectric_layer(layer: Layer, material: Piezoelectric, centre: float) ->
         reduced_coupling=reduced,
         actuator_coupling=material.e32 if material.actuator_coupling == "printed" else reduced,
         field_limit=material.field_limit,
+        axial=axial_coupling(layer.thickness, material),
+    )
+
+
+def axial_coupling(thickness: float, material: Piezoelectric) -> AxialCoupling | None:
+    """Return what a layer does along the axis; None if its material lacks c13, e31 or permittivity_11."""
+    if material.c13 is None or material.e31 is None or material.permittivity_11 is None:
+        return None
+    reduced = material.e31 - material.c13 * material.e33 / material.c33
+    return AxialCoupling(
+        coupling=reduced * 2.0 * thickness / math.pi,
+        zeta11=material.permittivity_11 * thickness / 2.0,
+        reduced_coupling=reduced,
+        actuator_coupling=material.e31 if material.actuator_coupling == "printed" else reduced,
     )
 
 
@@ -162,4 +216,5 @@ def section(shell: Shell) -> Section:
         bottom = top
     if abs(cross) < 1e-12 * membrane * shell.thickness:
         cross = 0.0  # a symmetric layup, up to rounding of the layer boundaries
-    return Section(shell.radius, mass, membrane, cross, bending, plane_modulus(shell.core.material), tuple(layers), tuple(piezoelectric))
+    core, along = plane_modulus(shell.core.material), laminate(shell)
+    return Section(shell.radius, mass, membrane, cross, bending, core, tuple(layers), tuple(piezoelectric), along)

@@ -1,8 +1,9 @@
-"""A thin layered wall in plane strain (Kirchhoff and Love), V eliminated from the motion of each order:
+"""A thin layered wall (Kirchhoff and Love), V eliminated from the motion of each order in plane strain:
 
     Z = M s^2 + K_ww - K_vw^2/(M s^2 + K_vv),      V/W = -K_vw/(M s^2 + K_vv),
 
-with the modal stiffness K of :mod:`coaxshell.structure.thin`.
+with the modal stiffness K of :mod:`coaxshell.structure.thin`. With an axial wavenumber :mod:`coaxshell.structure.axial` gives the same on
+(U, V, W).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.structure.axial import axial_gain, axial_operator, natural_frequencies, potential, strain
 from coaxshell.structure.section import Section
 from coaxshell.structure.shell_model import ControlGains, Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
 from coaxshell.structure.stress import control_stress, design_stress_gain, stress_gain, wall_point
@@ -46,14 +48,18 @@ class ThinWall(ShellModel):
         return wall_stiffness(self.section, modes.orders)
 
     def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
-        """Return impedance and V/W without feedback."""
+        """Return impedance, V/W and U/W without feedback."""
+        if not modes.two_dimensional:
+            return axial_operator(self.section, modes, s)
         stiffness = WallStiffness(*(entry[:, None] for entry in self.stiffness(modes)))
         inertia = self.mass * s * s
         tangential = -stiffness.vw / (inertia + np.where(modes.column == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
         return WallOperator(inertia + stiffness.ww + stiffness.vw * tangential, tangential)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
-        """Return the membrane frequency of each order, sqrt(K_vv/M)."""
+        """Return the membrane frequency of each order, sqrt(K_vv/M); with an axial wavenumber the highest of the three frequencies."""
+        if not modes.two_dimensional:
+            return natural_frequencies(self.section, modes)[:, -1]
         return np.asarray(np.sqrt(self.stiffness(modes).vv / self.mass))
 
     @property
@@ -67,10 +73,12 @@ class ThinWall(ShellModel):
         return self.section.layer(role) is not None
 
     def sensor_gain(self, modes: Modes, role: str = "sensor") -> Gain:
-        """Return volts of an open-circuit layer per unit (V, W) (Eq. 20)."""
+        """Return volts of an open-circuit layer per unit (V, W, U) (Eq. 20)."""
         layer = self.section.layer(role)
         if layer is None:
             return super().sensor_gain(modes, role)
+        if not modes.two_dimensional:
+            return axial_gain(potential(layer, modes, self.radius, strain(modes, self.radius)))
         return potential_gain(layer, modes.orders, self.radius)
 
     @property
