@@ -1,8 +1,9 @@
-"""One circumferential order: shells and fluids as M x'' + C x' + K x.
+"""One circumferential order at one axial wavenumber: shells and fluids as M x'' + C x' + K x.
 
 In each fluid a velocity potential carries the motion, u = grad phi, p = -rho dphi/dt, the exterior one the scattered wave alone. It is
 truncated so far away that nothing returns. Lengths are in a, times in a/c_e, pressures in rho_e c_e^2; w is positive inward, so
-u_r = -dw/dt at a wall. Unknowns: V of all shells, W of all shells, the potentials from the inside out.
+u_r = -dw/dt at a wall. An axial wavenumber k adds k^2 to the Laplacian of every fluid and strains the walls; without it U is at rest.
+Unknowns: V of all shells, W of all shells, U of all shells, the potentials from the inside out.
 """
 
 from __future__ import annotations
@@ -50,10 +51,11 @@ class Assembly:
     pressure: float
     walls: tuple[Wall, ...]
     regions: tuple[Region | None, ...]
+    wavenumber: float = 0.0
 
     @classmethod
-    def of(cls, system: System, duration: float, element: float) -> Assembly:
-        """Return the assembly of a system of elastic shells for a duration in transits."""
+    def of(cls, system: System, duration: float, element: float, wavenumber: float = 0.0) -> Assembly:
+        """Return the assembly of a system of elastic shells for a duration in transits, at an axial wavenumber in 1/a."""
         a, c, rho = system.reference_radius, system.exterior.sound_speed, system.exterior.density
         walls = tuple(Wall.of(shell) for shell in system.shells if isinstance(shell, Shell))
         if len(walls) != len(system.shells):
@@ -65,7 +67,7 @@ class Assembly:
             else None
             for j, fluid in enumerate(system.fluids)
         )
-        return cls(system, a, a / c, rho * c**2, walls, regions)
+        return cls(system, a, a / c, rho * c**2, walls, regions, wavenumber)
 
     @property
     def saturates(self) -> bool:
@@ -76,7 +78,7 @@ class Assembly:
         """Return the matrices of one order."""
         n = len(self.walls)
         sizes = [0 if region is None else region.radial.nodes.size for region in self.regions]
-        offset = 2 * n + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+        offset = 3 * n + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
         mass, damping, stiffness = (np.zeros((int(offset[-1]),) * 2) for _ in range(3))
         for j, region in enumerate(self.regions):
             if region is not None:
@@ -89,7 +91,7 @@ class Assembly:
         mass, damping, stiffness = matrices
         n, radial, rho = len(self.walls), region.radial, region.density
         mass[rows, rows] = rho * region.slowness**2 * radial.mass
-        stiffness[rows, rows] = rho * (radial.radial + m * m * radial.angular)
+        stiffness[rows, rows] = rho * (radial.radial + m * m * radial.angular + self.wavenumber**2 * radial.mass)
         for i, point, sign in ((j - 1, rows.start, 1), (j, rows.stop - 1, -1)):  # outside of shell j - 1, inside of shell j
             if 0 <= i < n:
                 radius = self.walls[i].radius / self.length
@@ -103,15 +105,28 @@ class Assembly:
     def _shell(self, i: int, m: int, matrices: tuple[FloatArray, FloatArray, FloatArray]) -> None:
         mass, damping, stiffness = matrices
         n, wall = len(self.walls), self.walls[i]
-        at, radius = [i, n + i], wall.radius / self.length
+        at, radius = self.displacements(i), wall.radius / self.length
         mass[at, at] = wall.inertia / (self.system.exterior.density * self.length) * radius
-        stiffness[np.ix_(at, at)] += wall.stiffness(m) * self.length / self.pressure * radius
+        stiffness[np.ix_(at, at)] += wall.stiffness(m, self._per_metre) * self.length / self.pressure * radius
         control = self.system.control
         if control is not None and i in self.system.controlled_shells and not self.saturates:
-            volts = wall.sensor(m) * self.length
+            volts = self.volts(i, m)
             inward = self.inward(i)
             stiffness[n + i, at] -= inward * control.proportional * volts
             damping[n + i, at] -= inward * control.derivative * volts
+
+    @property
+    def _per_metre(self) -> float:
+        return self.wavenumber / self.length
+
+    def displacements(self, i: int) -> list[int]:
+        """Return the places of V, W and U of a shell."""
+        n = len(self.walls)
+        return [i, n + i, 2 * n + i]
+
+    def volts(self, i: int, m: int) -> FloatArray:
+        """Return volts of a shell's sensor per unit (V, W, U)."""
+        return self.walls[i].sensor(m, self._per_metre) * self.length
 
     def inward(self, i: int) -> float:
         """Return the inward load of the actuator on the W equation of a shell per volt, -e32/R times the radius of the row."""

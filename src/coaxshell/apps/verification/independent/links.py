@@ -81,7 +81,7 @@ class Links:
                 for start, (parity, m) in zip(places.starts, places.blocks, strict=True):
                     if parity:
                         raise NotImplementedError("saturation is written for symmetric systems in the independent solver")
-                    p[[start + i, start + places.shells + i]] = wall.sensor(m) * assembly.length * np.cos(m * angle)
+                    p[start + np.array(assembly.displacements(i))] = assembly.volts(i, m) * np.cos(m * angle)
                     b[start + places.shells + i] = inward * (1 if m == 0 else 2) / angles * np.cos(m * angle)
                 self._rows.append((p, b))
                 limits.append(wall.actuator.limit)

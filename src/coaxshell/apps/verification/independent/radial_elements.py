@@ -1,4 +1,7 @@
-"""The independent solver: assemble all orders, integrate by Gauss's method of two stages, read displacement and stress."""
+"""The independent solver: assemble all orders, integrate by Gauss's method of two stages, read displacement and stress.
+
+At an axial wavenumber it gives the amplitudes of one wave along the axis, under true spherical waves from the plane z = 0.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,9 @@ from scipy.sparse.linalg import splu
 from coaxshell.apps.verification.independent.assembly import Assembly
 from coaxshell.apps.verification.independent.incident import incident
 from coaxshell.apps.verification.independent.links import Links, Places, shape
+from coaxshell.apps.verification.independent.sphere import incident_sphere
 from coaxshell.model.absorbers import Absorber
+from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 
@@ -43,11 +48,22 @@ class RadialElements:
         Number of angles in [0, 180) degrees at which a saturating controller's voltage is taken.
     element : float
         Longest radial element, in a.
+    wavenumber : float, optional
+        Axial wavenumber k in 1/a: sources are true spherical waves, and what they make is integrated over z > 0 times cos kz (sin kz
+        for the axial motion), in units of a. Without it, the plane problem.
     """
 
-    def __init__(self, system: System, modes: int, duration: float, angles: int = 0, element: float = ELEMENT) -> None:
-        self.system, self.modes = system, modes
-        self.assembly = Assembly.of(system, duration, element)
+    def __init__(
+        self,
+        system: System,
+        modes: int,
+        duration: float,
+        angles: int = 0,
+        element: float = ELEMENT,
+        wavenumber: float | None = None,
+    ) -> None:
+        self.system, self.modes, self.wavenumber = system, modes, wavenumber
+        self.assembly = Assembly.of(system, duration, element, wavenumber or 0.0)
         absorbers = system.absorber_list
         symmetric = all(s.angle == 0 for s in system.sources) and _layout(absorbers, 1) == _layout(absorbers, -1)
         self.blocks = [(0, m) for m in range(modes + 1)] + ([] if symmetric else [(1, m) for m in range(1, modes + 1)])
@@ -63,7 +79,7 @@ class RadialElements:
         places = Places(self.blocks, self._starts.tolist(), int(sizes[-1]), int(self._m.shape[0]), len(self.assembly.walls))
         self._links = Links(self.assembly, places, angles)
         self.time: npt.NDArray[Any] = np.zeros(1)
-        self.v = self.w = np.zeros((len(self.assembly.walls), len(self.blocks), 1))
+        self.v = self.w = self.u = np.zeros((len(self.assembly.walls), len(self.blocks), 1))
 
     @property
     def size(self) -> int:
@@ -74,26 +90,34 @@ class RadialElements:
         """Return g(t) and its rows: incident pressure on the outer shell, minus its normal velocity into the scattered wave."""
         n, g = len(self.assembly.walls), np.zeros((2, len(self.blocks), len(time)))
         for source, distance in zip(self.system.sources, self.system.source_distances, strict=True):
-            if source.geometry == "line":
-                raise NotImplementedError("the independent solver has no line source")
-            far = None if distance is None else distance / self.assembly.length
             late = np.asarray(time) - source.delay / self.assembly.transit
-            waves = incident(source.pulse, far, range(self.modes + 1), late, self.assembly.transit, self.assembly.pressure)
+            waves = self._incident(source, distance, late)
             for row, (parity, m) in enumerate(self.blocks):
                 turn = shape(parity, m, np.radians(source.angle))
                 for k, wave in enumerate(waves):
                     g[k, row] += turn * wave[m]
         return g.reshape(-1, len(time)), np.concatenate([self._starts + 2 * n - 1, self._starts + self._exterior])
 
+    def _incident(self, source: Source, distance: float | None, time: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return modal pressure and radial velocity of a source about its own axis, each of shape (orders, T)."""
+        units = self.assembly.transit, self.assembly.pressure
+        far = None if distance is None else distance / self.assembly.length
+        if source.geometry == "line" or (far is None and self.wavenumber is not None):
+            raise NotImplementedError(f"the independent solver has no {source.geometry} source here")
+        orders = range(self.modes + 1)
+        if far is None or self.wavenumber is None:
+            return incident(source.pulse, far, orders, time, *units)
+        return incident_sphere(source.pulse, far, self.wavenumber, orders, time, *units)
+
     def solve(self, time_step: float, steps: int) -> Self:
-        """Integrate by Gauss's method of two stages (order 4) and keep V and W of every block: ``v``, ``w`` (shells, blocks, T)."""
+        """Integrate by Gauss's method of two stages (order 4) and keep V, W, U of every block: ``v``, ``w``, ``u`` (shells, blocks, T)."""
         h, n = time_step, len(self.assembly.walls)
         matrix = sp.kron(np.eye(2), self._m) + h * sp.kron(_A, self._c) + h**2 * sp.kron(_SQUARE, self._k)
         factor = splu(sp.csc_matrix(matrix))
         interface = _Interface(self._links, factor, h) if self._links.count else None
         x, v = np.zeros(self.size), np.zeros(self.size)
         self.time = h * np.arange(steps + 1)
-        self.v, self.w = np.zeros((2, n, len(self.blocks), steps + 1))
+        self.v, self.w, self.u = np.zeros((3, n, len(self.blocks), steps + 1))
         load, active = self.load((h * (np.arange(steps)[:, None] + _NODES)).ravel())
         for step in range(steps):
             right = np.zeros((2, self.size))
@@ -106,7 +130,8 @@ class RadialElements:
             x = x + h * v + h**2 * 0.5 * (_A.sum(0) @ stages)
             v = v + h * 0.5 * stages.sum(0)
             for i in range(n):
-                self.v[i, :, step + 1], self.w[i, :, step + 1] = x[self._starts + i], x[self._starts + n + i]
+                for kept, place in zip((self.v, self.w, self.u), self.assembly.displacements(i), strict=True):
+                    kept[i, :, step + 1] = x[self._starts + place]
         return self
 
     def displacement(self, shell: int, degrees: float) -> FloatArray:
