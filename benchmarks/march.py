@@ -11,12 +11,13 @@ import numpy as np
 
 import coaxshell as cx
 from benchmarks.measure import median_seconds
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.interface.linked import solve_linked
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 COUNTS = (1, 25, 300)
 
@@ -44,7 +45,7 @@ class PlainHistorySum:
 
 def prepared() -> StructureSpectra:
     """Return the paper's structure with its feedback, everything linear computed."""
-    structure = StructureSpectra(dimensionless(cx.presets.load("hybrid")), LaplaceGrid(1e-3, 5000), 150)
+    structure = StructureSpectra(dimensionless(cx.presets.load("hybrid")), LaplaceGrid(1e-3, 5000), Modes.up_to(150))
     structure.kernels, structure.linear_velocity, structure.linear_displacement  # noqa: B018 - computed when first asked for
     return structure
 

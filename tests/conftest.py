@@ -11,10 +11,11 @@ from hypothesis import settings
 from scipy.special import gamma
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.apps.verification import bench
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.spectral import LinearSpectra, linear_spectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 # A busy machine must not fail a test: no example has a deadline.
 settings.register_profile("untimed", deadline=None)
@@ -57,11 +58,11 @@ def double(ring: Callable[..., cx.Shell], shock: cx.PlaneShock) -> cx.System:
 
 
 @pytest.fixture(scope="session")
-def spectra() -> Callable[..., LinearSpectra]:
+def spectra() -> Callable[..., StructureSpectra]:
     """Return a function from a system, a grid and the highest order to W and V (shells, parities, M + 1, nodes), dimensionless."""
 
-    def solve(system: cx.System, grid: LaplaceGrid, modes: int) -> LinearSpectra:
-        return linear_spectra(dimensionless(system), grid, modes)
+    def solve(system: cx.System, grid: LaplaceGrid, modes: int) -> StructureSpectra:
+        return StructureSpectra(dimensionless(system), grid, Modes.up_to(modes))
 
     return solve
 

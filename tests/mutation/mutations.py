@@ -282,8 +282,8 @@ MUTATIONS = (
     Mutation(
         "absorber-projection",
         "solver/point_forces.py",
-        "np.where(all_orders(max_order) == 0, 2.0, 1.0)",
-        "np.where(all_orders(max_order) == 0, 1.0, 1.0)",
+        "np.where(modes.orders == 0, 2.0, 1.0)",
+        "np.where(modes.orders == 0, 1.0, 1.0)",
         "projection of absorbers' forces: beta of order 0",
         "solver/test_absorbers.py",
     ),

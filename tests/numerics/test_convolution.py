@@ -7,11 +7,12 @@ import pytest
 from scipy.integrate import quad
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.kernels import exponential_weights, velocity_weights
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 def march(table: KernelTable, inputs: np.ndarray, block: int = 8) -> np.ndarray:
@@ -80,7 +81,7 @@ class TestProductIntegration:
     def error(self, step: float) -> float:
         problem = dimensionless(cx.presets.load("active"))
         grid = LaplaceGrid(step, round(1.6 / step))
-        structure = StructureSpectra(problem, grid, 12)
+        structure = StructureSpectra(problem, grid, Modes.up_to(12))
         weights = velocity_weights(problem, grid, structure.compliance)
         s, width, centre = grid.nodes, 0.06, 0.5
         history = np.exp(-(((grid.time - centre) / width) ** 2) / 2)
@@ -102,7 +103,7 @@ def test_weights_cannot_make_energy() -> None:
     # The symbol of a passive shell's own weights has a positive real part at every frequency.
     problem = dimensionless(cx.presets.load("bare"))
     grid = LaplaceGrid(5e-3, 400)
-    weights = velocity_weights(problem, grid, StructureSpectra(problem, grid, 20).compliance)
+    weights = velocity_weights(problem, grid, StructureSpectra(problem, grid, Modes.up_to(20)).compliance)
     for i in (0, 1):
         damped = weights[i, i] * np.exp(-grid.shift * grid.time)
         symbol = np.fft.rfft(damped, 4 * grid.time.size, axis=-1).real

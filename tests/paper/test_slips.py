@@ -17,10 +17,9 @@ from coaxshell.apps.paper.slips.waves import PrintedPotential
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import Prepared
 from coaxshell.solver.coupling import ModalSystem
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.spectral import linear_spectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 TINY = Settings(duration=2.5, time_step=1e-2, modes=16)
 BARE = cx.presets.load("bare")
@@ -87,13 +86,13 @@ def test_an_absorber_without_projection_is_one_whose_force_is_larger():
     system = BARE.replace(absorbers=[cx.Absorber(angle=0, mass=10, linear_stiffness=1e9, damping=1e4)])
     response = simulate(system, TINY, frozenset({"missing-projection"}))
     problem, grid = dimensionless(system), LaplaceGrid(TINY.time_step, 250)
-    structure = StructureSpectra(problem, grid, TINY.modes)
+    structure = StructureSpectra(problem, grid, Modes.up_to(TINY.modes))
     scales, s = problem.scales, grid.nodes
     law = (1e9 + 1e4 * s / scales.time) / scales.pressure
     mass = 10.0 * scales.velocity**2 / (scales.pressure * scales.length**2) * s**2
     share = law / (mass + 2 * law)
     own, other = law - law * share, -law * share
-    bare = structure.linear.normal[:, 0]
+    bare = structure.normal[:, 0]
     at = bare.sum(axis=1)  # cos(m 0) = 1
     receptance = structure.compliance.sum(axis=2) / np.array([shell.radius for shell in problem.shells])[None, :, None]
     forces = np.empty((2, s.size), np.complex128)
@@ -169,7 +168,7 @@ def test_massless_shells_move_as_the_wave_but_for_the_radius_factor():
     for slips, factor in ((frozenset(), 1.0), (frozenset({"radius-factor"}), 4.0)):
         problem = slipped(system, slips)
         pulse = 2.5e4 / problem.scales.pressure / (s + problem.scales.time / 1.314e-4)
-        moved = linear_spectra(problem, grid, 12).normal[:, 0] / pulse
+        moved = StructureSpectra(problem, grid, Modes.up_to(12)).normal[:, 0] / pulse
         np.testing.assert_allclose(moved[0], factor * inner, rtol=0, atol=1e-12 * abs(inner).max())
         np.testing.assert_allclose(moved[1], outer, rtol=0, atol=1e-12 * abs(outer).max())
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response import Response
@@ -18,9 +19,9 @@ from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.link_motion import marched_motion
 from coaxshell.solver.interface.march import march
 from coaxshell.solver.interface.newton import ConvergenceError, ImplicitStep
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 from coaxshell.studies.reading import MetricSource
 
 pytestmark = pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
@@ -116,4 +117,4 @@ def test_only_what_is_there_is_called_too_stiff_for_the_step(preset: str, blamed
     problem = dimensionless(found)
     links = absorber_set(problem, found.absorber_list, 1)
     with pytest.raises(InputError, match=f"too coarse for the {blamed}: their forces"):
-        march(StructureSpectra(problem, LaplaceGrid(0.02, 20), 3), links, saturate=True)
+        march(StructureSpectra(problem, LaplaceGrid(0.02, 20), Modes.up_to(3)), links, saturate=True)

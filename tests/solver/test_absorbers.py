@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.interface.linked import solve_linked
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 SETTINGS = {"duration": 1.5, "time_step": 5e-3, "modes": 20}
 CUBIC = {"mass": 10, "damping": 2e5, "linear_stiffness": 1e9, "cubic_stiffness": 1e22}
@@ -64,7 +65,7 @@ def test_evaluation_and_projection_are_adjoint() -> None:
     # The power of the forces at the points is that of their modal pressures: sum f w = sum over modes of beta pi R p W.
     problem = dimensionless(BARE)
     links = absorber_set(problem, tuple(cx.Absorber(angle=angle, **CUBIC) for angle in (10, 70, 200)), 1)
-    points = InterfacePoints(problem, links, 7)
+    points = InterfacePoints(problem, links, Modes.up_to(7))
     random = np.random.default_rng(0)
     force, modal = random.normal(size=6), random.normal(size=(2, 2, 8))
     weight = np.pi * np.array([0.5, 1.0])[:, None, None] * np.where(np.arange(8) == 0, 2.0, 1.0)
@@ -97,7 +98,7 @@ def test_a_ring_keeps_mirror_symmetry(count: int, law: dict[str, float]) -> None
 @pytest.mark.parametrize("law", [LINEAR, CUBIC], ids=["linear", "cubic"])
 def test_both_halves_give_the_same_to_rounding(law: dict[str, float]) -> None:
     problem = dimensionless(BARE)
-    structure = StructureSpectra(problem, LaplaceGrid(5e-3, 200), 20)
+    structure = StructureSpectra(problem, LaplaceGrid(5e-3, 200), Modes.up_to(20))
     absorbers = cx.absorber_ring(6, **law).absorbers
     folded = solve_linked(structure, absorber_set(problem, absorbers, 1))
     whole = solve_linked(structure, absorber_set(problem, absorbers, 2))
@@ -124,7 +125,7 @@ def test_turning_everything_turns_the_answer(turn: float) -> None:
 def test_one_absorber_in_a_cosine_series_stands_for_two_of_half_strength(law: dict[str, float]) -> None:
     # The paper's Fig. 8 (theory manual, slips): one absorber off the axis in a cosine-only series.
     problem = dimensionless(BARE)
-    structure = StructureSpectra(problem, LaplaceGrid(5e-3, 200), 20)
+    structure = StructureSpectra(problem, LaplaceGrid(5e-3, 200), Modes.up_to(20))
     full = absorber_set(problem, (cx.Absorber(angle=40, **law),), 1)
     cosine_only = replace(full, parities=1)
     half = {name: value / 2 for name, value in law.items()}

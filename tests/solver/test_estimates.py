@@ -7,7 +7,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.response.synthesis import mean_square
-from coaxshell.solver import estimates, prepared
+from coaxshell.solver import estimates, structure_spectra
 
 STEP = {"duration": 3.0, "time_step": 2e-3}
 MANY = 600
@@ -225,7 +225,7 @@ def test_weights_of_membranes_that_the_step_does_not_resolve_are_told(monkeypatc
     monkeypatch.setattr(estimates, "membrane_error", lambda *given: told.append(membrane_error(*given)) or told[-1])
     found = cx.simulate(system, **settings)
     assert told[0].max() > 1e-4
-    monkeypatch.setattr(prepared, "unresolved_orders", lambda problem, grid, order: np.zeros(order + 1, bool))
+    monkeypatch.setattr(structure_spectra, "unresolved_orders", lambda problem, grid, order: np.zeros(order + 1, bool))
     without = cx.simulate(system, **settings)
     within(told[0], true_error(without, found), 0.8, 1.3)
     assert np.all(found.estimates.march > 1.9 * told[0])

@@ -13,8 +13,8 @@ from coaxshell.errors import InputError
 from coaxshell.model import presets
 from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.response import Response
-from coaxshell.solver import prepared
 from coaxshell.solver.interface import linked
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 COARSE: dict[str, Any] = {"duration": 2.0, "time_step": 1e-2, "modes": 12}
 
@@ -61,41 +61,44 @@ def test_no_array_of_a_solution_passes(response: Response, name: str, place: str
         Response(replace(response.solution, **{name: values}))
 
 
-def _poisoned(function: Any, name: str, index: tuple[int, ...]) -> Any:
-    def made(*given: Any, **options: Any) -> Any:
-        found = function(*given, **options)
-        getattr(found, name)[index] = np.nan
-        return found
-
-    return made
-
-
 @pytest.mark.parametrize(
-    ("where", "function", "name", "index", "told"),
+    ("name", "index", "told"),
     [
         (
-            prepared,
-            "linear_spectra",
             "normal",
             (1, 0, 4, 9),
             "source: the answer of shells and fluids to the source is nan.* shell 1, half 0, order 4, freq",
         ),
         (
-            prepared,
-            "linear_spectra",
             "compliance",
             (0, 1, 2, 9),
             "shells: the answer of .* to forces is nan.* answering shell 0, loaded shell 1, order 2",
         ),
-        (linked, "march", "force", (3, 77), r"absorbers: the force of the absorbers is nan first at absorber \d+, side \d, t = 0.77"),
     ],
 )
-def test_the_stage_is_named(
-    where: Any, function: str, name: str, index: tuple[int, ...], told: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made = _poisoned(getattr(where, function), name, index)
-    monkeypatch.setattr(where, function, made)
+def test_the_stage_is_named(name: str, index: tuple[int, ...], told: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = getattr(StructureSpectra, name)
+
+    def poisoned(structure: StructureSpectra) -> np.ndarray:
+        found = made.fget(structure)
+        found[index] = np.nan
+        return found
+
+    monkeypatch.setattr(StructureSpectra, name, property(poisoned))
     with pytest.raises(InputError, match=told):
+        cx.simulate(presets.load("hybrid"), **COARSE)
+
+
+def test_a_march_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    march = linked.march
+
+    def poisoned(*given: Any, **options: Any) -> Any:
+        found = march(*given, **options)
+        found.force[3, 77] = np.nan
+        return found
+
+    monkeypatch.setattr(linked, "march", poisoned)
+    with pytest.raises(InputError, match=r"absorbers: the force of the absorbers is nan first at absorber \d+, side \d, t = 0.77"):
         cx.simulate(presets.load("hybrid"), **COARSE)
 
 

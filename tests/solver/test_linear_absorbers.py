@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.interface.linear import admittance, solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 PAPERS = {"mass": 10, "damping": 1e6, "linear_stiffness": 1e9}
 SETTINGS = {"duration": 1.0, "time_step": 1e-2, "modes": 12}
@@ -19,7 +20,7 @@ SETTINGS = {"duration": 1.0, "time_step": 1e-2, "modes": 12}
 
 @pytest.fixture(scope="module")
 def structure() -> StructureSpectra:
-    return StructureSpectra(dimensionless(cx.presets.load("bare")), LaplaceGrid(1e-2, 100), 12)
+    return StructureSpectra(dimensionless(cx.presets.load("bare")), LaplaceGrid(1e-2, 100), Modes.up_to(12))
 
 
 @pytest.mark.parametrize("offset", [0.0, 7.3])
@@ -28,7 +29,7 @@ def test_a_ring_equals_any_layout(structure: StructureSpectra, count: int, offse
     links = absorber_set(structure.problem, cx.absorber_ring(count, offset=offset, **PAPERS).absorbers, 1)
     assert is_ring(links)
     by_symmetry = solve_ring(structure, links)
-    in_general = solve_linear(structure, links, InterfacePoints(structure.problem, links, structure.max_order))
+    in_general = solve_linear(structure, links, InterfacePoints(structure.problem, links, structure.modes))
     for name in ("force", "mass_displacement", "modal_pressure"):
         found, expected = getattr(by_symmetry, name), getattr(in_general, name)
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * abs(expected).max(), err_msg=name)

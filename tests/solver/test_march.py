@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.interface.linked import AbsorberSolution, solve_linked
@@ -16,8 +17,8 @@ from coaxshell.solver.interface.march import MarchResult, march, march_block
 from coaxshell.solver.interface.plan import march_plan, motion_without
 from coaxshell.solver.interface.saturation import circle, voltage_limit
 from coaxshell.solver.interface.state import MarchState
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 PAPERS = {"mass": 10, "damping": 1e6, "linear_stiffness": 1e9}
 
@@ -29,7 +30,7 @@ def relative(found: object, expected: object) -> float:
 
 def strain(structure: StructureSpectra, linked: AbsorberSolution) -> np.ndarray:
     """Return m V - W of every mode in time, which the stress is proportional to."""
-    orders = np.arange(structure.max_order + 1)[:, None]
+    orders = np.arange(structure.modes.count)[:, None]
     return structure.grid.invert(orders * linked.tangential - linked.normal)
 
 
@@ -42,7 +43,7 @@ class TestOrderOfLinearAbsorbers:
     @staticmethod
     def error(step: float) -> float:
         problem = dimensionless(cx.presets.load("bare").replace(absorbers=cx.absorber_ring(5, **PAPERS)))
-        structure = StructureSpectra(problem, LaplaceGrid(step, round(2.0 / step)), 40)
+        structure = StructureSpectra(problem, LaplaceGrid(step, round(2.0 / step)), Modes.up_to(40))
         links = absorber_set(problem, problem.system.absorber_list, 1)
         marched = strain(structure, solve_linked(structure, links, exact=False))
         exact = strain(structure, solve_linked(structure, links, exact=True))
@@ -179,7 +180,7 @@ class TestDiscreteLaws:
         ring = cx.absorber_ring(7, **PAPERS, cubic_stiffness=cubic)
         problem = dimensionless(hybrid.replace(control=control, source=shock, absorbers=ring))
         grid = LaplaceGrid(4e-3, 150)
-        structure = StructureSpectra(problem, grid, 30)
+        structure = StructureSpectra(problem, grid, Modes.up_to(30))
         links = absorber_set(problem, problem.system.absorber_list, 1 if angle == 0.0 else 2)
         found = march(structure, links, saturate=True)
         answers = self.answers(structure, found.modal_pressure)
@@ -187,7 +188,7 @@ class TestDiscreteLaws:
         self.check_links(structure.open_loop, links, found, answers[:2])
 
     def check_actuators(self, structure: StructureSpectra, links: AbsorberSet, found: MarchResult, asked: np.ndarray) -> None:
-        evaluate, project = circle(structure.max_order + 1, links.parities)
+        evaluate, project = circle(structure.modes.count, links.parities)
         linear = structure.voltage_without_actuators
         asked[:, : linear.shape[1]] += linear
         assert found.saturated
@@ -201,7 +202,7 @@ class TestDiscreteLaws:
             np.testing.assert_allclose(given[:, 1:], expected[:, 1:], rtol=0, atol=1e-9 * abs(given).max())
 
     def check_links(self, structure: StructureSpectra, links: AbsorberSet, found: MarchResult, velocity: np.ndarray) -> None:
-        points, n = InterfacePoints(structure.problem, links, structure.max_order), links.count
+        points, n = InterfacePoints(structure.problem, links, structure.modes), links.count
         half = 0.5 * structure.grid.time_step
         v, pull = points.evaluate(velocity), found.force[:n] + found.force[n:]
         w, u = np.zeros_like(v), np.zeros_like(pull)
@@ -226,7 +227,7 @@ CONTINUED = {
 def test_a_march_stopped_at_any_block_goes_on_to_the_same_bits(name: str, tmp_path: Path) -> None:
     preset, changes, saturate, relaxing = CONTINUED[name]
     problem = dimensionless(cx.presets.load(preset).with_overrides(changes))
-    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 130), 16)
+    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 130), Modes.up_to(16))
     links = absorber_set(problem, problem.system.absorber_list, 1)
     plan = march_plan(structure, links, saturate=saturate)
     motion = motion_without(structure, links, plan)
@@ -252,7 +253,7 @@ def test_a_march_stopped_at_any_block_goes_on_to_the_same_bits(name: str, tmp_pa
 
 def test_linear_absorbers_are_marched_only_when_asked() -> None:
     problem = dimensionless(cx.presets.load("absorbers").replace(absorbers=cx.absorber_ring(5, **PAPERS)))
-    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 100), 10)
+    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 100), Modes.up_to(10))
     links = absorber_set(problem, problem.system.absorber_list, 1)
     assert solve_linked(structure, links).iterations == 0
     assert solve_linked(structure, links, exact=False).iterations >= 100

@@ -84,7 +84,7 @@ def answers(prepared: Prepared) -> tuple[np.ndarray, np.ndarray]:
     inner, outer = (wall.mass * s**2 + wall.damper * s + wall.spring for wall in WALLS)
     outside = 1.0 / (outer - s * kv(m, s) / kvp(m, s))
     rigid = replace(prepared.problem, shells=tuple(replace(wall, spring=1e15) for wall in WALLS))
-    load = 1e15 * Prepared(rigid, prepared.settings).structure.linear.normal[1, 0]  # on a wall that hardly gives way
+    load = 1e15 * Prepared(rigid, prepared.settings).structure.normal[1, 0]  # on a wall that hardly gives way
     return np.stack([np.broadcast_to(1.0 / inner, outside.shape), outside]), outside * load
 
 

@@ -126,7 +126,7 @@ def test_sources_share_the_answers_to_forces() -> None:
     other = prepared.retuned(CHANGES["two sources"](ACTIVE))
     assert other.structure.compliance is prepared.structure.compliance
     assert other.structure.kernels is prepared.structure.kernels
-    assert prepared.retuned(CHANGES["gains"](ACTIVE)).structure.forced is not prepared.structure.forced
+    assert prepared.retuned(CHANGES["gains"](ACTIVE)).structure.units is not prepared.structure.units
 
 
 def test_unstable_gains_are_refused_and_do_no_harm() -> None:

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import step_error
 from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.interface.march import march
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 ABSORBERS = [
     cx.Absorber(angle=angle, mass=10, damping=1e5, linear_stiffness=1e9, cubic_stiffness=1e20, inner_shell=inner)
@@ -24,7 +25,7 @@ def structure() -> StructureSpectra:
     bare = cx.presets.load("bare")
     shells = [bare.shells[0].replace(radius=0.4), *bare.shells]
     system = bare.replace(shells=shells, fluids=[bare.fluids[0], *bare.fluids], absorbers=ABSORBERS)
-    return StructureSpectra(dimensionless(system), LaplaceGrid(5e-3, 203), 12)
+    return StructureSpectra(dimensionless(system), LaplaceGrid(5e-3, 203), Modes.up_to(12))
 
 
 @pytest.mark.parametrize("every", [2, 4, 8])
@@ -45,14 +46,14 @@ def test_points_alone_move_as_they_do_with_the_shells(structure: StructureSpectr
     monkeypatch.setattr(step_error, "_MANY", 0)
     together = step_error.CoarserStructure(structure, 4, False, links)
     assert alone.kernels.shape[2] == 1
-    assert together.kernels.shape[2] == structure.max_order + 1
+    assert together.kernels.shape[2] == structure.modes.count
     found, expected = (march(seen, links).force for seen in (alone, together))
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
 
 
 def test_kernels_between_points_are_their_receptance(structure: StructureSpectra) -> None:
     links = absorber_set(structure.problem, tuple(ABSORBERS), 1)
-    points = InterfacePoints(structure.problem, links, structure.max_order)
+    points = InterfacePoints(structure.problem, links, structure.modes)
     nodes = structure.compliance[..., ::50]
     found = points.between(nodes)
     np.testing.assert_allclose(np.moveaxis(found, -1, 0), points.receptance(nodes), rtol=0, atol=1e-13 * np.abs(found).max())

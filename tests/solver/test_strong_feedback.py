@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.kernels import trapezoidal_sums
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solve import solve
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 ACTIVE = cx.presets.load("active")
 ONE = ACTIVE.replace(shells=ACTIVE.shells[1:], fluids=["air", "water-1400"])
@@ -57,7 +58,7 @@ def test_trapezoidal_sums_are_the_rule_step_by_step() -> None:
 def test_the_recursion_of_no_order_grows(step: float) -> None:
     """Where the step does not resolve an order either: (1 - A b_0) u_n = known + A sum b_l u_{n-l} does not grow."""
     problem = dimensionless(saturating(ACTIVE, -2e6, 0.0, 1.0))
-    structure = StructureSpectra(problem, LaplaceGrid(step, 100), 150)
+    structure = StructureSpectra(problem, LaplaceGrid(step, 100), Modes.up_to(150))
     weights = structure.kernels_with_voltage.kernels[2:]
     for shell in (0, 1):
         own = problem.shells[shell].actuator_pressure * weights[shell, shell]

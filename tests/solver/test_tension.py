@@ -27,7 +27,7 @@ def test_pressures_on_the_walls_are_those_of_the_field(name: str) -> None:
     angles = np.array([0.0, 70.0, 180.0])
     cosines = np.cos(np.radians(angles)[:, None] * np.arange(25.0))
     time = response.time[::5]
-    for region, shell, spectra in wall_pressures(found.problem, grid, structure.linear.normal):
+    for region, shell, spectra in wall_pressures(found.problem, grid, structure.normal):
         radius = found.problem.shells[shell].radius * (1 + 1e-9 * (1 if region > shell else -1))
         ours = found.problem.scales.pressure * cosines @ grid.invert(spectra, window)[0][:, ::5]
         theirs = response.pressure(radius=radius, angle=angles, time=time, front="matched").values.reshape(len(time), -1).T
@@ -51,12 +51,12 @@ def test_a_loud_shock_tears_the_water_and_says_so() -> None:
 def test_nothing_is_computed_for_faint_shocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("coaxshell.solver.tension.wall_pressures", lambda *_: pytest.fail("pressures were computed"))
     faint = prepared("iakovlev-evacuated", {"source.peak_pressure": f"{HARMLESS * AMBIENT} Pa"})
-    assert tensions(faint.problem, faint.structure.grid, faint.structure.linear.normal) == []
+    assert tensions(faint.problem, faint.structure.grid, faint.structure.normal) == []
 
 
 def test_tension_scales_with_the_shock_and_lies_where_it_is_told() -> None:
     loud, louder = (prepared("bare", {"source.peak_pressure": p}) for p in ("5 MPa", "10 MPa"))
-    first, second = (tensions(each.problem, each.structure.grid, each.structure.linear.normal) for each in (loud, louder))
+    first, second = (tensions(each.problem, each.structure.grid, each.structure.normal) for each in (loud, louder))
     assert {(low.region, low.shell) for low in first} <= {(low.region, low.shell) for low in second}
     for low in first:
         same = next(other for other in second if (other.region, other.shell) == (low.region, low.shell))
@@ -71,7 +71,7 @@ def test_rigid_and_evacuated_systems_are_looked_at_too() -> None:
     source = cx.PlaneWave(pulse=cx.Gaussian(peak_pressure=-3e5, width="0.1 ms"))
     rigid = cx.System(shells=[cx.RigidShell(radius=1.0)], fluids=["vacuum", "freshwater"], source=source)
     found = Prepared(rigid, Settings(duration=3.0, time_step=0.01, modes=12))
-    (low,) = tensions(found.problem, found.structure.grid, found.structure.linear.normal)
+    (low,) = tensions(found.problem, found.structure.grid, found.structure.normal)
     assert low.angle < 15
     assert -6.6e5 < low.pressure < -4e5  # nearly doubled where it falls in squarely
 
@@ -115,7 +115,7 @@ def test_the_direct_engine_finds_what_the_spectral_one_finds(name: str) -> None:
 
 def test_a_motion_that_is_cut_off_ends_in_no_pressure_of_its_own() -> None:
     found = prepared("bare", LOUD)
-    grid, normal = found.structure.grid, found.structure.linear.normal
+    grid, normal = found.structure.grid, found.structure.normal
     window = np.exp(-20.0 * np.linspace(0.0, 1.0, grid.nodes.size) ** 4)
     again = spectra_of_motion(grid, grid.invert(normal))
     pressures = zip(wall_pressures(found.problem, grid, again), wall_pressures(found.problem, grid, normal), strict=True)

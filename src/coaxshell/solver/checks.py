@@ -22,10 +22,10 @@ from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linked import AbsorberSolution
 from coaxshell.solver.interface.saturation import voltage_limit
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
+from coaxshell.solver.structure_spectra import StructureSpectra
 from coaxshell.solver.tension import AMBIENT, Tension
 
 TRUNCATION_LIMIT = 1e-2
@@ -89,7 +89,7 @@ def absorbers(structure: StructureSpectra, links: AbsorberSet, linked: AbsorberS
     if linked.iterations == 0 or links.count == 0:
         return []  # solved exactly, or none
     step = structure.grid.time_step
-    points = InterfacePoints(structure.problem, links, structure.max_order)
+    points = InterfacePoints(structure.problem, links, structure.modes)
     local = 2.0 / step * np.diag(points.immediate(structure.kernels.present)).reshape(2, links.count).max(axis=0)
     force = np.abs(linked.force).max(axis=(1, 2))
     peak = np.zeros(links.count)

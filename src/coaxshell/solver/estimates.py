@@ -16,10 +16,9 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
-from coaxshell.solver.prepared import StructureSpectra
-from coaxshell.solver.sampled_orders import SampledOrders
 from coaxshell.solver.solution import Estimates
 from coaxshell.solver.step_error import band_limit, march_error, membrane_error
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 ORDERS_FACTOR = 2.0
 STEP_FACTOR = 2.0
@@ -27,7 +26,6 @@ STEP_FACTOR = 2.0
 
 def estimated_errors(
     structure: StructureSpectra,
-    above: SampledOrders,
     spectra: tuple[ComplexArray, ComplexArray],
     histories: tuple[FloatArray, FloatArray],
     step: float,
@@ -39,15 +37,13 @@ def estimated_errors(
     ----------
     structure : StructureSpectra
         Without feedback where saturating actuators acted as forces.
-    above : SampledOrders
-        Orders above M.
     spectra, histories : pair of ndarray
         W and V at all nodes of the grid, and at instants ``step`` apart.
     interface : Interface, optional
     """
     grid = structure.grid
     whole = surface_norms(*histories) * (step / grid.time_step)
-    orders = ORDERS_FACTOR * left_out(structure, above, spectra, whole * grid.time_step, interface)
+    orders = ORDERS_FACTOR * left_out(structure, spectra, whole * grid.time_step, interface)
     march = np.zeros_like(orders)
     if interface is not None and interface.marched:
         total = whole.sum(axis=-1)

@@ -12,8 +12,8 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.finite import Array, first_bad
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.linked import AbsorberSolution
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 FINER = "use a smaller time_step or fewer modes"
 
@@ -80,7 +80,7 @@ def require_finite_stages(structure: StructureSpectra, linked: AbsorberSolution 
     What the earlier stages left is looked through only once their result has been found wanting.
     """
     if linked is None:
-        results: list[Array] = [structure.linear.normal, structure.linear.tangential]
+        results: list[Array] = [structure.normal, structure.tangential]
     else:
         results = [linked.normal, linked.tangential, linked.force, linked.displacement]
         results += [] if linked.actuation is None else [linked.actuation]
@@ -96,16 +96,16 @@ def _stages(structure: StructureSpectra, linked: AbsorberSolution | None) -> Ite
     """Yield what the stages made, in their order."""
     pair, shells = ("answering shell", "loaded shell", "order"), ("shell", "half", "order")
     extreme = "look for a layer, fluid or gap of extreme size, density or stiffness"
-    for parts in (structure.forced, structure.forced.open_loop):
+    for parts in (structure.units, structure.units.open_loop):
         if parts is not None and parts.compliance is not None:
             yield Stage("shells", "the answer of shells and fluids to forces", parts.compliance, pair, False, extreme)
     source = "look for a source extremely near or far, an extreme pulse, or extreme layers and fluids"
-    yield Stage("source", "the answer of shells and fluids to the source", structure.linear.normal, shells, False, source)
-    yield Stage("source", "the answer of shells and fluids to the source", structure.linear.tangential, shells, False, source)
-    if structure.forced.kernels is not None:
-        yield Stage("time_step", "the kernels of the interface march", structure.forced.kernels.kernels, pair, True, FINER)
-    if structure.forced.kernels_with_voltage is not None:
-        voltage = structure.forced.kernels_with_voltage.kernels
+    yield Stage("source", "the answer of shells and fluids to the source", structure.normal, shells, False, source)
+    yield Stage("source", "the answer of shells and fluids to the source", structure.tangential, shells, False, source)
+    if structure.units.kernels is not None:
+        yield Stage("time_step", "the kernels of the interface march", structure.units.kernels.kernels, pair, True, FINER)
+    if structure.units.kernels_with_voltage is not None:
+        voltage = structure.units.kernels_with_voltage.kernels
         yield Stage("control", "the kernels of the voltages asked for", voltage, pair, True, f"{FINER}, or lower the gains")
     if linked is not None:
         softer = f"{FINER}, or softer, less damped absorbers"

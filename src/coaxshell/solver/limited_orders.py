@@ -20,9 +20,9 @@ from scipy import special
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.saturation import circle, voltage_limit
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import NODES, SampledOrders
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 _INSTANTS = 256
 _UNLIKELY = 4.0
@@ -187,7 +187,7 @@ def moved_below(structure: StructureSpectra, asked: dict[int, FloatArray], actua
 
     ``asked`` is that of :func:`asked_above`: what spreads has its spectrum.
     """
-    m = np.arange(structure.max_order + 1)
+    m = np.arange(structure.modes.count)
     compliance, ratio = structure.compliance[..., NODES], structure.tangential_ratio[..., NODES]
     pressure = np.stack([transformed(structure.grid, one.kept) for one in actuators])
     chosen = [one.shell for one in actuators]

@@ -20,11 +20,10 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
-from coaxshell.solver.interface.linear import admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
 from coaxshell.solver.limited_orders import actuators_of, asked_above, moved_above, moved_below, softened
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 REST = 1e-7
 """A shell that moves less than this times the one that moves most has not been reached: what it shows is rounding."""
@@ -153,7 +152,7 @@ def _against(
 ) -> ComplexArray:
     """Return what :func:`forces_against` does at a few nodes."""
     count = links.count
-    points = InterfacePoints(structure.problem, links, structure.max_order)
+    points = InterfacePoints(structure.problem, links, structure.modes)
     receptance = np.ascontiguousarray(np.moveaxis(points.between(compliance), -1, 0))
     sides, index = np.stack([links.inner_shell, links.inner_shell + 1]), np.arange(count)
     for a in (0, 1):
@@ -171,14 +170,14 @@ def _against(
 
 def _mean_mobility(structure: StructureSpectra, which: slice) -> ComplexArray:
     """Return the mobility of a point by the orders kept, shape (shells, shells, nodes)."""
-    problem, share = structure.problem, np.where(np.arange(structure.max_order + 1) == 0, 0.5, 1.0)
+    problem, share = structure.problem, np.where(np.arange(structure.modes.count) == 0, 0.5, 1.0)
     radius = np.pi * np.array([shell.radius for shell in problem.shells])
     return np.asarray(np.einsum("ijmk,m->ijk", structure.compliance[..., which], share) / radius[:, None])
 
 
 def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArray) -> FloatArray:
     """Return the norms (shells, 2, M + 1) of what line forces (2, N, nodes) at the sampled nodes move in the orders kept."""
-    pressure = InterfacePoints(structure.problem, links, structure.max_order).project(force.reshape(2 * links.count, -1))
+    pressure = InterfacePoints(structure.problem, links, structure.modes).project(force.reshape(2 * links.count, -1))
     compliance, ratio = structure.compliance[..., NODES], structure.tangential_ratio[..., NODES]
     normal = np.einsum("ijmk,jhmk->ihmk", compliance, pressure)
     return surface_norms(normal, ratio[:, None] * normal)
@@ -186,7 +185,6 @@ def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArra
 
 def left_out(
     structure: StructureSpectra,
-    above: SampledOrders,
     spectra: tuple[ComplexArray, ComplexArray],
     whole: FloatArray,
     interface: Interface | None = None,
@@ -196,8 +194,7 @@ def left_out(
     Parameters
     ----------
     structure : StructureSpectra
-    above : SampledOrders
-        Of orders above M.
+        Without feedback where saturating actuators acted as forces.
     spectra : pair of ndarray
         W and V of the run.
     whole : ndarray, shape (shells, 2, M + 1)
@@ -205,6 +202,7 @@ def left_out(
     interface : Interface, optional
     """
     grid = structure.grid
+    above = structure.orders_above if interface is None or interface.saturating is None else interface.saturating.orders_above
     along = surface_norms(*(x[..., NODES] for x in spectra))
     lasting = persistence(grid, whole, along)
     high = slice(-max(1, whole.shape[-1] // 3), None)

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.actuation import pressure_given
@@ -22,10 +23,10 @@ from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
 from coaxshell.solver.interface.linked import AbsorberSolution, modal_pressure_of, solve_linked
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import ROOM
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 @dataclass(frozen=True)
@@ -116,11 +117,11 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
     problem = solution.problem
     grid = LaplaceGrid(solution.settings.time_step / refinement, (solution.time.size - 1) * refinement)
     known = next((one for one in _last if one.solution() is solution), None)
-    structure = StructureSpectra(problem, grid, modes) if known is None else known.structure
+    structure = StructureSpectra(problem, grid, Modes.up_to(modes)) if known is None else known.structure
     links = absorber_set(problem, problem.system.absorber_list, source_parities(problem.system.sources))
     linked = _linked(structure, links, solution, None if known is None else known.linked, continued)
     if linked is None:
-        return SolvedSpectra(problem, grid, modes, structure.linear.normal, structure.linear.tangential, refinement=refinement)
+        return SolvedSpectra(problem, grid, modes, structure.normal, structure.tangential, refinement=refinement)
     motion: LinkMotion | None = None
     if linked.exact is not None:
         motion = exact_motion(links, grid, *linked.exact)

@@ -17,8 +17,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
-from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.interface.linear import admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
 from coaxshell.solver.shared_parts import SharedParts

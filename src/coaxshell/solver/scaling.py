@@ -88,7 +88,7 @@ class Problem:
     sources : tuple of SourceGeometry
         Where the system's sources are, one each.
     point_force_shares : callable
-        From absorbers and M to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
+        From absorbers and modes to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
     """
 
     system: System

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
@@ -22,14 +23,13 @@ from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linked import AbsorberSolution, interface_of, solve_linked
 from coaxshell.solver.mode_choice import resolve_modes
-from coaxshell.solver.prepared import StructureSpectra
-from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts, shared_parts
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.structure_spectra import StructureSpectra
 from coaxshell.solver.tension import tensions
 
 
@@ -89,7 +89,6 @@ class Prepared:
         if settings.engine != "spectral":
             raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
         self._stopwatch, self._notes = Stopwatch(), list[str]()
-        self._orders_above: SampledOrders | None = None
         self._progress, self._shared, self._asked = progress, shared, settings
         self.problem = system if isinstance(system, Problem) else dimensionless(system)
         require_dimensions(self.problem.system, settings)
@@ -102,27 +101,27 @@ class Prepared:
         self.settings: Settings = replace(settings, modes=order)
         if settings.modes == "auto":
             require_room(self.problem, self.settings, retunable=shared is not None)
-        forced = like.structure.forced if like is not None and like.same_structure(self.problem, order) else None
-        if forced is None:
+        units = like.structure.units if like is not None and like.same_structure(self.problem, order) else None
+        if units is None:
             require_stable(self.problem, order, settings.duration, shared)
             self._stopwatch.lap("stability of the feedback")
-        self.structure: StructureSpectra = StructureSpectra(self.problem, grid, order, progress, shared=shared, forced=forced)
+        self.structure: StructureSpectra = StructureSpectra(self.problem, grid, Modes.up_to(order), progress, shared=shared, units=units)
 
     def _adopt(self, like: Prepared) -> None:
         """Take over everything from one that differs at most in its absorbers."""
         self.settings, self.structure = like.settings, like.structure
-        self._notes, self._orders_above = like._notes, like._orders_above
+        self._notes = like._notes
 
     def same_structure(self, problem: Problem, max_order: int) -> bool:
         """Return whether a problem differs at most in its sources, absorbers and field limits."""
         own = self.problem
         same = all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "point_force_shares"))
-        return same and max_order == self.structure.max_order
+        return same and max_order == self.structure.modes.max_order
 
     def differs_by_absorbers(self, problem: Problem) -> bool:
         """Return whether a problem differs at most in its absorbers."""
         same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
-        return same and problem.sources == self.problem.sources and self.same_structure(problem, self.structure.max_order)
+        return same and problem.sources == self.problem.sources and self.same_structure(problem, self.structure.modes.max_order)
 
     def retuned(self, system: System | Problem) -> Prepared:
         """Return what is prepared for a changed system, sharing what is unchanged; the first call makes what later ones share.
@@ -141,15 +140,6 @@ class Prepared:
         self._notes += notes
         self._stopwatch.lap("choosing the number of modes")
         return order
-
-    @property
-    def _above(self) -> SampledOrders:
-        """The orders above M, whatever the absorbers."""
-        if self._orders_above is None:
-            self._orders_above = SampledOrders.of(
-                self.problem, self.structure.grid, orders_above(self.problem, self.structure.max_order + 1), self._shared
-            )
-        return self._orders_above
 
     def solve(self, absorbers: Iterable[Absorber] | AbsorberRing | None = None, progress: Progress | None = None) -> ModalSolution:
         """Return the modal histories with the given absorbers; with the system's own if None.
@@ -176,7 +166,7 @@ class Prepared:
         saturate = system.control is not None and system.control.saturation
         if system.absorber_list or saturate:
             passive = structure.open_loop if saturate else structure
-            passive.unit_pressures()  # one pass for the sources and for them
+            passive.solve(units=True)
             stopwatch.lap("modal system at all Laplace nodes")
             links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
             linked = solve_linked(structure, links, progress, saturate=saturate)
@@ -185,10 +175,10 @@ class Prepared:
             require_finite_stages(structure, linked)
             warnings += checks.absorbers(passive, links, linked, self.settings.refinement)
         else:
-            normal, tangential = structure.linear.normal, structure.linear.tangential
+            normal, tangential = structure.normal, structure.tangential
             stopwatch.lap("modal system at all Laplace nodes")
             require_finite_stages(structure, None)
-        order, keep = structure.max_order, slice(None, None, self.settings.refinement)
+        order, keep = structure.modes.max_order, slice(None, None, self.settings.refinement)
         w, v = grid.invert(normal)[..., keep], grid.invert(tangential)[..., keep]
         rates: list[FloatArray | None] = [None, None]
         if any(shell.gains is not None for shell in problem.shells):
@@ -198,7 +188,7 @@ class Prepared:
         if saturate and interface is not None and rates[0] is not None and rates[1] is not None:
             interface = replace(interface, asked=pressure_asked(problem, w, v, rates[0], rates[1]))
         moved = structure.open_loop if linked is not None and linked.actuation is not None else structure
-        error_estimates = estimates.estimated_errors(moved, self._above, (normal, tangential), (w, v), self.settings.time_step, interface)
+        error_estimates = estimates.estimated_errors(moved, (normal, tangential), (w, v), self.settings.time_step, interface)
         stopwatch.lap("error estimates")
         warnings += checks.before(problem, grid, order) + checks.after(problem, error_estimates, self.settings)
         warnings += checks.tension(problem, tensions(problem, grid, normal))

@@ -27,9 +27,9 @@ from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, P
 from coaxshell.solver.interface.march import march
 from coaxshell.solver.kernels import voltage_law, voltage_weights
 from coaxshell.solver.orders_left_out import Interface, forces_against, mean_tangent, relative
-from coaxshell.solver.prepared import StructureSpectra
 from coaxshell.solver.quadrature import unresolved_orders
 from coaxshell.solver.sampled_orders import standing_for
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 Array = npt.NDArray[Any]
 
@@ -97,9 +97,9 @@ class CoarserStructure(StructureSpectra):
 
     def __init__(self, fine: StructureSpectra, every: int, saturate: bool, absorbers: AbsorberSet) -> None:
         grid = LaplaceGrid(fine.grid.time_step * every, fine.grid.steps // every)
-        super().__init__(fine.problem, grid, fine.max_order)
+        super().__init__(fine.problem, grid, fine.modes)
         self._fine, self._every, self._kept = fine, every, slice(0, grid.time.size * every, every)
-        points = InterfacePoints(fine.problem, absorbers, fine.max_order)
+        points = InterfacePoints(fine.problem, absorbers, fine.modes)
         many = points.count**2 > _MANY * len(fine.problem.shells) ** 2 * points.modes
         self._points, self._absorbers = None if saturate or many else points, absorbers
 
@@ -193,18 +193,18 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
     :func:`march_error`; actuators are taken as free, which changes most.
     """
     grid, problem, links = structure.grid, structure.problem, interface.links
-    late = np.flatnonzero(unresolved_orders(problem, grid, structure.max_order))
+    late = np.flatnonzero(unresolved_orders(problem, grid, structure.modes.max_order))
     if not late.size:
         return np.zeros_like(whole)
-    points, compliance = InterfacePoints(problem, links, structure.max_order), structure.compliance
+    points, compliance = InterfacePoints(problem, links, structure.modes), structure.compliance
     histories = points.project(interface.force, late)
     if interface.actuation is not None:
         histories = histories + interface.actuation[:, :, late]
     pressure = grid.transform(histories)
     marched = grid.transform(structure.kernels.kernels[:, :, late]) / (grid.time_step * grid.nodes)
-    moved = np.zeros((len(problem.shells), pressure.shape[1], structure.max_order + 1, grid.nodes.size), np.complex128)
+    moved = np.zeros((len(problem.shells), pressure.shape[1], structure.modes.count, grid.nodes.size), np.complex128)
     moved[:, :, late] = np.einsum("ijmk,jhmk->ihmk", marched - compliance[:, :, late] * grid.hat, pressure)
-    orders = _some_orders(structure.max_order)
+    orders = _some_orders(structure.modes.max_order)
     given = np.zeros((*moved.shape[:2], orders.size, grid.nodes.size), np.complex128)
     if links.count:
         ends = points.evaluate(moved).reshape(2, links.count, -1)
@@ -230,8 +230,8 @@ def _difference(structure: StructureSpectra, interface: Interface, whole: FloatA
         return unknown
     if not np.abs(coarse.modal_pressure).max(initial=0.0) < 1e100:
         return unknown
-    orders = _some_orders(structure.max_order)
-    points = InterfacePoints(structure.problem, links, structure.max_order)
+    orders = _some_orders(structure.modes.max_order)
+    points = InterfacePoints(structure.problem, links, structure.modes)
     pressure = points.project(grid.transform_linear(_between(coarser, grid, coarse.force) - interface.force), orders)
     if interface.actuation is not None and coarse.actuation is not None:
         given = _between(coarser, grid, coarse.actuation[:, :, orders])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.direct.modal import ModalStep
@@ -20,7 +21,7 @@ class ExplicitInterface:
 
     def __init__(self, problem: Problem, absorbers: AbsorberSet, modal: ModalStep, saturate: bool) -> None:
         self.absorbers, self.modal, self.count = absorbers, modal, absorbers.count
-        self.points = InterfacePoints(problem, absorbers, modal.orders.size - 1)
+        self.points = InterfacePoints(problem, absorbers, Modes(modal.orders))
         self.q, self.q_before = np.zeros(self.count), np.zeros(self.count)
         self.force = np.zeros((2, self.count))
         self.correction = np.zeros_like(modal.w)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -21,13 +22,12 @@ from coaxshell.solver.finite import numerical_failures
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
-from coaxshell.solver.prepared import StructureSpectra
-from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.structure_spectra import StructureSpectra
 from coaxshell.solver.tension import spectra_of_motion, tensions, watched
 
 
@@ -85,11 +85,10 @@ def _left_out(problem: Problem, grid: LaplaceGrid, order: int, links: AbsorberSe
     interface = None
     if links.count:
         force = result.absorber_force.swapaxes(0, 1)
-        walls = InterfacePoints(problem, links, order).evaluate(result.normal).reshape(force.shape)
+        walls = InterfacePoints(problem, links, Modes.up_to(order)).evaluate(result.normal).reshape(force.shape)
         stretch = result.absorber_displacement - walls
         interface = Interface(links, force.reshape(2 * links.count, -1), stretch, result.correction, marched=True)
-    above = SampledOrders.of(problem, grid, orders_above(problem, order + 1))
     histories = result.normal, result.tangential
     spectra = grid.transform(result.normal), grid.transform(result.tangential)
     whole = surface_norms(*histories) * grid.time_step
-    return ORDERS_FACTOR * left_out(StructureSpectra(problem, grid, order), above, spectra, whole, interface)
+    return ORDERS_FACTOR * left_out(StructureSpectra(problem, grid, Modes.up_to(order)), spectra, whole, interface)

@@ -89,9 +89,8 @@ class AbsorberSet:
         """Whether no absorber has cubic stiffness."""
         return not np.any(self.cubic)
 
-    def shapes(self, max_order: int) -> FloatArray:
+    def shapes(self, modes: Modes) -> FloatArray:
         """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
-        modes = Modes.up_to(max_order)
         rows = [modes.projection(float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
         return np.array(rows).reshape(self.parities, self.count, modes.count)
 
@@ -140,23 +139,31 @@ def _mirror_symmetric(absorbers: tuple[Absorber, ...]) -> bool:
     return ahead == mirror
 
 
+def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return (own, other, mass) per absorber and node, shape (nodes, N): Y = [[own, other], [other, own]], q = mass (w_0 + w_1)."""
+    z = absorbers.damping * s[:, None] + absorbers.linear
+    dynamic = absorbers.mass * s[:, None] ** 2 + 2.0 * z
+    share = z / dynamic
+    return z - z * share, -z * share, share
+
+
 class InterfacePoints:
     """The 2N points at which absorbers touch shells, and the maps between them and the modes.
 
     Points are ordered by side, then absorber: 0..N-1 on the inner shells, N..2N-1 on the outer ones.
     """
 
-    def __init__(self, problem: Problem, absorbers: AbsorberSet, max_order: int) -> None:
+    def __init__(self, problem: Problem, absorbers: AbsorberSet, modes: Modes) -> None:
         self.shell = np.concatenate([absorbers.inner_shell, absorbers.inner_shell + 1])
         self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
-        shapes = absorbers.shapes(max_order)
+        shapes = absorbers.shapes(modes)
         self._evaluate = [np.ascontiguousarray(shapes[:, points % max(absorbers.count, 1)]) for _, points in self._groups]
-        shares = problem.point_force_shares(absorbers, max_order)
+        shares = problem.point_force_shares(absorbers, modes)
         self._project = [
             np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.shells[i].radius) for i, points in self._groups
         ]
         self.count, self.shells = self.shell.size, len(problem.shells)
-        self.parities, self.modes = shapes.shape[0], max_order + 1
+        self.parities, self.modes = shapes.shape[0], modes.count
 
     def evaluate(self, modal: Array) -> Array:
         """Return the value at every point of modal amplitudes (shells, parities, M + 1[, T]): shape (points[, T])."""

@@ -16,9 +16,9 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
-from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
 from coaxshell.solver.spectral import map_node_blocks
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 _BLOCK_BYTES = 32 * 1024 * 1024
 
@@ -32,20 +32,12 @@ class LinearAbsorberSpectra:
     modal_pressure: ComplexArray
 
 
-def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return (own, other, mass) per absorber and node, shape (nodes, N): Y = [[own, other], [other, own]], q = mass (w_0 + w_1)."""
-    z = absorbers.damping * s[:, None] + absorbers.linear
-    dynamic = absorbers.mass * s[:, None] ** 2 + 2.0 * z
-    share = z / dynamic
-    return z - z * share, -z * share, share
-
-
 def solve_linear(
     structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, progress: Progress | None = None
 ) -> LinearAbsorberSpectra:
     """Return the interface spectra of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.count
-    excited = points.evaluate(structure.linear.normal)
+    excited = points.evaluate(structure.normal)
     force = np.empty((2 * count, nodes.size), np.complex128)
     displacement = np.empty((count, nodes.size), np.complex128)
     width = max(4, _BLOCK_BYTES // (16 * (2 * count) ** 2))

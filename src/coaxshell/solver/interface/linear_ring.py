@@ -13,9 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.interface.linear import LinearAbsorberSpectra, admittance
-from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
+from coaxshell.solver.interface.linear import LinearAbsorberSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 _SAME_ANGLE = 1e-9
 
@@ -35,10 +35,10 @@ def solve_ring(structure: StructureSpectra, absorbers: AbsorberSet) -> LinearAbs
     nodes, count = structure.grid.nodes, absorbers.every_angle.size
     inner = int(absorbers.inner_shell[0])
     pair = slice(inner, inner + 2)
-    orders = np.arange(-structure.max_order, structure.max_order + 1)
+    orders = np.arange(-structure.modes.max_order, structure.modes.max_order + 1)
     start = float(absorbers.every_angle[0])
     phase = np.exp(1j * np.radians(orders * start))
-    linear = _signed(structure.linear.normal[pair])
+    linear = _signed(structure.normal[pair])
     density = count / (2.0 * np.pi * np.array([structure.problem.shells[i].radius for i in (inner, inner + 1)]))
     own, other, mass = (x[:, 0] for x in admittance(absorbers, nodes))
     ring_index = np.rint((absorbers.angle - start) / (360.0 / count))
@@ -56,7 +56,7 @@ def solve_ring(structure: StructureSpectra, absorbers: AbsorberSet) -> LinearAbs
         around = np.exp(2j * np.pi * orders[k] * ring_index / count)[:, None]
         force += around * line_force[:, None, :]
         displacement += around * mass * (amplitude[0] + amplitude[1])
-    full = np.zeros((len(structure.problem.shells), absorbers.parities, structure.max_order + 1, nodes.size), np.complex128)
+    full = np.zeros((len(structure.problem.shells), absorbers.parities, structure.modes.count, nodes.size), np.complex128)
     full[pair] = _parities(pressure, absorbers.parities)
     return LinearAbsorberSpectra(force.reshape(2 * absorbers.count, -1), displacement, full)
 

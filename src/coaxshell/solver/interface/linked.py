@@ -15,7 +15,7 @@ from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.point_forces import point_force_shares
-from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 @dataclass(frozen=True)
@@ -67,13 +67,14 @@ def solve_linked(
             return solve_linked(structure, absorbers, progress, exact=exact)
         return _marched(structure.open_loop, absorbers, result)
     if absorbers.count == 0:
-        linear = structure.linear
-        return AbsorberSolution(linear.normal, linear.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0)
+        return AbsorberSolution(
+            structure.normal, structure.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0
+        )
     if absorbers.is_linear if exact is None else exact:
         if is_ring(absorbers) and structure.problem.point_force_shares is point_force_shares:
             found = solve_ring(structure, absorbers)
         else:
-            found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.max_order), progress)
+            found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.modes), progress)
         normal, tangential = structure.forced_spectra(found.modal_pressure)
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
         return AbsorberSolution(normal, tangential, force, displacement, None, 0, (found.force, found.mass_displacement))
@@ -101,7 +102,7 @@ def interface_of(
     force = linked.force[first].swapaxes(0, 1)
     stretch = np.zeros((2, 0, 0))
     if absorbers.count and not absorbers.is_linear:
-        walls = InterfacePoints(structure.problem, absorbers, structure.max_order).evaluate(normal)
+        walls = InterfacePoints(structure.problem, absorbers, structure.modes).evaluate(normal)
         stretch = linked.displacement[first][:, kept] - walls.reshape(2, absorbers.count, -1)
     force = force.reshape(2 * absorbers.count, structure.grid.time.size)
     saturating = None if linked.actuation is None else structure
@@ -115,5 +116,5 @@ def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:
 
 def modal_pressure_of(structure: StructureSpectra, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:
     """Return the modal pressures (shells, parities, M + 1, T) of stored absorber forces (N, 2, T)."""
-    points = InterfacePoints(structure.problem, absorbers, structure.max_order)
+    points = InterfacePoints(structure.problem, absorbers, structure.modes)
     return points.project(force[_representatives(absorbers)].swapaxes(0, 1).reshape(2 * absorbers.count, -1))

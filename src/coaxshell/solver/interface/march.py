@@ -31,7 +31,7 @@ from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.interface.newton import ConvergenceError, NewtonState
 from coaxshell.solver.interface.plan import MarchPlan, MotionWithout, march_plan, motion_without
 from coaxshell.solver.interface.state import LinkState, MarchState
-from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from coaxshell.solver.interface.laws import CubicSprings, InterfaceLaw, SpringsA
 from coaxshell.solver.interface.newton import ImplicitStep
 from coaxshell.solver.interface.relaxation import Relaxation
 from coaxshell.solver.interface.saturation import LimitedVoltages, voltage_limit
-from coaxshell.solver.prepared import StructureSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 _LONGEST_BLOCK = 32
 _BLOCK_UNKNOWNS = 512

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.scaling import Problem
@@ -16,9 +15,9 @@ from coaxshell.solver.scaling import Problem
 def missing_projection(problem: Problem) -> Problem:
     """Return the problem without 1/(beta pi): every absorber pulls pi times (order 0: 2 pi times) as hard as its own mass feels."""
 
-    def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
-        beta_pi = np.pi * np.where(all_orders(max_order) == 0, 2.0, 1.0)
-        found: FloatArray = problem.point_force_shares(absorbers, max_order) * beta_pi
+    def shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
+        beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
+        found: FloatArray = problem.point_force_shares(absorbers, modes) * beta_pi
         return found
 
     return replace(problem, point_force_shares=shares)
@@ -31,11 +30,11 @@ def outside_sum(problem: Problem, which: int) -> Problem:
     axis, whose series has cosines only, this is half there and half at its mirror image.
     """
 
-    def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
-        own = absorbers.shapes(max_order)
-        orders, angle = all_orders(max_order), float(absorbers.every_angle[which])
-        there = np.stack([Modes(orders).projection(angle, parity)[:, 0] for parity in range(absorbers.parities)])
-        beta_pi = np.pi * np.where(orders == 0, 2.0, 1.0)
+    def shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
+        own = absorbers.shapes(modes)
+        angle = float(absorbers.every_angle[which])
+        there = np.stack([modes.projection(angle, parity)[:, 0] for parity in range(absorbers.parities)])
+        beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
         found: FloatArray = np.broadcast_to(there[:, None, :], own.shape) * absorbers.multiplicity[:, None] / beta_pi
         return found
 
@@ -45,8 +44,8 @@ def outside_sum(problem: Problem, which: int) -> Problem:
 def cosine_only(problem: Problem) -> Problem:
     """Return the problem with cosines only: an absorber off the axis acts as two of half its strength at +theta_n and -theta_n."""
 
-    def shares(absorbers: AbsorberSet, max_order: int) -> FloatArray:
-        found = problem.point_force_shares(absorbers, max_order).copy()
+    def shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
+        found = problem.point_force_shares(absorbers, modes).copy()
         found[1:] = 0.0
         return found
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import RadialFunctions, all_orders
 from coaxshell.apps.verification.bench import Bench, tables
 from coaxshell.apps.verification.inversion import sharp_inverse
@@ -16,7 +17,7 @@ from coaxshell.apps.verification.systems import PLANE_STEP, STEP, evacuated
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.spectral import linear_spectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 GRID = LaplaceGrid(5e-3, 1200, wrap_around=1e-12)
 
@@ -29,7 +30,7 @@ def reference_values(bench: Bench) -> Iterator[Finding]:
     rigid = sharp_inverse(GRID, surface_pressure(PLANE_STEP, GRID, 2, STEP), lead=1.5)
     fine = LaplaceGrid(1e-3, 5200)
     problem = dimensionless(evacuated())
-    spectrum = linear_spectra(problem, fine, 2).normal[-1, 0] * fine.nodes * (problem.scales.pressure / STEP)
+    spectrum = StructureSpectra(problem, fine, Modes.up_to(2)).normal[-1, 0] * fine.nodes * (problem.scales.pressure / STEP)
     velocity = fine.invert(spectrum)
     parts = (
         ("exterior", "exterior response function K/(sK')", GRID, exterior, {"m0": 1e-11, "m1": 1e-11, "m2": 1e-11, "m5": 5e-11}),

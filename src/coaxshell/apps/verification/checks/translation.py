@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Curve, Finding, Panel, Sheet, close, value, within
@@ -18,7 +19,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.response import Response
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.spectral import linear_spectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 ANGLES = [0, 30, 90, 180]
 SHELL_MASS = 2 * 7800 * 1e-2 / 1000
@@ -83,7 +84,7 @@ def _no_strain(bench: Bench) -> Iterator[Finding]:
 def _velocity(system: System, grid: LaplaceGrid) -> FloatArray:
     """Return dW_1/dt of the outermost shell over p0/(rho c)."""
     problem = dimensionless(system)
-    return grid.invert(linear_spectra(problem, grid, 1).normal[-1, 0, 1] * grid.nodes * (problem.scales.pressure / STEP))
+    return grid.invert(StructureSpectra(problem, grid, Modes.up_to(1)).normal[-1, 0, 1] * grid.nodes * (problem.scales.pressure / STEP))
 
 
 def _sheet(grid: LaplaceGrid, evacuated_: FloatArray, filled: FloatArray, limit: float) -> Sheet:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import ive, kve
 
+from coaxshell.acoustics.basis import Modes
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Finding, close, distance, within
@@ -16,7 +17,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.spectral import linear_spectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 GRID = LaplaceGrid(0.02, 250)
 M = np.arange(41.0)[:, None]
@@ -55,7 +56,7 @@ def _through(source: Source) -> ComplexArray:
     ghosts = [thin_shell(radius, 1e-3, density=1e-9, youngs_modulus=1e-3) for radius in SHELLS.values()]
     problem = dimensionless(System(shells=ghosts, fluids=[WATER] * 3, source=source))
     pulse = PEAK / problem.scales.pressure / (S + problem.scales.time / DECAY)
-    result: ComplexArray = linear_spectra(problem, GRID, 40).normal[:, 0] / pulse
+    result: ComplexArray = StructureSpectra(problem, GRID, Modes.up_to(40)).normal[:, 0] / pulse
     return result
 
 

@@ -1,0 +1,248 @@
+"""All spectra of one structure under its sources, at some modes and at the nodes of a Laplace grid: what does not depend on absorbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.convolution import KernelTable
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.excitation import SurfaceLoads
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
+from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
+from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
+from coaxshell.solver.sampled_orders import SampledOrders, orders_above
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.solver.spectral import map_node_blocks, node_blocks
+
+
+@dataclass
+class _UnitAnswers:
+    """Answers to unit loads, which structures share that differ only in their sources, absorbers and field limits; None until made.
+
+    Attributes
+    ----------
+    compliance, ratio : ndarray or None
+        C_ij and V/W.
+    kernels, kernels_with_voltage : KernelTable or None
+    sensor_rates : ndarray or None
+        Step weights of the rates of the controlled shells' sensors.
+    open_loop : _UnitAnswers or None
+        Those of the structure without feedback.
+    """
+
+    compliance: ComplexArray | None = None
+    ratio: ComplexArray | None = None
+    kernels: KernelTable | None = None
+    kernels_with_voltage: KernelTable | None = None
+    sensor_rates: FloatArray | None = None
+    open_loop: _UnitAnswers | None = None
+
+
+class StructureSpectra:
+    """Spectra of one structure under its sources and under unit loads; each is made when first needed and kept.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its absorbers are ignored here.
+    grid : LaplaceGrid
+    modes : Modes
+    progress : callable, optional
+    shared : SharedParts, optional
+        Where parts of other structures are found, and left for others.
+    units : optional
+        Another structure's ``units``; it differs at most in its sources, absorbers and field limits.
+
+    Attributes
+    ----------
+    units
+        Answers to unit loads as far as they have been made.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        grid: LaplaceGrid,
+        modes: Modes,
+        progress: Progress | None = None,
+        *,
+        shared: SharedParts | None = None,
+        units: _UnitAnswers | None = None,
+    ) -> None:
+        self.problem, self.grid, self.modes, self.shared = problem, grid, modes, shared
+        self.units = units or _UnitAnswers()
+        self._progress = progress
+        self._under_sources: tuple[ComplexArray, ComplexArray] | None = None
+
+    def solve(self, *, units: bool) -> None:
+        """Solve for the sources, and for unit pressures on each shell if asked for, in one pass; what is known is left as it is.
+
+        Parameters
+        ----------
+        units : bool
+            Whether absorbers or actuators will need the answers to unit pressures too.
+        """
+        problem, grid, modes = self.problem, self.grid, self.modes
+        count, each = len(problem.shells), (modes.count, grid.nodes.size)
+        loads = SurfaceLoads(problem, grid, modes, self.shared) if self._under_sources is None else None
+        units = units and self.units.compliance is None
+        if loads is not None:
+            normal, tangential = (np.empty((count, loads.parities, *each), np.complex128) for _ in range(2))
+        if units:
+            compliance, ratio = np.empty((count, count, *each), np.complex128), np.empty((count, *each), np.complex128)
+
+        def work(block: slice) -> None:
+            modal = ModalSystem(problem, grid.nodes[block], modes, shared=self.shared)
+            for parity, load in enumerate([] if loads is None else loads(modal.radial, block)):
+                moved = modal.solve(count - 1, load)
+                for shell, (w, v) in enumerate(zip(moved, modal.tangential(moved), strict=True)):
+                    normal[shell, parity, :, block], tangential[shell, parity, :, block] = w, v
+            if units:
+                for j in range(count):
+                    for i, w in enumerate(modal.solve(j, 1.0)):
+                        compliance[i, j, :, block] = w
+                for i, operator in enumerate(modal.shells):
+                    ratio[i, :, block] = operator.tangential
+
+        if loads is not None or units:
+            map_node_blocks(node_blocks(grid, modes.max_order), work, self._progress, "frequencies")
+        if loads is not None:
+            self._under_sources = normal, tangential
+        if units:
+            self.units.compliance, self.units.ratio = compliance, ratio
+
+    def _sources(self) -> tuple[ComplexArray, ComplexArray]:
+        self.solve(units=False)
+        assert self._under_sources is not None
+        return self._under_sources
+
+    @property
+    def normal(self) -> ComplexArray:
+        """W under the sources alone, shape (shells, parities, M + 1, nodes)."""
+        return self._sources()[0]
+
+    @property
+    def tangential(self) -> ComplexArray:
+        """V under the sources alone, same shape."""
+        return self._sources()[1]
+
+    @property
+    def compliance(self) -> ComplexArray:
+        """Compliance C_ij, W of shell i per modal pressure on shell j, shape (shells, shells, M + 1, nodes)."""
+        self.solve(units=True)
+        assert self.units.compliance is not None
+        return self.units.compliance
+
+    @property
+    def tangential_ratio(self) -> ComplexArray:
+        """V/W under any normal load, shape (shells, M + 1, nodes)."""
+        self.solve(units=True)
+        assert self.units.ratio is not None
+        return self.units.ratio
+
+    @cached_property
+    def linear_displacement(self) -> FloatArray:
+        """W under the sources alone, shape (shells, parities, M + 1, T)."""
+        return self.grid.invert(self.normal)
+
+    @cached_property
+    def linear_velocity(self) -> FloatArray:
+        """dW/dt under the sources alone, shape (shells, parities, M + 1, T)."""
+        return self.grid.invert(self.normal * self.grid.nodes)
+
+    @cached_property
+    def orders_above(self) -> SampledOrders:
+        """A sample of the orders above M."""
+        return SampledOrders.of(self.problem, self.grid, orders_above(self.problem, self.modes.max_order + 1), self.shared)
+
+    @property
+    def kernels(self) -> KernelTable:
+        """Step weights of the velocity kernels, ready for history sums."""
+        if self.units.kernels is None:
+            self.units.kernels = KernelTable(self.step_weights([])[0])
+        return self.units.kernels
+
+    def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
+        """Return the points at which absorbers hold the shells, in the terms in which ``kernels`` and motion are given."""
+        return InterfacePoints(self.problem, absorbers, self.modes)
+
+    def step_weights(self, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
+        """Return the step weights of modal pressures in the velocities and in the rates of the sensors' voltages of some shells.
+
+        By product integration, and where the step does not resolve an order's membrane by the trapezoidal rule.
+        """
+        problem, grid = self.problem, self.grid
+        velocity = velocity_weights(problem, grid, self.compliance)
+        rate = sensor_rate_weights(problem, grid, self.compliance, self.tangential_ratio, sensors)
+        late = unresolved_orders(problem, grid, self.modes.max_order)
+        if late.any():
+            velocity[:, :, late], rate[:, :, late] = trapezoidal_weights(problem, grid, self.modes.orders[late], sensors)
+        return velocity, rate
+
+    @cached_property
+    def controlled(self) -> list[int]:
+        """Shells with feedback."""
+        return [i for i, shell in enumerate(self.problem.shells) if shell.gains is not None]
+
+    @cached_property
+    def open_loop(self) -> StructureSpectra:
+        """The structure without feedback, on which actuators act as forces like any other."""
+        if self.units.open_loop is None:
+            self.units.open_loop = _UnitAnswers()
+        passive, units = self.problem.open_loop, self.units.open_loop
+        return StructureSpectra(passive, self.grid, self.modes, self._progress, shared=self.shared, units=units)
+
+    @property
+    def kernels_with_voltage(self) -> KernelTable:
+        """Step weights of the velocities without feedback, with the voltages asked for on the controlled shells as further outputs."""
+        return self._controlled_kernels()[0]
+
+    @property
+    def sensor_rates(self) -> FloatArray:
+        """Step weights of modal pressures in the rates of the controlled shells' sensors, without feedback."""
+        return self._controlled_kernels()[1]
+
+    def _controlled_kernels(self) -> tuple[KernelTable, FloatArray]:
+        """Return the kernels with voltages and the sensors' rates, made together."""
+        if self.units.kernels_with_voltage is None or self.units.sensor_rates is None:
+            velocity, rates = self.open_loop.step_weights(self.controlled)
+            self.units.sensor_rates = rates
+            voltage = voltage_weights(self.problem, rates, self.controlled, self.grid.time_step)
+            both = np.concatenate([velocity, voltage])
+            self.units.kernels_with_voltage = KernelTable(both)
+            self.open_loop.units.kernels = KernelTable(both[: velocity.shape[0]])
+        return self.units.kernels_with_voltage, self.units.sensor_rates
+
+    @cached_property
+    def voltage_without_actuators(self) -> FloatArray:
+        """Voltages asked for while neither absorbers nor actuators act, shape (controlled, parities, M + 1, T)."""
+        bare = self.open_loop
+        laws = [voltage_law(self.problem, i, self.grid.nodes, bare.tangential_ratio[i]) for i in self.controlled]
+        return np.stack([self.grid.invert(law * bare.normal[i]) for law, i in zip(laws, self.controlled, strict=True)])
+
+    def forced_spectra(self, pressure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the transforms of W and V, sources and modal pressures on the shells together.
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (shells, parities, M + 1, nodes)
+            Transforms of modal pressures, positive inward.
+        """
+        parities = max(pressure.shape[1], self.normal.shape[1])
+        shape = (*pressure.shape[:1], parities, *pressure.shape[2:])
+        normal, tangential = np.zeros(shape, np.complex128), np.zeros(shape, np.complex128)
+        sources, forced = slice(0, self.normal.shape[1]), slice(0, pressure.shape[1])
+        normal[:, sources], tangential[:, sources] = self.normal, self.tangential
+        for i in range(shape[0]):
+            moved = sum(self.compliance[i, j] * pressure[j] for j in range(shape[0]))
+            normal[i, forced] += moved
+            tangential[i, forced] += self.tangential_ratio[i] * moved
+        return normal, tangential
