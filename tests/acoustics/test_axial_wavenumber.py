@@ -114,3 +114,31 @@ def test_the_wavenumber_of_a_fluid() -> None:
         np.testing.assert_allclose(found, [complex(kappa(axial, SLOWNESS, complex(s))) for s in S], rtol=1e-14)
     assert Modes(ORDERS, 1.0).key != Modes(ORDERS, 2.0).key
     np.testing.assert_allclose(Modes(ORDERS, 3.0).gradient_squared(0.5), (ORDERS / 0.5) ** 2 + 9.0)
+
+
+@pytest.mark.parametrize("inclination", [0.0, 12.0, -30.0])
+def test_inclined_plane_waves(inclination: float) -> None:
+    """Load at kappa = s cos alpha by the Wronskian; the incident orders sum to e^{-s(1 - x) cos alpha}, which the wave is at z = 0."""
+    geometry, grid = PlaneGeometry(inclination), LaplaceGrid(0.1, 8)
+    slope, across = np.sin(np.radians(inclination)), np.cos(np.radians(inclination))
+    assert geometry.trace_slowness == pytest.approx(slope, rel=1e-15)
+    radial = RadialBasis(Modes(ORDERS, -1j * S * geometry.trace_slowness), S)
+    np.testing.assert_allclose(radial.surface.kappa, S * across, rtol=1e-14)
+    np.testing.assert_allclose(radial.modes.kappa(SLOWNESS, S), S * np.sqrt(SLOWNESS**2 - slope**2), rtol=1e-14)
+
+    def load(m: float, x: mpmath.mpc) -> mpmath.mpc:
+        return -mpmath.exp(-x) * (2 if m else 1) / (x * k_slope(m, x))
+
+    expected_load = np.array([[complex(load(m, mpmath.mpc(complex(s)) * across)) for s in S] for m in ORDERS])
+    np.testing.assert_allclose(geometry.prepare(grid, radial.modes)(radial, slice(None)), expected_load, rtol=1e-9)
+    every = RadialBasis(Modes.up_to(90, -1j * S * geometry.trace_slowness), S)
+    pressure, _ = geometry.incident(type("Nodes", (), {"nodes": S})(), every)
+    theta = np.radians([0.0, 70.0, 180.0])
+    found = np.einsum("mt,ms->ts", np.cos(np.outer(every.modes.orders, theta)), pressure)
+    np.testing.assert_allclose(found, np.exp(-np.outer((1.0 - np.cos(theta)) * across, S)), rtol=0, atol=1e-9)
+
+
+def test_modes_at_a_wavenumber_for_each_node_have_a_key_of_their_own() -> None:
+    one, other = Modes(ORDERS, 1j * S), Modes(ORDERS, 1.1j * S)
+    assert one.key == Modes(ORDERS, 1j * S).key
+    assert len({one.key, other.key, Modes(ORDERS).key, Modes(ORDERS, 1.0).key}) == 4

@@ -5,32 +5,11 @@ One row a mistake that a person could make: a sign, a factor, an index, a power 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from spatial_mutations import SPATIAL
 
+from mutation import Mutation
 
-class Mutation(NamedTuple):
-    """One wrong change.
-
-    Attributes
-    ----------
-    name : str
-    file : str
-        Inside src/coaxshell.
-    original, mutated : str
-        Text that stands there exactly once, and what to put in its place.
-    breaks : str
-        What is then wrong.
-    nearest : str
-        Tests beside it, inside tests/, asked first; several with spaces between.
-    """
-
-    name: str
-    file: str
-    original: str
-    mutated: str
-    breaks: str
-    nearest: str
-
+__all__ = ["MUTATIONS", "Mutation"]
 
 MUTATIONS = (
     # structure
@@ -143,30 +122,6 @@ MUTATIONS = (
         "self._pulse.impulse(since)",
         "afterflow in the free field: 1/R",
         "acoustics/test_free_field.py",
-    ),
-    Mutation(
-        "spherical-front-phase",
-        "acoustics/sources/spherical_front.py",
-        "/ (surface.kappa + basis.s)",
-        "/ (2.0 * surface.kappa)",
-        "phase of the spherical source at an axial wavenumber",
-        "acoustics/test_spherical_front.py",
-    ),
-    Mutation(
-        "axial-reach",
-        "solver/axial/causality.py",
-        "return speed * time + start / (speed + _faster(speed))",
-        "return speed * time + start / (2.0 * speed)",
-        "how far a head wave gets along the axis, and with it the axial period",
-        "solver/test_axial_sampling.py",
-    ),
-    Mutation(
-        "axial-shares",
-        "solver/axial/sampling.py",
-        "np.where(self.wavenumbers == 0.0, 2.0, 4.0)",
-        "np.where(self.wavenumbers == 0.0, 4.0, 4.0)",
-        "sum over axial wavenumbers: that of k = 0 counts once",
-        "solver/test_axial_sampling.py",
     ),
     Mutation(
         "laplace-window",
@@ -497,4 +452,5 @@ MUTATIONS = (
         "smaller or larger than which run",
         "model/test_prefixes.py",
     ),
+    *SPATIAL,
 )

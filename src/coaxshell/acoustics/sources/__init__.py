@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coaxshell.acoustics.sources.line import LineGeometry
 from coaxshell.acoustics.sources.plane import PlaneGeometry
-from coaxshell.acoustics.sources.source import FreeField, SourceGeometry, SurfaceLoad, TimeFunction
+from coaxshell.acoustics.sources.source import FreeField, SourceGeometry, SpatialField, SpatialGeometry, SurfaceLoad, TimeFunction
 from coaxshell.acoustics.sources.spherical import SphericalGeometry
 from coaxshell.acoustics.sources.spherical_front import SphericalFrontGeometry
 
@@ -13,6 +13,8 @@ __all__ = [
     "LineGeometry",
     "PlaneGeometry",
     "SourceGeometry",
+    "SpatialField",
+    "SpatialGeometry",
     "SphericalFrontGeometry",
     "SphericalGeometry",
     "SurfaceLoad",

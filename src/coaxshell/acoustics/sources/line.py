@@ -16,7 +16,7 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.rays import path_to
-from coaxshell.acoustics.sources.source import NEAREST, SurfaceLoad, TimeFunction, incident_of_regular, rays
+from coaxshell.acoustics.sources.source import NEAREST, SurfaceLoad, TimeFunction, UniformField, incident_of_regular, rays
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_ratios import kve
@@ -53,6 +53,11 @@ class LineGeometry:
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> LineField:
         """Return the wave at points up to an instant."""
         return LineField(pulse, self.distance, x, y, latest)
+
+    def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> UniformField:
+        """Return the wave at points in space, alike at all z."""
+        x, y, _ = np.broadcast_arrays(x, y, z)
+        return UniformField(LineField(pulse, self.distance, x, y, latest))
 
 
 class LineField:

@@ -1,7 +1,15 @@
-"""A plane wave travelling towards theta = 180 degrees: p = f(x), v = f(x) along the direction of travel, x = t - (1 - r cos theta)."""
+"""A plane wave travelling towards theta = 180 degrees, or inclined to the cross-section by alpha towards +z:
+
+    p = f(x),    v = f(x) along the direction of travel,    x = t - [(1 - r cos theta) cos alpha + z sin alpha].
+
+Its trace runs along z at 1/sin alpha. In the Laplace domain everything goes with e^{-s z sin alpha}, an axial wavenumber for each node,
+
+    k = -i s sin alpha,        kappa = s cos alpha.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,10 +23,23 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 @dataclass(frozen=True)
 class PlaneGeometry:
-    """Plane wave, e^{-kappa(1 - r cos theta)}."""
+    """Plane wave, e^{-kappa(1 - r cos theta)} in the plane z = 0.
 
+    Attributes
+    ----------
+    inclination : float
+        alpha, degrees by which its direction of travel leaves the cross-section towards +z, between -90 and 90. Its modes are then those
+        of the wavenumber -i s sin alpha.
+    """
+
+    inclination: float = 0.0
     distance = None
     along_rays = True
+
+    @property
+    def trace_slowness(self) -> float:
+        """Sin alpha, what its trace along z takes for a unit of length; negative towards -z."""
+        return math.sin(math.radians(self.inclination))
 
     def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
         """Return L_m = -eps_m e^{-kappa}/(kappa K_m'(kappa)), from the Wronskian I_m K_m' - I_m' K_m = -1/kappa."""
@@ -35,21 +56,43 @@ class PlaneGeometry:
         return incident_of_regular(self, grid, basis)
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> PlaneField:
-        """Return the wave at points."""
-        return PlaneField(pulse, x, y)
+        """Return the wave at points of the plane z = 0."""
+        return PlaneField(pulse, x, y, self.inclination)
+
+    def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> SpatialPlaneField:
+        """Return the wave at points in space."""
+        return SpatialPlaneField(pulse, x, y, z, self.inclination)
 
 
 class PlaneField:
-    """A plane wave travelling towards -x."""
+    """A plane wave travelling towards -x, in the plane z = 0."""
 
-    def __init__(self, pulse: TimeFunction, x: FloatArray, y: FloatArray) -> None:
-        self._pulse, self._path = pulse, 1.0 - x
+    def __init__(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, inclination: float = 0.0) -> None:
+        self._pulse, self._across = pulse, math.cos(math.radians(inclination))
+        self._path = (1.0 - x) * self._across
 
     def pressure(self, time: float) -> FloatArray:
-        """Return f(t - (1 - x))."""
+        """Return f(t - (1 - x) cos alpha)."""
         return self._pulse.history(time - self._path)
 
     def velocity(self, time: float) -> tuple[FloatArray, FloatArray]:
-        """Return -f(t - (1 - x)) and 0."""
-        along = self.pressure(time)
+        """Return -cos alpha f(t - (1 - x) cos alpha) and 0."""
+        along = self._across * self.pressure(time)
         return -along, np.zeros_like(along)
+
+
+class SpatialPlaneField:
+    """A plane wave in space, which travels along (-cos alpha, 0, sin alpha)."""
+
+    def __init__(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, inclination: float = 0.0) -> None:
+        self._pulse, self._ray = pulse, (-math.cos(math.radians(inclination)), math.sin(math.radians(inclination)))
+        self._path = (1.0 - x) * -self._ray[0] + z * self._ray[1] + 0.0 * y
+
+    def pressure(self, time: float) -> FloatArray:
+        """Return f(t - (1 - x) cos alpha - z sin alpha)."""
+        return self._pulse.history(time - self._path)
+
+    def velocity(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the pressure along the direction of travel."""
+        along = self.pressure(time)
+        return self._ray[0] * along, np.zeros_like(along), self._ray[1] * along

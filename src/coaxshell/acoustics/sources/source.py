@@ -49,6 +49,21 @@ class FreeField(Protocol):
         ...
 
 
+class SpatialField(Protocol):
+    """An incident wave at points in space, z from the plane of its head point; the source lies at y = z = 0, x > 0.
+
+    Velocities are in units of c_e, pressures in rho_e c_e^2.
+    """
+
+    def pressure(self, time: float) -> FloatArray:
+        """Return the pressure at all points at an instant."""
+        ...
+
+    def velocity(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the particle velocity along x, y and z at all points at an instant."""
+        ...
+
+
 class SourceGeometry(Hashable, Protocol):
     """A kind of source at its place; equal ones share their modal load."""
 
@@ -73,6 +88,36 @@ class SourceGeometry(Hashable, Protocol):
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> FreeField:
         """Return the wave at points; *latest* is the last instant that will be asked for."""
         ...
+
+
+class SpatialGeometry(SourceGeometry, Protocol):
+    """A kind of source of three-dimensional runs."""
+
+    def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> SpatialField:
+        """Return the wave at points in space, z from the plane of its head point; *latest* is the last instant that will be asked for."""
+        ...
+
+
+class UniformField:
+    """A wave that is alike in every cross-section, in space.
+
+    Parameters
+    ----------
+    plane : FreeField
+        In the cross-section.
+    """
+
+    def __init__(self, plane: FreeField) -> None:
+        self._plane = plane
+
+    def pressure(self, time: float) -> FloatArray:
+        """Return the pressure at all points at an instant."""
+        return self._plane.pressure(time)
+
+    def velocity(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the particle velocity along x and y, and 0 along z."""
+        along_x, along_y = self._plane.velocity(time)
+        return along_x, along_y, np.zeros_like(along_x)
 
 
 def incident_of_regular(geometry: SourceGeometry, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:

@@ -64,6 +64,10 @@ class SphericalFrontGeometry:
         """Return the wave at points of the source's own plane z = 0."""
         return SphericalField(pulse, self.distance, x, y)
 
+    def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> SpatialSphericalField:
+        """Return the wave at points in space."""
+        return SpatialSphericalField(pulse, self.distance, x, y, z)
+
     def _across(self, basis: RadialBasis, surface: RadialFunctions, source: RadialFunctions) -> ComplexArray:
         """Return S e^{sS} K_m(kappa R0)/K_m(kappa) of all orders: e^{(s - kappa) S} of order 0, and ratios between orders.
 
@@ -72,3 +76,24 @@ class SphericalFrontGeometry:
         start, ahead = self.distance - 1.0, -(basis.modes.wavenumber**2) / (surface.kappa + basis.s)
         order_zero = br.kve(0, source.argument) / br.kve(0, surface.argument) * (start * np.exp(ahead * start))
         return br.running_product(order_zero, source.k_ratios / surface.k_ratios)
+
+
+class SpatialSphericalField:
+    """A spherical wave in space, alike in every plane through the x axis, on which its source lies.
+
+    p = (S/R) f(x),        v = (S/R) [f(x) + F(x)/R] away from the source, F the integral of f.
+    """
+
+    def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray, z: FloatArray) -> None:
+        off_axis = np.hypot(y, z)
+        clear = np.where(off_axis > 0.0, off_axis, 1.0)
+        self._plane, self._turn = SphericalField(pulse, distance, x, off_axis), (y / clear, z / clear)
+
+    def pressure(self, time: float) -> FloatArray:
+        """Return (S/R) f(x)."""
+        return self._plane.pressure(time)
+
+    def velocity(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return (S/R) [f(x) + F(x)/R] along the ray from the source."""
+        along, off_axis = self._plane.velocity(time)
+        return along, off_axis * self._turn[0], off_axis * self._turn[1]

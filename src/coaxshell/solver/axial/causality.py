@@ -81,6 +81,12 @@ def least_period(duration: float, places: Iterable[float], fronts: Iterable[Fron
     return max((abs(z - front.z) + reach(duration - front.delay, front.start, speed) for front in fronts for z in places), default=0.0)
 
 
+def rounded_up(value: float) -> float:
+    """Return a number of four digits that is no less, for a message that tells what is enough."""
+    digits = 3 - math.floor(math.log10(value))
+    return math.ceil(value * 10.0**digits) / 10.0**digits
+
+
 def _faster(speed: float) -> float:
     """Return sqrt(c^2 - 1)."""
     return math.sqrt((speed - 1.0) * (speed + 1.0))

@@ -21,7 +21,8 @@ from coaxshell.acoustics.sources import SphericalFrontGeometry
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.causality import Front, least_period
+from coaxshell.solver.axial.causality import Front, least_period, rounded_up
+from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.shell_model import ShellModel
@@ -98,9 +99,10 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
     Raises
     ------
     InputError
-        The period given is too short.
+        The period given is too short, or something runs ahead of an inclined plane wave.
     """
     assert isinstance(settings.modes, int)
+    require_leading_fronts(problem, settings)
     highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
     fronts = _fronts(problem)
     places = [z / length for z in settings.stations]
@@ -110,7 +112,7 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
         raise InputError(
             "axial_period",
             f"{settings.axial_period:g} m is too short: images of the source, one period away, are felt at the stations within the run",
-            f"give at least {_rounded_up(needed * length):g} m, or leave it out",
+            f"give at least {rounded_up(needed * length):g} m, or leave it out",
         )
     if not fronts:
         return AxialSampling(math.pi / highest, settings.modes, highest)  # the next wavenumber would be 2 k_max
@@ -137,9 +139,3 @@ def _fronts(problem: Problem) -> list[Front]:
         for source, geometry in zip(problem.system.sources, problem.sources, strict=True)
         if isinstance(geometry, SphericalFrontGeometry)
     ]
-
-
-def _rounded_up(value: float) -> float:
-    """Return a number of four digits that is no less."""
-    digits = 3 - math.floor(math.log10(value))
-    return math.ceil(value * 10.0**digits) / 10.0**digits

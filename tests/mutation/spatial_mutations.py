@@ -1,0 +1,48 @@
+"""The mutations of three dimensions."""
+
+from __future__ import annotations
+
+from mutation import Mutation
+
+SPATIAL = (
+    Mutation(
+        "spherical-front-phase",
+        "acoustics/sources/spherical_front.py",
+        "/ (surface.kappa + basis.s)",
+        "/ (2.0 * surface.kappa)",
+        "phase of the spherical source at an axial wavenumber",
+        "acoustics/test_spherical_front.py",
+    ),
+    Mutation(
+        "axial-reach",
+        "solver/axial/causality.py",
+        "return speed * time + start / (speed + _faster(speed))",
+        "return speed * time + start / (2.0 * speed)",
+        "how far a head wave gets along the axis, and with it the axial period",
+        "solver/test_axial_sampling.py",
+    ),
+    Mutation(
+        "axial-shares",
+        "solver/axial/sampling.py",
+        "np.where(self.wavenumbers == 0.0, 2.0, 4.0)",
+        "np.where(self.wavenumbers == 0.0, 4.0, 4.0)",
+        "sum over axial wavenumbers: that of k = 0 counts once",
+        "solver/test_axial_sampling.py",
+    ),
+    Mutation(
+        "inclined-trace",
+        "acoustics/sources/plane.py",
+        "+ z * self._ray[1]",
+        "- z * self._ray[1]",
+        "which way an inclined plane wave runs along the axis",
+        "acoustics/test_spatial_field.py",
+    ),
+    Mutation(
+        "bending-ahead-of-the-front",
+        "solver/axial/inclination.py",
+        "b * b - 4.0 * square",
+        "b * b - 2.0 * square",
+        "bending waves that keep pace with the trace of an inclined wave",
+        "solver/test_inclination.py",
+    ),
+)
