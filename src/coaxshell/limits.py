@@ -67,6 +67,7 @@ STUDIO_SHELLS = Limit(6, "shells", "a system in the studio")
 STUDIO_LAYERS = Limit(12, "layers", "a shell in the studio")
 STUDIO_ABSORBERS = Limit(200, "absorbers", "a system in the studio")
 STUDIO_SOURCES = Limit(8, "sources", "a system in the studio")
+STUDIO_STATIONS = Limit(20, "stations", "a run in the studio")
 STUDIO_SAMPLES = Limit(20_000, "samples", "a record in the studio")
 
 TABLE: tuple[Limit, ...] = (
@@ -96,6 +97,7 @@ TABLE: tuple[Limit, ...] = (
     STUDIO_LAYERS,
     STUDIO_ABSORBERS,
     STUDIO_SOURCES,
+    STUDIO_STATIONS,
     STUDIO_SAMPLES,
 )
 """All bounds, in the order in which the documentation lists them."""

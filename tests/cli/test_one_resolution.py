@@ -21,7 +21,12 @@ WRONG = {
     "tolerance": ["x", "0", "inf"],
     "refinement": ["twice", "0", "65", "1.5"],
     "engine": ["steam", ""],
+    "dimensions": ["4", "2.5", "three", ""],
+    "stations": ["1 s", "", "0,0.7", "nan"],
+    "axial_modes": ["0", "many", "60"],
+    "axial_period": ["-1", "5 kg", "20 m"],
 }
+SPATIAL = {"dimensions": 3, "stations": "0 m,70 cm", "axial_modes": 40, "axial_period": "20 m"}
 CASES = [(name, text) for name, texts in WRONG.items() for text in texts]
 
 
@@ -50,7 +55,9 @@ def test_everybody_refuses_it_in_the_same_words(refused, name, text):
         assert refusal(limits.settings_of, {name: text}, live=False, system=BARE) == (f"resolution.{where}", problem, remedy)
 
 
-@pytest.mark.parametrize("table", [{}, {"duration": "3 ms", "time_step": "4 us"}, {"modes": "auto", "tolerance": "1e-2"}, {"modes": 60.0}])
+@pytest.mark.parametrize(
+    "table", [{}, {"duration": "3 ms", "time_step": "4 us"}, {"modes": "auto", "tolerance": "1e-2"}, {"modes": 60.0}, SPATIAL]
+)
 def test_everybody_takes_the_same(table):
     found = Settings.of(BARE, table)
     texts = {name: str(value).removesuffix(".0") for name, value in table.items()}
@@ -60,6 +67,14 @@ def test_everybody_takes_the_same(table):
         assert finer(BARE, Settings(), table)[0] == found
     if set(table) <= set(limits.ENTRIES):
         assert limits.settings_of(table, live=False, system=BARE) == Settings.of(BARE, table, base=limits.PREVIEW)
+
+
+def test_an_item_of_an_option_is_called_by_the_option(refused):
+    told = refused("run", "bare", "--dimensions", "3", "--stations", "-1,0,1 s")
+    assert told == "error: --stations: '1 s' is not a length; give a length as a finite number in m or as text such as '6 mm'\n"
+    assert "--stations: has no effect in two dimensions" in refused("plot", "bare", "--stations", "-0.5")
+    assert "--engine: 'direct' solves two dimensions only" in refused("run", "bare", "--dimensions", "3", "--engine", "direct")
+    assert "--dimensions: 3 is not what the paper's figures have" in refused("figure", "2", "--dimensions", "3")
 
 
 def test_the_defaults_that_a_command_shows_are_those_of_a_run():

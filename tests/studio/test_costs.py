@@ -14,6 +14,7 @@ from coaxshell.apps.studio.state import Studio
 from coaxshell.errors import InputError
 from coaxshell.model import System, presets
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.spatial_cost import wavenumbers
 
 MOST = Settings(10.0, 1e-3, 300)
 """As fine as is allowed."""
@@ -37,6 +38,23 @@ def test_a_run_is_refused_for_all_that_makes_it_large_together():
     assert refused.value.where == "resolution"
     assert "at most 2.5 GB" in refused.value.remedy
     limits.check_cost(large, Settings(2.0, 2e-2, 12), live=True)
+
+
+def test_a_run_in_three_dimensions_costs_as_many_as_it_has_wavenumbers(monkeypatch):
+    monkeypatch.setattr(limits, "require_dimensions", lambda system, settings: None)
+    bare, fine = presets.load("bare"), {"time_step": 1e-3, "modes": 150, "dimensions": 3}
+    with pytest.raises(InputError, match=r"^resolution: .* takes about .*fewer orders, stations or shells"):
+        limits.check_cost(bare, Settings(**fine), live=True)
+    limits.check_cost(bare, Settings(**fine), live=False)
+    limits.check_cost(bare, Settings(**{**fine, "modes": 60, "time_step": 4e-3}), live=True)
+    plane = bare.with_overrides({"source": {"type": "plane-shock", "peak_pressure": 1e3, "decay_time": 1e-4}})
+    assert wavenumbers(plane, Settings(dimensions=3), 150) == 1
+    assert wavenumbers(bare, Settings(dimensions=3, axial_period=10.0), 150) == 1 + 238
+    assert wavenumbers(bare, Settings(dimensions=3, axial_period=10.0, axial_modes=30), 150) == 1 + 47
+    near, far = (wavenumbers(bare, Settings(dimensions=3, stations=(z,)), 150) for z in (0.0, 20.0))
+    assert far > near + 20.0 * 150 / (2 * 3.15)
+    off = bare.with_overrides({"source.z": 20.0})
+    assert wavenumbers(off, Settings(dimensions=3, stations=(20.0,)), 150) == near
 
 
 def test_a_page_is_told_so_before_anything_is_begun(client):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from asking import described
+from asking import described, solve
 
 from coaxshell.apps.studio import limits, links
 from coaxshell.errors import InputError
@@ -172,3 +172,30 @@ def test_bodies_are_bounded(client):
     parts = (b"x" * 100_000 for _ in range(20))
     assert client.post("/api/validate", content=parts, headers=header).status_code == 413
     assert client.post("/api/validate", content=json.dumps({"toml": "x"})).status_code == 415
+
+
+def test_a_resolution_in_three_dimensions_is_checked_as_everywhere(client, monkeypatch):
+    monkeypatch.setattr(limits, "require_dimensions", lambda system, settings: None)
+    spatial = {"duration": 1.0, "time_step": 0.02, "modes": 8, "dimensions": 3, "stations": ["0 m", "70 cm"], "axial_period": "20 m"}
+    answer = validated(client, system=described("bare"), resolution=spatial)
+    assert answer["resolution"] == {**spatial, "stations": [0.0, 0.7], "axial_period": 20.0}
+    plane = {name: spatial[name] for name in ("duration", "time_step", "modes")}
+    assert validated(client, system=described("bare"), resolution=plane)["resolution"] == plane
+    for changes, told in (
+        ({"dimensions": 4}, ["dimensions: 4 is not allowed"]),
+        ({"dimensions": 2}, ["stations: has no effect in two dimensions", "axial_period: has no effect in two dimensions"]),
+        ({"stations": [0.0, "1 s"], "modes": 0}, ["modes: 0 is not allowed", "stations[1]: '1 s' is not a length"]),
+        ({"stations": list(range(21))}, ["stations: 21 stations are too many here"]),
+    ):
+        refused = validated(client, system=described("bare"), resolution={**spatial, **changes})
+        found = [f"{problem['where']}: {problem['problem']}" for problem in refused["problems"]]
+        assert [problem.removeprefix("resolution.") for problem in found] == told
+
+
+def test_a_source_off_the_plane_is_told_before_anything_is_begun(client):
+    system = described("bare")
+    system["source"]["z"] = 0.7
+    assert validated(client, system=system)["ok"], "a description does not know in how many dimensions it is solved"
+    answer = solve(client, system).json()
+    assert (answer["problem"]["where"], answer["ok"]) == ("source.z", False)
+    assert "off the plane of a run in two dimensions" in answer["problem"]["problem"]

@@ -9,118 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from coaxshell.model.pulses import Sampled
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.solver.excitation import source_parities
-from coaxshell.solver.interface.absorbers import absorber_set
-from coaxshell.solver.interface.linear_ring import is_ring
-from coaxshell.solver.sampled_orders import crossing_order
+from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.solver.run_size import COMPLEX, REAL, Size, size_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.shared_parts import ROOM
+from coaxshell.solver.spatial_cost import spatial_cost
 
-_COMPLEX, _REAL = 16.0, 8.0
 _BLOCK_PAIRS = 64 * 1024
 """Order-node pairs that a thread works on at a time."""
 _RECEPTANCE_BYTES = 32 * 1024 * 1024
 _BLOCK_UNKNOWNS, _LONGEST_BLOCK = 512, 32
-_MODES_OF_AUTO = 300
-"""Orders that "auto" is taken for until it is known how many it finds."""
 _SAMPLE_STRIDE = 8
 """One node in so many is used for the estimate of what the orders left out would add."""
-
-
-@dataclass(frozen=True)
-class Size:
-    """The numbers on which the cost of a run depends.
-
-    Attributes
-    ----------
-    shells, controlled : int
-        All, and those whose actuators have limits.
-    feedback : bool
-        Whether there is control at all.
-    points : int
-        Where absorbers touch shells, two each; mirror images are carried once where all is symmetric.
-    nonlinear, ring : bool
-        Whether absorbers have cubic springs, and whether linear ones are an even ring.
-    source_parities, parities : int
-        Of the Fourier series that the sources excite, and the absorbers.
-    orders, nodes, instants : int
-        M + 1; of the Laplace contour; of the march, refinement included.
-    sampled_top : float
-        The highest order that the estimate of what is left out looks at.
-    tabulated : int
-        Sources of a spherical wave, whose projections are made at all nodes at once.
-    samples : int
-        Of records.
-    """
-
-    shells: int
-    controlled: int
-    feedback: bool
-    points: int
-    nonlinear: bool
-    ring: bool
-    source_parities: int
-    parities: int
-    orders: int
-    nodes: int
-    instants: int
-    sampled_top: float
-    tabulated: int
-    samples: int
-
-    @property
-    def plane(self) -> float:
-        """Bytes of one complex number for each order and node."""
-        return _COMPLEX * self.orders * self.nodes
-
-    @property
-    def history(self) -> float:
-        """Bytes of one real number for each order and instant."""
-        return _REAL * self.orders * self.instants
-
-    @property
-    def linked(self) -> bool:
-        """Whether forces act on the structure beside those of the sources."""
-        return self.points > 0 or self.controlled > 0
-
-    @property
-    def marched(self) -> bool:
-        """Whether they are nonlinear."""
-        return self.nonlinear or self.controlled > 0
-
-
-def size_of(problem: Problem, settings: Settings) -> Size:
-    """Return the numbers of a run; "auto" counts as 300 orders."""
-    system, steps = problem.system, settings.steps * settings.refinement
-    grid = LaplaceGrid(settings.time_step / settings.refinement, steps)
-    excited = source_parities(system.sources)
-    links = absorber_set(problem, system.absorber_list, excited)
-    orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
-    feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
-    saturates = system.control is not None and system.control.saturation
-    return Size(
-        shells=len(problem.shells),
-        controlled=len(feedback) if saturates else 0,
-        feedback=bool(feedback),
-        points=2 * links.count,
-        nonlinear=not links.is_linear,
-        ring=links.count > 0 and is_ring(links),
-        source_parities=excited,
-        parities=links.parities if links.count else excited,
-        orders=orders,
-        nodes=grid.samples // 2 + 1,
-        instants=steps + 1,
-        sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
-        tabulated=sum(source.geometry == "spherical" for source in system.sources),
-        samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
-    )
 
 
 def run_cost(system: System | Problem, settings: Settings, *, retunable: bool = False) -> Cost:
@@ -135,6 +40,8 @@ def run_cost(system: System | Problem, settings: Settings, *, retunable: bool = 
         Whether it keeps what :meth:`coaxshell.response.PreparedSystem.retuned` shares.
     """
     size = size_of(dimensionless(system) if isinstance(system, System) else system, settings)
+    if settings.dimensions == 3:
+        return spatial_cost(system if isinstance(system, System) else system.system, settings, size)
     direct = settings.engine == "direct"
     memory = _direct_bytes(size) if direct else _spectral_bytes(size)
     if settings.modes == "auto":
@@ -199,12 +106,12 @@ def _block_bytes(size: Size, nodes: int) -> float:
     """Return what all threads together work with when so many nodes are solved in blocks."""
     pairs = size.orders * nodes
     blocks = max(1, round(pairs / max(64 * size.orders, _BLOCK_PAIRS)))
-    return min(WORKERS, blocks) * (10.0 + 12.0 * size.shells) * _COMPLEX * pairs / blocks
+    return min(WORKERS, blocks) * (10.0 + 12.0 * size.shells) * COMPLEX * pairs / blocks
 
 
 def _sampled_bytes(size: Size, top: float) -> float:
     """Return what the estimate of left-out orders works with: ratios at every order up to *top*, at one node in eight."""
-    return (4.0 + 2.6 * size.shells) * _COMPLEX * (top + 1.0) * size.nodes / _SAMPLE_STRIDE
+    return (4.0 + 2.6 * size.shells) * COMPLEX * (top + 1.0) * size.nodes / _SAMPLE_STRIDE
 
 
 def _spectral_bytes(size: Size) -> float:
@@ -214,11 +121,11 @@ def _spectral_bytes(size: Size) -> float:
     structure = linear + ((n * n + n) * plane if size.linked else 0.0)
     solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes)
     tabulated = structure + size.tabulated * (9.0 * plane + 35.0 * size.orders * size.nodes)
-    stages = [solved, tabulated, structure + _COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
+    stages = [solved, tabulated, structure + COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
     held = structure
     if size.linked:
         forced = 2.0 * n * size.parities * plane
-        forces = _REAL * 6.0 * size.points * size.instants
+        forces = REAL * 6.0 * size.points * size.instants
         working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
         stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.parities * plane]
         held += left + forces + forced
@@ -240,23 +147,23 @@ def _marched_bytes(size: Size) -> tuple[float, float]:
     longest = length * 2 ** int(math.log2(max(1, size.instants // length)))
     rates = size.controlled * n * size.history  # of the sensors, kept for the error of the step
     kernels = pairs * size.history + rates
-    left = kernels + 2.0 * n * size.source_parities * size.history + 3.0 * pairs * _COMPLEX * size.orders * longest
+    left = kernels + 2.0 * n * size.source_parities * size.history + 3.0 * pairs * COMPLEX * size.orders * longest
     state = (n + outputs + n) * size.parities * size.history + 2.0 * size.controlled * size.parities * size.history
-    matrices = _REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))
+    matrices = REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))
     circle = 128.0 * (size.parities * size.orders) ** 2 if size.controlled else 0.0
-    transforms = 1.5 * _COMPLEX * size.orders * longest * (pairs + n * size.parities)
+    transforms = 1.5 * COMPLEX * size.orders * longest * (pairs + n * size.parities)
     making = 4.5 * size.plane  # one pair of shells at a time
     return max(left + state + matrices + circle + transforms, kernels + making), left
 
 
 def _exact_bytes(size: Size) -> tuple[float, float]:
     """Return what linear absorbers work with, and what of it stays."""
-    spectra = 3.0 * _COMPLEX * size.points * size.nodes
+    spectra = 3.0 * COMPLEX * size.points * size.nodes
     if size.ring:
         return spectra + 14.0 * size.plane, 0.0
-    width = min(size.nodes, max(4, int(_RECEPTANCE_BYTES / (_COMPLEX * size.points**2))))
+    width = min(size.nodes, max(4, int(_RECEPTANCE_BYTES / (COMPLEX * size.points**2))))
     blocks = math.ceil(size.nodes / width)
-    each = _COMPLEX * width * (2.5 * size.points**2 + size.points * size.orders)
+    each = COMPLEX * width * (2.5 * size.points**2 + size.points * size.orders)
     return spectra + min(WORKERS, blocks) * each, 0.0
 
 

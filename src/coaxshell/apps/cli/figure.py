@@ -49,6 +49,10 @@ def figure(
     from coaxshell.apps.paper import StudyRecipe, figure_recipe
     from coaxshell.plotting import FIGURE_SUFFIXES
 
+    if request.dimensions != options.DIMENSIONS:
+        raise InputError(
+            "--dimensions", f"{request.dimensions} is not what the paper's figures have", "leave it out: they are of two dimensions"
+        )
     recipe = figure_recipe(number)
     target = Outputs(force).file(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
     if source and (preset or changes):

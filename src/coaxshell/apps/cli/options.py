@@ -12,7 +12,7 @@ import typer
 
 from coaxshell.errors import InputError
 
-DURATION, TIME_STEP, MODES = "5", "1e-3", "150"
+DURATION, TIME_STEP, MODES, DIMENSIONS = "5", "1e-3", "150", "2"
 """The paper's resolution, as the help shows it."""
 
 SetOption = Annotated[
@@ -30,6 +30,22 @@ ToleranceOption = Annotated[str, typer.Option("--tolerance", metavar="ERROR", he
 EngineOption = Annotated[str, typer.Option("--engine", metavar="spectral|direct", help="How to solve.")]
 RefinementOption = Annotated[
     str, typer.Option("--refinement", metavar="N", help="Solve at time-step/N and keep every N-th instant: for stiff absorbers.")
+]
+DimensionsOption = Annotated[str, typer.Option("--dimensions", metavar="2|3", help="2, all alike along the axis, or 3.")]
+StationsOption = Annotated[
+    str,
+    typer.Option(
+        "--stations", metavar="Z,Z,...", help='Axial positions at which a run in three dimensions answers, in m or as in "0 m,70 cm".'
+    ),
+]
+AxialModesOption = Annotated[
+    str | None, typer.Option("--axial-modes", metavar="K", help="Largest axial wavenumber times a.", show_default="as --modes")
+]
+AxialPeriodOption = Annotated[
+    str | None,
+    typer.Option(
+        "--axial-period", metavar="LENGTH", help="After which the answer repeats along the axis.", show_default="what causality asks"
+    ),
 ]
 ForceOption = Annotated[bool, typer.Option("--force", help="Overwrite what exists already.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document for programs instead of a table.")]
@@ -83,7 +99,10 @@ def limit(option: str, text: str | None) -> float | None:
     return value
 
 
-_OF_SETTINGS = ("duration", "time_step", "modes", "tolerance", "engine", "refinement")
+_OF_SETTINGS = (
+    *("duration", "time_step", "modes", "tolerance", "engine", "refinement"),
+    *("dimensions", "stations", "axial_modes", "axial_period"),
+)
 _OF_FIELDS = ("times", "until", "frames", "fps", "pixels", "width", "units", "points", "displaced", "output", "folder", "path")
 
 
@@ -129,12 +148,17 @@ def _value(text: str) -> Any:
 
 @contextmanager
 def named_as_options(**names: str) -> Iterator[None]:
-    """Let errors about arguments name the option instead: ``time_step`` becomes ``--time-step``, or what *names* says of it."""
+    """Let errors about arguments name the option instead: ``time_step`` becomes ``--time-step``, or what *names* says of it.
+
+    An item of a setting, such as ``stations[1]``, is called by its option too: the error shows its text.
+    """
     try:
         yield
     except InputError as error:
-        if error.where in names or error.where in _OF_SETTINGS + _OF_FIELDS:
-            option = names.get(error.where, error.where).replace("_", "-")
+        name, item, _ = error.where.partition("[")
+        where = name if item and name in _OF_SETTINGS else error.where
+        if where in names or where in _OF_SETTINGS + _OF_FIELDS:
+            option = names.get(where, where).replace("_", "-")
             raise InputError(f"--{option}", error.problem, error.remedy) from None
         raise
 

@@ -101,6 +101,10 @@ class Request:
     tolerance: options.ToleranceOption = "1e-3"
     engine: options.EngineOption = "spectral"
     refinement: options.RefinementOption = "1"
+    dimensions: options.DimensionsOption = options.DIMENSIONS
+    stations: options.StationsOption = "0"
+    axial_modes: options.AxialModesOption = None
+    axial_period: options.AxialPeriodOption = None
 
     def solve(self, system: System, *, quiet: bool) -> Response:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
@@ -115,7 +119,7 @@ class Request:
 
     def settings(self, system: System) -> Settings:
         """Return the settings of a run of a system; InputError names the option that is wrong."""
-        return settings_of(system, asdict(self))
+        return settings_of(system, {name: text for name, text in asdict(self).items() if text is not None})
 
 
 def settings_of(system: System, given: Mapping[str, str]) -> Settings:

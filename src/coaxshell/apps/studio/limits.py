@@ -14,6 +14,7 @@ from coaxshell.limits import (
     STUDIO_SAMPLES,
     STUDIO_SHELLS,
     STUDIO_SOURCES,
+    STUDIO_STATIONS,
     STUDIO_UPLOAD,
 )
 from coaxshell.model import AbsorberRing, Sampled, Shell, System
@@ -22,13 +23,14 @@ from coaxshell.model.naming import suggestion
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.memory import words_of
 from coaxshell.solver.cost import run_cost
-from coaxshell.solver.settings import Settings
+from coaxshell.solver.dimensions import require_dimensions
+from coaxshell.solver.settings import AXIAL, Settings
 
 BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUDIO_NESTING.value
 SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABSORBERS.value
-SOURCES, SAMPLES = STUDIO_SOURCES.value, STUDIO_SAMPLES.value
+SOURCES, SAMPLES, STATIONS = STUDIO_SOURCES.value, STUDIO_SAMPLES.value, STUDIO_STATIONS.value
 PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
-ENTRIES = ("duration", "time_step", "modes", "refinement")
+ENTRIES = ("duration", "time_step", "modes", "refinement", "dimensions", "stations", "axial_modes", "axial_period")
 """Entries of a resolution that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
 MODES, STEPS, REFINEMENT = 300, 20_000, 8
@@ -68,6 +70,7 @@ def table() -> dict[str, int]:
         "layers": LAYERS,
         "absorbers": ABSORBERS,
         "sources": SOURCES,
+        "stations": STATIONS,
         "samples": SAMPLES,
         "modes": MODES,
         "steps": STEPS,
@@ -120,11 +123,16 @@ def check_system(system: System) -> None:
 
 
 def check_cost(system: System, settings: Settings, *, live: bool) -> None:
-    """Raise InputError for a run that takes more memory or time than one request may, whatever it is that makes it large."""
+    """Raise InputError for a run that takes more memory or time than one request may, whatever it is that makes it large.
+
+    Also for one that has no solution in the dimensions asked for.
+    """
+    require_dimensions(system, settings)
     cost, most = run_cost(system, settings), LIVE_COST if live else FULL_COST
     if cost.memory > most.memory or cost.seconds > most.seconds:
         found = f"a run of this system at this resolution takes about {words_of(cost.memory)} and {cost.duration}"
-        remedy = f"at most {words_of(most.memory)} and {most.duration} here: fewer orders, absorbers or shells, or a coarser time step"
+        fewer = "orders, stations or shells" if settings.dimensions == 3 else "orders, absorbers or shells"
+        remedy = f"at most {words_of(most.memory)} and {most.duration} here: fewer {fewer}, or a coarser time step"
         raise InputError("resolution", found, remedy)
 
 
@@ -172,14 +180,16 @@ def settings_of(given: object, *, live: bool, system: System | None = None) -> S
         raise InputError("resolution.time_step", asked, f"at most {most_steps:,}: a step of {least:.3g} or more, or a shorter duration")
     if settings.refinement > REFINEMENT:
         raise _above("resolution.refinement", settings.refinement, REFINEMENT, "steps a step")
+    if len(settings.stations) > STATIONS:
+        raise _above("resolution.stations", len(settings.stations), STATIONS, "stations")
     if modes * steps > MODE_STEPS:
         raise _above("resolution", modes * steps, MODE_STEPS, "orders times steps")
     return settings
 
 
 def table_of(settings: Settings) -> dict[str, Any]:
-    """Return of the settings what a page may choose, by name."""
-    return {name: getattr(settings, name) for name in ENTRIES}
+    """Return of the settings what a page may choose, by name, as :meth:`Settings.arguments`."""
+    return {name: value for name, value in settings.arguments().items() if name in ENTRIES}
 
 
 def wrong_with(given: object, system: System | None) -> list[InputError]:
@@ -194,8 +204,9 @@ def wrong_with(given: object, system: System | None) -> list[InputError]:
             break
         except InputError as error:
             found.append(error)
-            name = error.where.removeprefix("resolution.")
-            left = {key: value for key, value in left.items() if key != name} if isinstance(left, dict) and name in left else None
+            name = error.where.removeprefix("resolution.").partition("[")[0]
+            gone = (name, *AXIAL) if name == "dimensions" else (name,)  # without it, the others would be told to have no effect
+            left = {key: value for key, value in left.items() if key not in gone} if isinstance(left, dict) and name in left else None
     return found
 
 

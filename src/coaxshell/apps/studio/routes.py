@@ -202,8 +202,12 @@ async def upload(request: Request) -> Response:
         return JSONResponse(refusals.told(error))
     finally:
         path.unlink(missing_ok=True)
-    resolution = {name: value for name in limits.ENTRIES if isinstance(value := settings.get(name), int | float) and math.isfinite(value)}
+    resolution = {name: value for name in limits.ENTRIES if _finite(value := settings.get(name)) or (name == "stations" and value)}
     return await conversation({"toml": text}, resolution=resolution)
+
+
+def _finite(value: object) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)
 
 
 def routes() -> list[BaseRoute]:

@@ -1,0 +1,108 @@
+"""The size of a run: the numbers on which its cost depends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from coaxshell.model.pulses import Sampled
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.excitation import source_parities
+from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.linear_ring import is_ring
+from coaxshell.solver.sampled_orders import crossing_order
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.settings import MAX_MODES, Settings
+
+COMPLEX, REAL = 16.0, 8.0
+"""Bytes of a number."""
+_MODES_OF_AUTO = 300
+"""Orders that "auto" is taken for until it is known how many it finds."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """The numbers on which the cost of a run depends.
+
+    Attributes
+    ----------
+    shells, controlled : int
+        All, and those whose actuators have limits.
+    feedback : bool
+        Whether there is control at all.
+    points : int
+        Where absorbers touch shells, two each; mirror images are carried once where all is symmetric.
+    nonlinear, ring : bool
+        Whether absorbers have cubic springs, and whether linear ones are an even ring.
+    source_parities, parities : int
+        Of the Fourier series that the sources excite, and the absorbers.
+    orders, nodes, instants : int
+        M + 1; of the Laplace contour; of the march, refinement included.
+    sampled_top : float
+        The highest order that the estimate of what is left out looks at.
+    tabulated : int
+        Sources of a spherical wave, whose projections are made at all nodes at once.
+    samples : int
+        Of records.
+    """
+
+    shells: int
+    controlled: int
+    feedback: bool
+    points: int
+    nonlinear: bool
+    ring: bool
+    source_parities: int
+    parities: int
+    orders: int
+    nodes: int
+    instants: int
+    sampled_top: float
+    tabulated: int
+    samples: int
+
+    @property
+    def plane(self) -> float:
+        """Bytes of one complex number for each order and node."""
+        return COMPLEX * self.orders * self.nodes
+
+    @property
+    def history(self) -> float:
+        """Bytes of one real number for each order and instant."""
+        return REAL * self.orders * self.instants
+
+    @property
+    def linked(self) -> bool:
+        """Whether forces act on the structure beside those of the sources."""
+        return self.points > 0 or self.controlled > 0
+
+    @property
+    def marched(self) -> bool:
+        """Whether they are nonlinear."""
+        return self.nonlinear or self.controlled > 0
+
+
+def size_of(problem: Problem, settings: Settings) -> Size:
+    """Return the numbers of a run; "auto" counts as 300 orders."""
+    system, steps = problem.system, settings.steps * settings.refinement
+    grid = LaplaceGrid(settings.time_step / settings.refinement, steps)
+    excited = source_parities(system.sources)
+    links = absorber_set(problem, system.absorber_list, excited)
+    orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
+    feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
+    saturates = system.control is not None and system.control.saturation
+    return Size(
+        shells=len(problem.shells),
+        controlled=len(feedback) if saturates else 0,
+        feedback=bool(feedback),
+        points=2 * links.count,
+        nonlinear=not links.is_linear,
+        ring=links.count > 0 and is_ring(links),
+        source_parities=excited,
+        parities=links.parities if links.count else excited,
+        orders=orders,
+        nodes=grid.samples // 2 + 1,
+        instants=steps + 1,
+        sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
+        tabulated=sum(source.geometry == "spherical" for source in system.sources),
+        samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
+    )
