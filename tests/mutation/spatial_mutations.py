@@ -45,4 +45,37 @@ SPATIAL = (
         "bending waves that keep pace with the trace of an inclined wave",
         "solver/test_inclination.py",
     ),
+    # structure
+    Mutation(
+        "axial-tilt",
+        "structure/axial.py",
+        "[zero + m / radius**2, zero - k / radius,",
+        "[zero, zero - k / radius,",
+        "twist of a wall by its axial displacement: a tilt is free of strain",
+        "structure/test_axial_walls.py",
+    ),
+    Mutation(
+        "axial-elimination",
+        "structure/axial.py",
+        "axial = (uv * vw - vv * uw)",
+        "axial = (uv * vw + vv * uw)",
+        "axial displacement per normal one: sign",
+        "structure/test_axial_walls.py",
+    ),
+    Mutation(
+        "axial-potential",
+        "structure/axial.py",
+        "+ k**2 * _axial(layer).zeta11)",
+        "- k**2 * _axial(layer).zeta11)",
+        "permittivity of an open-circuit layer along the axis",
+        "structure/test_axial_walls.py",
+    ),
+    Mutation(
+        "axial-shear",
+        "structure/axial_stress.py",
+        "w_z=-2.0 * shear",
+        "w_z=2.0 * shear",
+        "shear stress by the twist of a station's field",
+        "structure/test_axial_stress.py",
+    ),
 )

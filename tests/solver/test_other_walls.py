@@ -43,7 +43,7 @@ class SprungWall(ShellModel):
     def damping(self):
         return self.damper
 
-    def stress_gain(self, modes, depth=None):
+    def stress_gain(self, modes, depth=None, component="hoop"):
         return Gain(np.zeros_like(modes.orders), np.full_like(modes.orders, self.spring))
 
     def energy(self, motion):

@@ -14,6 +14,7 @@ A wall of another theory is a subclass of :class:`ShellModel`; nothing else need
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self, TypeVar
 
@@ -64,6 +65,53 @@ class Gain(NamedTuple):
         return found if self.u is None or axial is None else found + self.u * axial
 
 
+FIELDS = ("w", "w_z", "w_zz", "v", "v_z", "u", "u_z")
+"""Displacements and their derivatives along the axis, at a station."""
+
+
+class FieldGain(NamedTuple):
+    """A quantity of a station per unit of the fields there, each of the shape of the orders; None where a field does not count.
+
+    Attributes
+    ----------
+    w, w_z, w_zz, v, v_z, u, u_z : ndarray or None
+        Per unit amplitude of w, dw/dz, d2w/dz2, v, dv/dz, u and du/dz.
+    potential : float
+        Per volt of the potential of the piezoelectric layer in which the point lies.
+    layer : int or None
+        Its number among the piezoelectric layers, from the inside out.
+    """
+
+    w: FloatArray | None = None
+    w_z: FloatArray | None = None
+    w_zz: FloatArray | None = None
+    v: FloatArray | None = None
+    v_z: FloatArray | None = None
+    u: FloatArray | None = None
+    u_z: FloatArray | None = None
+    potential: float = 0.0
+    layer: int | None = None
+
+    @property
+    def fields(self) -> dict[str, FloatArray]:
+        """Return the factors of the fields that count, by name."""
+        return {name: getattr(self, name) for name in FIELDS if getattr(self, name) is not None}
+
+    def recovered(self, fields: Mapping[str, FloatArray], potential: FloatArray | None = None) -> FloatArray:
+        """Return the modal amplitudes of the quantity from those of the fields, by name, and of its layer's potential: (..., orders, T)."""
+        total = sum((gain[:, None] * fields[name] for name, gain in self.fields.items()), np.zeros(1))
+        if self.layer is None:
+            return total
+        if potential is None:
+            raise ValueError("the point lies in a piezoelectric layer: give the potential of that layer")
+        return total + self.potential * potential
+
+    def times(self, factor: float) -> FieldGain:
+        """Return the gain in other units."""
+        fields = {name: factor * gain for name, gain in self.fields.items()}
+        return FieldGain(**fields, potential=factor * self.potential, layer=self.layer)
+
+
 @dataclass
 class WallOperator:
     """One wall at some modes and nodes, each of shape (orders, nodes): dynamic stiffness Z (load per W), feedback included, V/W and U/W.
@@ -101,6 +149,10 @@ class WallMotion(NamedTuple):
         Integrals of cos^2(m theta) over the circle, beta pi.
     w, v, w_rate, v_rate : ndarray, shape (parities, M + 1, T)
         W, V, dW/dt, dV/dt.
+    u, u_rate : ndarray or None
+        U and dU/dt, of the same shape, with an axial wavenumber.
+    wavenumber : float
+        k, in units of 1/a.
     """
 
     orders: FloatArray
@@ -109,6 +161,9 @@ class WallMotion(NamedTuple):
     v: FloatArray
     w_rate: FloatArray
     v_rate: FloatArray
+    u: FloatArray | None = None
+    u_rate: FloatArray | None = None
+    wavenumber: float = 0.0
 
 
 class WallEnergy(NamedTuple):
@@ -161,6 +216,10 @@ class ShellModel(ABC):
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return the highest frequency at which each mode resonates by itself, radians per transit: steps and contours resolve it."""
 
+    def fastest_wave(self, max_wavenumber: float) -> float:
+        """Return the speed, in c_e, of the fastest wave along its axis up to a wavenumber; 0 where nothing runs along it."""
+        return 0.0
+
     @property
     def damping(self) -> float:
         """Coefficient of s in its impedance without feedback as s grows: 0 for a wall without losses."""
@@ -199,6 +258,10 @@ class ShellModel(ABC):
         """Return volts of an open-circuit layer per unit (V, W, U) (Eq. 20); zeros if it has no such layer."""
         return Gain(np.zeros_like(modes.orders), np.zeros_like(modes.orders))
 
+    def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:
+        """Return volts per unit (V, W, U) of every open-circuit layer, from the inside out (Eq. 20)."""
+        return ()
+
     @property
     def actuator_pressure(self) -> float:
         """Inward pressure per volt of control (Eqs. 4, 13); 0 without an actuator."""
@@ -224,18 +287,30 @@ class ShellModel(ABC):
 
     # Stress, energy, range of the theory
 
-    def stress_gain(self, modes: Modes, depth: float | None = None) -> Gain:
-        """Return the hoop stress per unit (V, W): of the core at the mid-surface (Eq. 22), or at a depth (outward of the mid-surface).
+    def stress_gain(self, modes: Modes, depth: float | None = None, component: str = "hoop") -> Gain:
+        """Return a stress per unit (V, W, U): of the core at the mid-surface (Eq. 22), or at a depth (outward of the mid-surface).
+
+        "hoop" and "axial" stress go with cos m theta cos kz, as w does, "shear" with sin m theta sin kz: around as v does, along as u.
 
         Raises
         ------
         InputError
-            If it has no stress, or the depth lies outside it.
+            If it has no stress, or none of that component.
         """
         raise InputError("shell", "this wall has no stress", "choose another one")
 
-    def control_stress(self, depth: float) -> float:
-        """Return the hoop stress per volt of control at a depth (Eq. A.10)."""
+    def field_gain(self, orders: FloatArray, depth: float | None = None, component: str = "hoop") -> FieldGain:
+        """Return a stress, as :meth:`stress_gain` names it, per unit of the fields at a station, which are sums over all wavenumbers.
+
+        Raises
+        ------
+        InputError
+            If it has no stress, or none of that component.
+        """
+        raise InputError("shell", "this wall has no stress from fields", "choose another one")
+
+    def control_stress(self, depth: float, component: str = "hoop") -> float:
+        """Return a stress per volt of control at a depth (Eq. A.10)."""
         return 0.0
 
     @property

@@ -22,11 +22,14 @@ from coaxshell.structure.thin import potential_gain
 
 
 class WallPoint(NamedTuple):
-    """A point of the wall: its z (m, outward), the plane-strain modulus there (Pa), and the piezoelectric layer it lies in, if any."""
+    """A point of the wall: its z (m, outward), the plane-strain modulus there (Pa), the piezoelectric layer it lies in, if any, and the
+    number of its layer from the inside out.
+    """
 
     z: float
     modulus: float
     piezoelectric: PiezoelectricLayer | None
+    number: int = 0
 
 
 def design_stress_gain(section: Section, m: npt.ArrayLike) -> Gain:
@@ -60,10 +63,11 @@ def wall_point(section: Section, z: float) -> WallPoint:
     inner, outer = section.layers[0][0], section.layers[-1][1]
     slack = 1e-9 * (outer - inner)  # forgives the rounding of sums of thicknesses
     z = min(max(z, inner), outer)
-    bottom, top, modulus = next((layer for layer in section.layers if z < layer[1] - slack), section.layers[-1])
+    number = next((i for i, layer in enumerate(section.layers) if z < layer[1] - slack), len(section.layers) - 1)
+    bottom, top, modulus = section.layers[number]
     middle = (bottom + top) / 2.0
     piezoelectric = next((layer for layer in section.piezoelectric if abs(layer.centre - middle) <= slack), None)
-    return WallPoint(z, modulus, piezoelectric)
+    return WallPoint(z, modulus, piezoelectric, number)
 
 
 def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> Gain:
@@ -96,9 +100,11 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> Gain:
     return Gain(gain_v, gain_w)
 
 
-def control_stress(where: WallPoint) -> float:
-    """Return the hoop stress per volt of control at a point of the wall, Pa/V: -e32/t in the actuator (Eqs. 4, A.10), 0 elsewhere."""
+def control_stress(where: WallPoint, component: str = "hoop") -> float:
+    """Return a stress per volt of control at a point, Pa/V: in the actuator -e32/t (hoop; Eqs. 4, A.10) or -e31/t (axial), else 0."""
     layer = where.piezoelectric
-    if layer is None or layer.role != "actuator":
+    if layer is None or layer.role != "actuator" or component == "shear":
         return 0.0
-    return -layer.actuator_coupling / layer.thickness
+    if component == "hoop":
+        return -layer.actuator_coupling / layer.thickness
+    return 0.0 if layer.axial is None else -layer.axial.actuator_coupling / layer.thickness

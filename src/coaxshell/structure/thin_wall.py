@@ -16,9 +16,21 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.structure.axial import axial_gain, axial_operator, natural_frequencies, potential, strain
-from coaxshell.structure.section import Section
-from coaxshell.structure.shell_model import ControlGains, Gain, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness, square
+from coaxshell.structure.axial import axial_gain, axial_operator, laminate_of, natural_frequencies, potential, strain
+from coaxshell.structure.axial_energy import axial_energy
+from coaxshell.structure.axial_stress import axial_stress_gain, stress_of_fields
+from coaxshell.structure.section import PiezoelectricLayer, Section
+from coaxshell.structure.shell_model import (
+    ControlGains,
+    FieldGain,
+    Gain,
+    ShellModel,
+    WallEnergy,
+    WallMotion,
+    WallOperator,
+    WallStiffness,
+    square,
+)
 from coaxshell.structure.stress import control_stress, design_stress_gain, stress_gain, wall_point
 from coaxshell.structure.thin import bending_strain, open_circuit_stiffness, potential_gain, wall_stiffness
 
@@ -62,6 +74,13 @@ class ThinWall(ShellModel):
             return natural_frequencies(self.section, modes)[:, -1]
         return np.asarray(np.sqrt(self.stiffness(modes).vv / self.mass))
 
+    def fastest_wave(self, max_wavenumber: float) -> float:
+        """Return the faster of stretching (or shear) waves, sqrt(a11/M), and bending waves of the largest wavenumber, 2 k sqrt(d11/M)."""
+        membrane, _, bending = laminate_of(self.section).moments
+        stiffening = sum(layer.axial.coupling**2 / layer.zeta33 for layer in self.section.piezoelectric if layer.axial is not None)
+        stretching = math.sqrt(max(membrane.q11, membrane.q66) / self.mass)
+        return max(stretching, 2.0 * max_wavenumber * math.sqrt((bending.q11 + stiffening) / self.mass))
+
     @property
     def crossing_order(self) -> float:
         """R sqrt(a22/d22), where membrane and bending frequencies cross."""
@@ -77,9 +96,16 @@ class ThinWall(ShellModel):
         layer = self.section.layer(role)
         if layer is None:
             return super().sensor_gain(modes, role)
-        if not modes.two_dimensional:
-            return axial_gain(potential(layer, modes, self.radius, strain(modes, self.radius)))
-        return potential_gain(layer, modes.orders, self.radius)
+        return self._potential_gain(layer, modes)
+
+    def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:
+        """Return volts per unit (V, W, U) of every open-circuit layer, from the inside out (Eq. 20)."""
+        return tuple(self._potential_gain(layer, modes) for layer in self.section.piezoelectric)
+
+    def _potential_gain(self, layer: PiezoelectricLayer, modes: Modes) -> Gain:
+        if modes.two_dimensional:
+            return potential_gain(layer, modes.orders, self.radius)
+        return axial_gain(potential(layer, modes, self.radius, strain(modes, self.radius)))
 
     @property
     def actuator_pressure(self) -> float:
@@ -94,14 +120,20 @@ class ThinWall(ShellModel):
             return super().voltage_limit(field)
         return (actuator.field_limit if field is None else field) * actuator.thickness
 
-    def stress_gain(self, modes: Modes, depth: float | None = None) -> Gain:
-        """Return the hoop stress of the core at the mid-surface (Eq. 22), or at a depth (Eqs. A.4, A.5)."""
+    def stress_gain(self, modes: Modes, depth: float | None = None, component: str = "hoop") -> Gain:
+        """Return a stress of the core at the mid-surface (Eq. 22), or at a depth (Eqs. A.4, A.5)."""
         section, orders = self.section, modes.orders
+        if component != "hoop" or not modes.two_dimensional:
+            return axial_stress_gain(section, modes, depth, component)
         return design_stress_gain(section, orders) if depth is None else stress_gain(section, orders, wall_point(section, depth))
 
-    def control_stress(self, depth: float) -> float:
-        """Return -e32/t within the actuator, 0 elsewhere."""
-        return control_stress(wall_point(self.section, depth))
+    def field_gain(self, orders: FloatArray, depth: float | None = None, component: str = "hoop") -> FieldGain:
+        """Return a stress per unit of the fields at a station."""
+        return stress_of_fields(self.section, orders, depth, component)
+
+    def control_stress(self, depth: float, component: str = "hoop") -> float:
+        """Return -e32/t (axial -e31/t) within the actuator, 0 elsewhere."""
+        return control_stress(wall_point(self.section, depth), component)
 
     @property
     def faces(self) -> tuple[float, float]:
@@ -114,6 +146,8 @@ class ThinWall(ShellModel):
         Kinetic M (dW/dt^2 + dV/dt^2); strain (V, W) K (V, W) with the layers' own membrane, cross and bending stiffness; piezoelectric
         the same with sum_j kappa_j k k', the open-circuit stiffening.
         """
+        if motion.wavenumber != 0.0:
+            return axial_energy(self.section, motion)
         orders, section, (w, v) = motion.orders, self.section, (motion.w, motion.v)
         weight = 0.5 * self.radius * motion.circle
         k = wall_stiffness(replace(section, piezoelectric=()), orders)

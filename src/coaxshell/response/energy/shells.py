@@ -27,7 +27,8 @@ def shell_dissipation(motion: Motion, shell: int) -> FloatArray | None:
 
 
 def _of_wall(motion: Motion, shell: int, instants: slice) -> WallMotion:
-    return WallMotion(motion.orders, motion.circle, *(x[..., instants] for x in motion.histories(shell)))
+    w, v, w_rate, v_rate = (x[..., instants] for x in motion.histories(shell))
+    return WallMotion(motion.orders, motion.circle, w, v, w_rate, v_rate)
 
 
 def actuator_work(motion: Motion) -> FloatArray:
