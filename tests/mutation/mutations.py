@@ -338,6 +338,31 @@ MUTATIONS = (
         "voltage limit that a response reports",
         "response/test_voltages.py",
     ),
+    Mutation(
+        "off-the-plane-in-two",
+        "solver/dimensions.py",
+        "if value != 0.0:",
+        "if value > 1.0:",
+        "a source off the plane is solved as if it lay in it",
+        "solver/test_axial_settings.py",
+    ),
+    Mutation(
+        "two-dimensions-told-as-before",
+        "solver/settings.py",
+        "or value != _LATER[name]",
+        "or value is not None",
+        "keys of studies and settings of saved runs in two dimensions change",
+        "solver/test_axial_settings.py",
+    ),
+    # model
+    Mutation(
+        "z-lost-in-files",
+        "model/toml.py",
+        "if getattr(source, name, None) == 0.0}",
+        "if getattr(source, name, None) != 0.5}",
+        "axial position and inclination of a source are lost in files and hashes",
+        "model/test_toml.py",
+    ),
     # response
     Mutation(
         "peak-instant",
