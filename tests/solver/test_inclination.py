@@ -11,8 +11,10 @@ import pytest
 import coaxshell as cx
 from coaxshell.acoustics.sources import PlaneGeometry
 from coaxshell.errors import InputError
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.inclination import bending_ahead
 from coaxshell.solver.axial.sampling import axial_sampling
+from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 
@@ -65,17 +67,49 @@ def test_bending_waves_ahead_of_the_front_must_not_be_resolved() -> None:
 
 
 def test_bending_waves_that_keep_pace_with_the_trace() -> None:
-    """Their frequency satisfies the dispersion relation; with water on the wall the pole lies right of the axis there, else on it."""
+    """Their frequency satisfies the dispersion relation, and their energy is faster than they are."""
     wall, slowness = inclined(0.0).shells[1], np.sin(np.radians(15.0))
-    bending, mass = wall.section.bending, wall.mass
+    bending, mass = wall.section.bending + sum(layer.coupling**2 / layer.zeta33 for layer in wall.section.piezoelectric), wall.mass
     for order in (0, 40):
         frequency = bending_ahead(wall, slowness, order)
         np.testing.assert_allclose(mass * frequency**2, bending * ((frequency * slowness) ** 2 + order**2) ** 2, rtol=1e-12)
         k = frequency * slowness
         assert 2.0 * k**2 / (k**2 + order**2) > 1.0
     assert bending_ahead(wall, slowness, 10**6) == pytest.approx(0.5 * bending_ahead(wall, slowness, 0))
-    for water in (0.0, 1.0 / np.cos(np.radians(15.0))):
-        roots = np.roots([bending * slowness**4, 0.0, mass, water])
-        upper = roots[np.argmax(roots.imag)]
-        np.testing.assert_allclose(upper.imag, bending_ahead(wall, slowness, 0), rtol=1e-3)
-        np.testing.assert_allclose(upper.real, water / (2.0 * mass), rtol=1e-3, atol=1e-9)
+
+
+@pytest.mark.parametrize("order", [0, 20])
+@pytest.mark.parametrize("inside", ["vacuum", "water-1400"])
+def test_the_coupled_system_has_a_pole_right_of_the_axis_where_bending_waves_run_ahead(order: int, inside: str) -> None:
+    """At the frequency foreseen, and about the rate 1/(2 M cos alpha) a wetted face at which a plate loses energy; steel of 12 mm."""
+    steel = cx.Layer(cx.Elastic(density=7800, youngs_modulus=210e9, poisson_ratio=0.3), thickness=0.012)
+    source = cx.PlaneShock(peak_pressure=1e5, decay_time=1e-4)
+    problem = dimensionless(cx.System(shells=[cx.Shell(radius=1.0, layers=[steel])], fluids=[inside, "water-1400"], source=source))
+    faces = sum(fluid is not None for fluid in problem.fluids)
+    frequency = bending_ahead(problem.shells[0], np.sin(np.radians(10.0)), order)
+    rate = faces / (2.0 * problem.shells[0].mass * np.cos(np.radians(10.0)))
+    pole = _pole(problem, 10.0, order, complex(rate, frequency))
+    np.testing.assert_allclose(pole.imag, frequency, rtol=1e-4)
+    np.testing.assert_allclose(pole.real, rate, rtol=0.01)
+
+
+def test_open_circuit_layers_make_bending_waves_faster_by_no_more_than_foreseen() -> None:
+    problem = inclined(10.0)
+    wall = problem.shells[1]
+    foreseen = bending_ahead(wall, np.sin(np.radians(10.0)), 0)
+    without = bending_ahead(replace(wall, section=replace(wall.section, piezoelectric=())), np.sin(np.radians(10.0)), 0)
+    assert foreseen < _pole(problem, 10.0, 0, complex(10.0, foreseen)).imag < without
+
+
+def _pole(problem: Problem, degrees: float, order: int, start: complex) -> complex:
+    """Return a zero of the determinant of an order on the trace of an inclined wave, by Newton's method."""
+    slowness = np.sin(np.radians(degrees))
+
+    def determinant(s: complex) -> complex:
+        nodes = np.array([s])
+        return complex(ModalSystem(problem, nodes, Modes.up_to(order, -1j * nodes * slowness)).determinant()[-1, 0])
+
+    s, h = start, 1e-4
+    for _ in range(30):
+        s -= determinant(s) * 2.0 * h / (determinant(s + h) - determinant(s - h))
+    return s

@@ -52,7 +52,8 @@ def bending_ahead(wall: ShellModel, trace_slowness: float, max_order: int) -> fl
     """Return the lowest angular frequency, in c_e/a, at which bending waves of orders up to a highest one run ahead of a trace."""
     if not isinstance(wall, ThinWall) or wall.section.bending <= 0.0:
         return math.inf
-    b, square = math.sqrt(wall.mass / wall.section.bending), trace_slowness**2
+    stiffened = wall.section.bending + sum(layer.coupling**2 / layer.zeta33 for layer in wall.section.piezoelectric)  # at most so much
+    b, square = math.sqrt(wall.mass / stiffened), trace_slowness**2
     apart = max(b * b - 4.0 * square * (max_order / wall.radius) ** 2, 0.0)
     return (b + math.sqrt(apart)) / (2.0 * square)
 
