@@ -3,7 +3,7 @@
 A plane wave inclined by alpha runs along the axis at 1/sin alpha (in c_e) from the infinite past. What travels along the axis faster
 than that gets ahead of it: then nothing is at rest before the front comes, and there is no start.
 
-Bending waves get faster with frequency. With b^2 = I/d22 and n = m/R, those that keep pace with the trace have
+Bending waves get faster with frequency. With b^2 = I/d11 and n = m/R, those that keep pace with the trace have
 
     b omega = n^2 + (k^2 = omega^2 sin^2 alpha),        omega = [b +- sqrt(b^2 - 4 n^2 sin^2 alpha)]/(2 sin^2 alpha),
 
@@ -24,7 +24,9 @@ from coaxshell.solver.axial.causality import rounded_up
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.shell_model import ShellModel
-from coaxshell.structure.thin_wall import ThinWall
+
+_SHORT = 1e9
+"""A wavenumber, in 1/a, at which bending waves are the fastest of any wall that bends: 2 k/b of thin ones."""
 
 
 def require_leading_fronts(problem: Problem, settings: Settings) -> None:
@@ -50,10 +52,10 @@ def require_leading_fronts(problem: Problem, settings: Settings) -> None:
 
 def bending_ahead(wall: ShellModel, trace_slowness: float, max_order: int) -> float:
     """Return the lowest angular frequency, in c_e/a, at which bending waves of orders up to a highest one run ahead of a trace."""
-    if not isinstance(wall, ThinWall) or wall.section.bending <= 0.0:
+    fastest = wall.fastest_wave(_SHORT)
+    if fastest == 0.0:
         return math.inf
-    stiffened = wall.section.bending + sum(layer.coupling**2 / layer.zeta33 for layer in wall.section.piezoelectric)  # at most so much
-    b, square = math.sqrt(wall.mass / stiffened), trace_slowness**2
+    b, square = 2.0 * _SHORT / fastest, trace_slowness**2
     apart = max(b * b - 4.0 * square * (max_order / wall.radius) ** 2, 0.0)
     return (b + math.sqrt(apart)) / (2.0 * square)
 
@@ -65,8 +67,7 @@ def _waves(problem: Problem) -> Iterator[tuple[str, float]]:
         if fluid is not None:
             yield f"sound in {region_phrase(i, count)}", 1.0 / fluid.slowness
     for i, wall in enumerate(problem.shells):
-        if isinstance(wall, ThinWall):
-            yield f"membrane waves in the {shell_phrase(i, count)}", math.sqrt(wall.section.membrane / wall.mass)
+        yield f"membrane waves in the {shell_phrase(i, count)}", wall.fastest_wave(0.0)
 
 
 def _require_fast_trace(problem: Problem, where: str, geometry: PlaneGeometry) -> None:

@@ -25,8 +25,6 @@ from coaxshell.solver.axial.causality import Front, least_period, rounded_up
 from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
-from coaxshell.structure.shell_model import ShellModel
-from coaxshell.structure.thin_wall import ThinWall
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,14 +120,7 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
 def fastest_wave(problem: Problem, highest: float) -> float:
     """Return the greatest speed of any wave along the axis, in c_e, at wavenumbers up to a highest one (in 1/a)."""
     fluids = [1.0 / fluid.slowness for fluid in problem.fluids if fluid is not None]
-    return max(fluids + [_fastest_in_wall(wall, highest) for wall in problem.shells])
-
-
-def _fastest_in_wall(wall: ShellModel, highest: float) -> float:
-    """Return sqrt(a22/I) of membrane waves, or the group speed 2 k_max sqrt(d22/I) of bending waves if it is more; 0 of no thin wall."""
-    if not isinstance(wall, ThinWall):
-        return 0.0
-    return max(math.sqrt(wall.section.membrane / wall.mass), 2.0 * highest * math.sqrt(wall.section.bending / wall.mass))
+    return max(fluids + [wall.fastest_wave(highest) for wall in problem.shells])
 
 
 def _fronts(problem: Problem) -> list[Front]:
