@@ -7,6 +7,7 @@ ORDER = (
     "paper_filled",
     "paper_double",
     "independent",
+    "axial_wavenumbers",
     "engines",
     "energy",
     "time_step",
