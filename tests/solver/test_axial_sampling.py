@@ -129,3 +129,12 @@ def test_a_period_that_is_too_short_is_refused_with_the_one_that_will_do() -> No
         axial_sampling(problem, settings)
     enough = float(error.value.remedy.split()[3])
     assert axial_sampling(problem, replace(settings, axial_period=enough)).period == enough
+
+
+def test_a_material_without_axial_constants_is_refused_before_the_run() -> None:
+    without = cx.materials.PZT4.replace(c66=None)
+    shell = cx.Shell(radius=1.0, layers=[cx.Layer("aluminium", 6e-3), cx.Layer(without, 3e-3, role="sensor")])
+    system = cx.presets.load("bare").replace(shells=[shell], fluids=["vacuum", "water-1400"])
+    settings = Settings(duration=1.0, time_step=1e-2, modes=4, dimensions=3, stations=[0.0])
+    with pytest.raises(cx.InputError, match=r"shells\[0\]\.layers\[1\]\.material\.c66"):
+        axial_sampling(dimensionless(system), settings)

@@ -43,17 +43,17 @@ class Piezoelectric(Described):
     permittivity_33: Permittivity
     """Radial permittivity at constant strain (F/m)."""
     c11: Modulus | None = None
-    """Axial stiffness (Pa); kept for completeness, unused in plane strain."""
+    """Axial stiffness (Pa); needed in three dimensions alone."""
     c12: Stiffness | None = None
-    """Axial-hoop stiffness (Pa); kept for completeness, unused in plane strain."""
+    """Axial-hoop stiffness (Pa); needed in three dimensions alone."""
     c13: Stiffness | None = None
-    """Axial-radial stiffness (Pa); kept for completeness, unused in plane strain."""
+    """Axial-radial stiffness (Pa); needed in three dimensions alone."""
     c66: Modulus | None = None
-    """Axial-hoop shear stiffness (Pa); kept for completeness, unused in plane strain."""
+    """Axial-hoop shear stiffness (Pa); needed in three dimensions alone."""
     e31: ChargePerArea | None = None
-    """Axial piezoelectric stress constant (C/m^2); kept for completeness, unused in plane strain."""
+    """Axial piezoelectric stress constant (C/m^2); needed in three dimensions alone."""
     permittivity_11: Permittivity | None = None
-    """Axial permittivity (F/m); kept for completeness, unused in plane strain."""
+    """Axial permittivity (F/m); needed in three dimensions alone."""
     permittivity_reduction: Literal["standard", "printed"] = "standard"
     """Reduced radial permittivity: "standard" is mu33 + e33^2/c33, "printed" is the paper's mu33 - e33^2/c33."""
     actuator_coupling: Literal["plane-stress", "printed"] = "plane-stress"

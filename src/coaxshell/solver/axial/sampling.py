@@ -19,12 +19,14 @@ import numpy as np
 
 from coaxshell.acoustics.sources import SphericalFrontGeometry
 from coaxshell.errors import InputError
+from coaxshell.model.layers import Shell
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.causality import Front, least_period, rounded_up
 from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
+from coaxshell.structure.laminate import require_axial_constants
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,9 +99,12 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
     Raises
     ------
     InputError
-        The period given is too short, or something runs ahead of an inclined plane wave.
+        A material lacks its axial constants, the period given is too short, or something runs ahead of an inclined plane wave.
     """
     assert isinstance(settings.modes, int)
+    for i, shell in enumerate(problem.system.shells):
+        if isinstance(shell, Shell):
+            require_axial_constants(shell, f"shells[{i}]")
     require_leading_fronts(problem, settings)
     highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
     fronts = _fronts(problem)
