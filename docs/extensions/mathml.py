@@ -8,6 +8,7 @@ import unicodedata
 from docutils import nodes
 from latex2mathml.converter import convert as to_mathml
 from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
 
@@ -18,8 +19,11 @@ STYLED = re.compile(r'<mi mathvariant="(bold|script|double-struck)">([A-Za-z]+)<
 
 
 def convert(text: str, display: str = "inline") -> str:
-    """Return LaTeX as MathML."""
-    return STYLED.sub(lambda found: f"<mi>{''.join(_letter(found[1], one) for one in found[2])}</mi>", to_mathml(text, display=display))
+    """Return LaTeX as MathML; ExtensionError for an environment that the converter would write out as letters and ampersands."""
+    found = to_mathml(text, display=display)
+    if "<mi>&</mi>" in found or "<mi>&amp;</mi>" in found:
+        raise ExtensionError(f"no MathML for {text!r}: use cases, array or pmatrix")
+    return STYLED.sub(lambda one: f"<mi>{''.join(_letter(one[1], each) for each in one[2])}</mi>", found)
 
 
 def _letter(alphabet: str, letter: str) -> str:

@@ -107,6 +107,13 @@ def test_the_period_of_a_run() -> None:
     assert (longer.period, longer.highest, longer.wavenumbers.size) == (40.0, 25.0, int(25 * 40 / (2 * np.pi)) + 1)
 
 
+def test_the_period_follows_where_the_source_is_and_when_it_fires() -> None:
+    problem, settings = bare(Settings(duration=4.0, time_step=0.01, modes=60, dimensions=3, stations=(0.0, 1.5)))
+    late = cx.SphericalWave(distance=5.0, z=-2.0, delay=1.0 * problem.scales.time, pulse=problem.system.sources[0].pulse)
+    moved = replace(problem, system=problem.system.model_copy(update={"source": late}))
+    np.testing.assert_allclose(axial_sampling(moved, settings).period, 3.5 + reach(3.0, 4.0, MEMBRANE), rtol=1e-9)
+
+
 def test_bending_waves_may_be_the_fastest() -> None:
     problem, _ = bare(Settings())
     wall = problem.shells[0]
