@@ -66,13 +66,13 @@ demo: $(STAMP_DEMO)
 	  --output $(DEMO)/film.mp4 2> $(DEMO)/.told || { cat $(DEMO)/.told >&2; exit 1; }
 	@rm -f $(DEMO)/.told
 
-# The studio's page is tested in a real browser: Debian's, installed when it is missing and we may.
+# The studio's page and the documentation are tested in a real browser: Debian's, installed when it is missing and we may.
 chromium:
 	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null || { \
-	  echo "installing chromium for the tests of the studio's page (once, about a minute)"; \
+	  echo "installing chromium for the tests of the pages (once, about a minute)"; \
 	  as=$$([ "$$(id -u)" = 0 ] || echo "sudo -n"); \
 	  { $$as apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends chromium; } >/dev/null 2>&1 || \
-	  echo "error: chromium could not be installed, so the tests of the page will fail; on Debian: apt-get install chromium" >&2; }
+	  echo "error: chromium could not be installed, so the tests of the pages will fail; on Debian: apt-get install chromium" >&2; }
 
 # Two test processes share the cores; BLAS threads of their own would only spin against each other.
 # The tests of the browser share one of them: they have one server and one browser between them.
@@ -104,7 +104,7 @@ $(STAMP_DOCS): $(STAMP)
 
 # A warning is an error, and nothing is fetched: the checks read the pages that came out.
 docs: export OPENBLAS_NUM_THREADS = 1
-docs: $(STAMP_DOCS)
+docs: $(STAMP_DOCS) chromium
 	@rm -rf docs/built
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html -d docs/generated/doctrees docs docs/built
 	@$(BIN)/python -m pytest -q -m "$(DOCS_CHECKS)" docs/checks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import inspect
 import re
 import zlib
@@ -16,6 +17,8 @@ from coaxshell.apps import verification
 
 BUILT = Path(__file__).parents[1] / "built"
 OUTSIDE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
+# Characters of code that fit the column of a page on a screen 1280 pixels wide.
+WIDEST_CODE = 104
 # What a browser fetches by itself when it shows the page; <a href> only leads somewhere when clicked.
 FETCHED = {"link": ("href",), "script": ("src",), "img": ("src", "srcset"), "source": ("src", "srcset"), "iframe": ("src",)}
 FETCHED |= {"video": ("src", "poster"), "audio": ("src",), "object": ("data",), "embed": ("src",), "image": ("href", "xlink:href")}
@@ -104,4 +107,23 @@ def test_no_formula_was_left_as_text(pages):
         if "source" in path.parts:
             continue
         text = re.sub(r"<(pre|code|script).*?</\1>", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
-        assert not re.search(r"\\(frac|hat|partial|mathrm)\b", text), path
+        assert re.findall(r"\\[a-zA-Z]+", text) == [], path
+
+
+def test_what_is_typed_stands_as_it_is_typed(pages):
+    """In running text two hyphens become a dash: ``--compare`` would be shown, and copied, as an option that does not exist."""
+    for path in pages:
+        text = re.sub(r"<(pre|code|script).*?</\1>", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+        assert re.findall(r"(?<![\w>])–[a-z][\w-]*", re.sub(r"<[^>]+>", "", text)) == [], path
+
+
+def test_code_is_not_wider_than_its_page(pages):
+    wide = []
+    for path in pages:
+        if "source" in path.parts:
+            continue
+        text = path.read_text(encoding="utf-8")
+        blocks = re.findall(r'<div class="highlight-(?:sh|toml|python|text)[^"]*">.*?<pre>(.*?)</pre>', text, re.DOTALL)
+        lines = [html.unescape(re.sub(r"<[^>]+>", "", line)) for block in blocks for line in block.splitlines()]
+        wide += [f"{path.name}: {line}" for line in lines if len(line) > WIDEST_CODE]
+    assert wide == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from typer.main import get_command
@@ -15,6 +16,9 @@ Written at every build from the commands themselves: the same text as `coaxshell
 Exit codes: 0 done; 2 bad input, with one line on stderr that says where, what is wrong and what is allowed; 130 interrupted; 1 anything
 else. Progress and warnings go to stderr, results to stdout. `--debug`, anywhere on the line, shows where an error came from.
 """
+
+# What is typed stands as it is typed: in running text two hyphens become a dash, and quotation marks are curled.
+TYPED = re.compile(r"\w+ = \{[^}]*\}|[\w.\[\]]*=?\"[^\"]*\"|(?<![\w-])(?:coaxshell \w+ )?--[a-z][a-z-]*(?: auto\b)?")
 
 
 def command_reference() -> str:
@@ -51,9 +55,10 @@ def _cell(one: Any) -> str:
     text = _plain(one.help or "")
     default = one.default
     if default not in (None, False, ()) and not callable(default) and "[default" not in text and str(default) != "[]":
-        text += f" Default: `{default}`."
+        text += f" Default: `{one.opts[0] if default is True else default}`."
     return text.replace("|", "\\|")
 
 
 def _plain(text: str) -> str:
-    return " ".join(text.split()).replace("<", "&lt;").replace("*", "\\*")
+    text = " ".join(text.split()).replace("<", "&lt;").replace("*", "\\*")
+    return TYPED.sub(lambda found: f"`{found[0]}`", text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from coaxshell.plotting.units import pretty
 from coaxshell.response.quantities import QUANTITIES, Quantity
 
 HEAD = """# Quantities of a shell
@@ -15,6 +16,9 @@ a study as `inner.peak_...`. All stand in one table of the program, from which t
 """
 READ = """
 ## Where else it is read
+
+Further metrics, among them voltages over a segment of the wall and as the control law asks for them, are listed with the
+[design studies](../studies.md#metrics).
 
 | name | metrics | summary | tables, files, comparisons |
 |---|---|---|---|
@@ -33,8 +37,8 @@ def _row(cells: tuple[str, ...]) -> str:
 
 
 def _what(quantity: Quantity) -> tuple[str, ...]:
-    sign = quantity.sign.removeprefix("positive ")
-    return f"`{quantity.name}`", quantity.long_name, quantity.unit, sign, _NEEDS[quantity.needs]
+    sign = quantity.sign.removeprefix("positive ").replace("phi_s", r"$\varphi_s$").replace("of u ", "of $u$ ")
+    return f"`{quantity.name}`", quantity.long_name, pretty(quantity.unit), sign, _NEEDS[quantity.needs]
 
 
 def _where(quantity: Quantity) -> tuple[str, ...]:

@@ -6,6 +6,8 @@ from __future__ import annotations
 class InputError(ValueError):
     """Bad input, told in the user's own terms on one line.
 
+    The command line prints ``str(error)`` on stderr and exits with code 2.
+
     Parameters
     ----------
     where : str
@@ -17,7 +19,6 @@ class InputError(ValueError):
     also : tuple of InputError
         What else is wrong with the same input, each without further ones; a form shows them all, a line of text the first.
 
-    The command line prints ``str(error)`` on stderr and exits with code 2.
     """
 
     def __init__(self, where: str, problem: str, remedy: str = "", also: tuple[InputError, ...] = ()) -> None:
