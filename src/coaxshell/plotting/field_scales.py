@@ -148,6 +148,14 @@ def mappable(limit: float, colours: str) -> ScalarMappable:
     return ScalarMappable(norm=Normalize(-limit, limit), cmap=colours)
 
 
+def _short(value: float) -> float:
+    """Return a mark of a colour bar that can be read: the value where two digits write it, else the next below that one digit does."""
+    if not value or math.isclose(float(f"{value:.1e}"), value, rel_tol=1e-9):
+        return value
+    step = 10.0 ** math.floor(math.log10(value))
+    return math.floor(value / step) * step
+
+
 def add_colour_bar(ax: Any, limit: float, unit: DrawnUnit, colours: str, *, orientation: str = "vertical") -> Any:
     """Fill axes with a colour bar, in the drawn unit, with arrows where values may lie beyond, and return it."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
@@ -156,8 +164,7 @@ def add_colour_bar(ax: Any, limit: float, unit: DrawnUnit, colours: str, *, orie
     bar.set_label(unit.label)
     bar.outline.set_linewidth(0.5)
     if colours == PRESSURE_COLOURS:
-        end = limit * unit.per_pascal
-        bar.locator = FixedLocator([share * end for share in _SHARES])
+        bar.locator = FixedLocator([math.copysign(_short(abs(share) * limit * unit.per_pascal), share) for share in _SHARES])
         bar.formatter = FuncFormatter(lambda value, _: f"{value:g}".replace("-", "\N{MINUS SIGN}"))
     else:
         bar.locator = MaxNLocator(nbins=5, steps=[1, 2, 2.5, 5, 10], symmetric=True)

@@ -10,7 +10,7 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
-from coaxshell.plotting.units import scale
+from coaxshell.plotting.units import pretty, scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -127,7 +127,7 @@ def plot_parallel(optimum: Optimum, ax: Axes) -> Axes:
     ax.plot(where, shares(optimum.best), color=COLOURS["blue"], linewidth=1.8, marker="o", markersize=4, label="best")
     ax.plot(where, shares(optimum.baseline), color=COLOURS["orange"], linestyle="none", marker="*", markersize=8, label="baseline")
     few = len(variables) <= 8
-    names = [literal(_interval(v) if few else v.name) for v in variables]
+    names = [_interval(v) if few else literal(v.name) for v in variables]
     ax.set_xticks(where, names, rotation=0 if few else 45, ha="center" if few else "right", fontsize=7 if few else 6)
     ax.set_xlim(-0.4, len(variables) - 0.6)
     ax.set_ylim(-0.04, 1.04)
@@ -145,5 +145,5 @@ def _interval(variable: Variable) -> str:
     """Return name and range of a variable on lines short enough to stand beside others."""
     ends = [str(variable.levels[i]) for i in (0, -1)] if variable.levels else [f"{variable.low:.3g}", f"{variable.high:.3g}"]
     place, _, name = variable.name.rpartition(".")
-    lines = [f"{place}." if place else "", name, f"{ends[0]} to {ends[1]}", "" if variable.units == "1" else variable.units]
-    return "\n".join(line for line in lines if line)
+    lines = [f"{place}." if place else "", name, f"{ends[0]} to {ends[1]}", "" if variable.units == "1" else pretty(variable.units)]
+    return "\n".join(literal(line) for line in lines if line)

@@ -8,6 +8,7 @@ import numpy as np
 
 from coaxshell.model.prefixes import PREFIXES, exponent_of
 from coaxshell.model.records.measures import Measures
+from coaxshell.plotting.names import literal
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def figure_record(record: Sampled, title: str = "") -> Figure:
         plot_record(record, left, found)
         plot_spectrum(record, right, found)
         if title:
-            figure.suptitle(title.replace("$", r"\$"), fontsize=9)
+            figure.suptitle(literal(title), fontsize=9)
         return figure
 
 
@@ -59,6 +60,8 @@ def plot_record(record: Sampled, ax: Axes, found: Measures | None = None) -> Axe
 
 def plot_spectrum(record: Sampled, ax: Axes, found: Measures | None = None) -> Axes:
     """Draw the magnitude of the history's transform against frequency, and the band that 99 % of its energy lies in; return *ax*."""
+    from matplotlib.ticker import LogFormatter
+
     found = found or record.measures
     frequency, density = record.spectrum
     kept = (frequency > 0) & (frequency <= found.nyquist)
@@ -73,6 +76,9 @@ def plot_spectrum(record: Sampled, ax: Axes, found: Measures | None = None) -> A
         ax.axvline(found.band / 10.0**f, color=COLOURS["orange"], linewidth=0.9, linestyle="dashed", label="99 % of the energy below")
         ax.legend(loc="lower left")
     ax.xaxis.set_major_formatter("{x:g}")  # 0.1, 1, 10 kHz: powers of ten beside a prefix have to be multiplied
+    if ax.get_ylim()[1] < 100 * ax.get_ylim()[0]:  # marks between the powers of ten are numbered too: 20, not 2 x 10^1
+        ax.yaxis.set_major_formatter("{x:g}")
+        ax.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2.0, 0.5)))
     ax.set_xlabel(f"frequency ({PREFIXES[f]}Hz)")
     ax.set_ylabel("|P(f)| (Pa s)")
     return ax

@@ -58,7 +58,8 @@ def circumstances_of(results: Results) -> str:
     """Return how the run went in a sentence or two."""
     kept = f" {results.resumed} of its {len(results.seconds)} parts were there from an earlier call." if results.resumed else ""
     work = sum(results.processor.values())
-    spent = f"{results.elapsed:.0f} s on {results.workers} process(es); the parts took {work:.0f} s of processor time"
+    processes = "one process" if results.workers == 1 else f"{results.workers} processes"
+    spent = f"{results.elapsed:.0f} s on {processes}; the parts took {work:.0f} s of processor time"
     return f"{settings_text(results.resolution)}. {spent}.{kept}"
 
 

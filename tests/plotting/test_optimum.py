@@ -1,0 +1,23 @@
+"""The picture of an optimisation: what stands under a variable can be read."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+
+import coaxshell as cx
+from coaxshell.plotting import plot_parallel
+
+
+def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
+    found = cx.optimise(
+        "absorbers",
+        variables={"absorbers.damping": cx.Range(1e4, 1e8, scale="log"), "absorbers.count": cx.Range(5, 10)},
+        objectives="absorbers.mass",  # of the description alone: nothing is solved
+        evaluations=12,
+        seed=1,
+    )
+    figure, ax = plt.subplots()
+    plot_parallel(found, ax)
+    labels = [label.get_text() for label in ax.get_xticklabels()]
+    plt.close(figure)
+    assert labels == ["absorbers.\ndamping\n1e+04 to 1e+08\nN s/m²", "absorbers.\ncount\n5 to 10"]
