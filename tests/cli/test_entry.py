@@ -75,6 +75,21 @@ def test_unknown_option(refused):
     assert "--verbose" in refused("--verbose")
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        *("animate bare --frames many", "animate bare --fps many", "animate bare --size many", "export bare --to paraview --points many"),
+        *("snapshots bare --columns many", "snapshots bare --pixels many", "studio --port many"),
+    ],
+)
+def test_what_is_no_number_is_named_with_its_option(refused, line):
+    assert f"{line.split()[-2]}: 'many' is not a" in refused(*line.split())
+
+
+def test_a_shell_that_is_not_there_is_named_with_its_option(refused):
+    assert "--shell: 'middle'" in refused("plot", "bare", "--shell", "middle", "--modes", "2", "--time-step", "0.1", "--quiet")
+
+
 def test_unexpected_errors_are_one_line(run, monkeypatch):
     def broken(*_):
         raise ZeroDivisionError("nothing\nto divide by")

@@ -123,5 +123,10 @@ def test_a_pinned_run_stays_while_the_system_changes(page):
     told = page.locator("#peaks td.better, #peaks td.worse").all_inner_texts()
     assert told
     assert all(re.fullmatch(r"(smaller|larger) by \d+\.\d\u202f%|[\d.]+ times as large", text) for text in told), told
+    growing = {(bar["name"], bar["shell"]) for bar in run_of(page)["bars"] if bar.get("growing")}
+    assert ("displacement_head", 0) in growing
+    row = page.locator("#peaks tr", has=page.locator("[data-bar='displacement_head/0']"))
+    assert row.locator("td").last.inner_text() == "still growing"  # it depends on the run's length, and is no change for better or worse
+    assert row.locator("td.better, td.worse").count() == 0
     page.locator("#pin").click()
     until(page, "!window.coaxshell.state.runs.pinned")

@@ -21,9 +21,9 @@ def animate(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .mp4 (needs the extra 'video') or .webp.")
     ] = Path("film.mp4"),
-    frames: Annotated[int, typer.Option("--frames", metavar="N", help="Number of frames.")] = 250,
-    fps: Annotated[float, typer.Option("--fps", metavar="N", help="Frames per second.")] = 25.0,
-    size: Annotated[int, typer.Option("--size", metavar="N", help="Side of a panel in pixels.")] = 450,
+    frames: Annotated[str, typer.Option("--frames", metavar="N", help="Number of frames.")] = "250",
+    fps: Annotated[str, typer.Option("--fps", metavar="N", help="Frames per second.")] = "25",
+    size: Annotated[str, typer.Option("--size", metavar="N", help="Side of a panel in pixels.")] = "450",
     until: Annotated[
         str | None, typer.Option("--until", metavar="TIME", help="Last instant, transits.", show_default="the end of the shortest run")
     ] = None,
@@ -45,23 +45,24 @@ def animate(
     from coaxshell.plotting.film import film_cost, require_room
 
     target = Outputs(force).file(output, "--output", FILM_SUFFIXES)
+    count, rate = options.whole("--frames", frames), options.number("--fps", fps)
     last = None if until is None else options.number("--until", until)
     highest_pressure = options.limit("--pressure-limit", pressure_limit)
     highest_stress = options.limit("--stress-limit", stress_limit)
     with options.named_as_options(pixels="size"):
-        view = FieldView(0.5 * options.number("--width", width), size)
+        view = FieldView(0.5 * options.number("--width", width), options.whole("--size", size))
         check_units(units)
-        check_film(target, frames, fps)
-        cost = film_cost(2 if compare else 1, frames, view)
-        require_room(cost, frames, view)
+        check_film(target, count, rate)
+        cost = film_cost(2 if compare else 1, count, view)
+        require_room(cost, count, view)
     tell_time(cost, "the film", quiet)
     responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
     with options.named_as_options(path="output"), progress(quiet) as report:
         save_film(
             *responses,
             path=target,
-            frames=frames,
-            fps=fps,
+            frames=count,
+            fps=rate,
             until=last,
             view=view,
             pressure_limit=highest_pressure,
@@ -70,4 +71,4 @@ def animate(
             progress=report,
         )
     tell_all_warnings(responses)
-    echo(f"wrote {target}: {frames} frames, {frames / fps:.3g} s")
+    echo(f"wrote {target}: {count} frames, {count / rate:.3g} s")

@@ -31,7 +31,7 @@ def export(
         typer.Option("--times", metavar="TIME,...", help="ParaView: instants in transits, as in 0:5:0.05.", show_default="101, evenly"),
     ] = None,
     width: options.WidthOption = "6",
-    points: Annotated[int, typer.Option("--points", metavar="N", help="ParaView: points along a side of the square.")] = 301,
+    points: Annotated[str, typer.Option("--points", metavar="N", help="ParaView: points along a side of the square.")] = "301",
     displaced: Annotated[
         str,
         typer.Option("--displaced", metavar="FACTOR", help="ParaView: draw the shells displaced this many times."),
@@ -50,13 +50,14 @@ def export(
     target = _target(source, to, output, force)
     chosen = None if times is None else read_times(times)
     half_width, factor = 0.5 * options.number("--width", width), options.number("--displaced", displaced)
+    side = options.whole("--points", points)
     with options.named_as_options():
-        check_grid(half_width, points, factor)
+        check_grid(half_width, side, factor)
     (response,) = answers(context, [source], changes, request, quiet=quiet)
     with options.named_as_options(folder="output", path="output"), progress(quiet) as report:
         if to == "paraview":
             export_paraview(
-                response, target, times=chosen, half_width=half_width, points=points, displaced=factor, force=force, progress=report
+                response, target, times=chosen, half_width=half_width, points=side, displaced=factor, force=force, progress=report
             )
         else:
             {"csv": export_csv, "mat": export_mat}[to](response, target)

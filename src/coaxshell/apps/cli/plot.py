@@ -54,7 +54,7 @@ def plot(
     sources = [source, *([compare] if compare else [])]
     responses = answers(context, sources, changes, request, quiet=quiet)
     names = labels(*(response.system for response in responses)) if compare else (responses[0].system.name or Path(source).stem,)
-    with options.named_as_options(shells="shell", responses="compare"):
+    with options.named_as_options(shell="shell", shells="shell", responses="compare"):
         drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)
     write_figure(drawn, target, "--output")
     tell_all_warnings(responses)

@@ -24,9 +24,9 @@ def snapshots(
         typer.Option("--times", metavar="TIME,...", help="Instants in transits, as in 0.2,1.2,3.6 or 0:5:0.5.", show_default="the paper's"),
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.")] = Path("snapshots.png"),
-    columns: Annotated[int, typer.Option("--columns", metavar="N", help="Instants in a row, 1 to 20.")] = 4,
+    columns: Annotated[str, typer.Option("--columns", metavar="N", help="Instants in a row, 1 to 20.")] = "4",
     width: options.WidthOption = "6",
-    pixels: Annotated[int, typer.Option("--pixels", metavar="N", help="Pixels along a side of each field.")] = 450,
+    pixels: Annotated[str, typer.Option("--pixels", metavar="N", help="Pixels along a side of each field.")] = "450",
     units: options.UnitsOption = "auto",
     pressure_limit: options.PressureLimitOption = None,
     stress_limit: options.StressLimitOption = None,
@@ -43,13 +43,14 @@ def snapshots(
     from coaxshell.plotting import FIGURE_SUFFIXES, FieldView, check_units, figure_snapshots
 
     target = Outputs(force).file(output, "--output", FIGURE_SUFFIXES)
-    if not 1 <= columns <= 20:
-        raise InputError("--columns", f"{columns} is not allowed", "give a whole number from 1 to 20")
+    in_a_row = options.whole("--columns", columns)
+    if not 1 <= in_a_row <= 20:
+        raise InputError("--columns", f"{in_a_row} is not allowed", "give a whole number from 1 to 20")
     chosen = None if times is None else options.times(times)
     highest_pressure = options.limit("--pressure-limit", pressure_limit)
     highest_stress = options.limit("--stress-limit", stress_limit)
     with options.named_as_options():
-        view = FieldView(0.5 * options.number("--width", width), pixels)
+        view = FieldView(0.5 * options.number("--width", width), options.whole("--pixels", pixels))
         check_units(units)
     responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
     with options.named_as_options(), progress(quiet) as report:
@@ -60,7 +61,7 @@ def snapshots(
             pressure_limit=highest_pressure,
             stress_limit=highest_stress,
             units=units,
-            columns=columns,
+            columns=in_a_row,
             progress=report,
         )
     write_figure(figure, target, "--output")

@@ -10,14 +10,15 @@ from typing import Annotated
 
 import typer
 
+from coaxshell.apps.cli import options
 from coaxshell.apps.cli.output import echo
 from coaxshell.errors import InputError
 
-PORT = 8765
+PORT = "8765"
 
 
 def studio(
-    port: Annotated[int, typer.Option("--port", metavar="N", help="Where to listen on this machine; 0 takes any free port.")] = PORT,
+    port: Annotated[str, typer.Option("--port", metavar="N", help="Where to listen on this machine; 0 takes any free port.")] = PORT,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address.")] = False,
     allow_host: Annotated[
         list[str] | None,
@@ -38,6 +39,7 @@ def studio(
             raise InputError(
                 "--allow-host", f"{name!r} is not the name of a host", "give one without http:// and port, such as lab.example.org"
             )
+    number = options.whole("--port", port)
     from coaxshell.apps.studio.server import serve
 
     def ready(address: str) -> None:
@@ -48,7 +50,7 @@ def studio(
             # A browser may take its time, and one for the terminal would not come back before it is closed.
             Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
-    serve(port, ready, allow_host or ())
+    serve(number, ready, allow_host or ())
 
 
 def _has_display() -> bool:

@@ -24,25 +24,28 @@ function groups(result) {
   return [...named, ["Absorbers", rest]].filter(([, bars]) => bars.length);
 }
 
-const twin = (run, bar) => run?.bars.find((one) => one.name === bar.name && (one.shell ?? null) === (bar.shell ?? null))?.value;
+const twin = (run, bar) => run?.bars.find((one) => one.name === bar.name && (one.shell ?? null) === (bar.shell ?? null));
 
 // Bars of one unit share a scale, so that their lengths can be compared down the table.
 function extent(bar, current, runs, others) {
   const alike = current.bars.filter((one) => one.unit === bar.unit && one.name.split("_")[0] === bar.name.split("_")[0]);
-  return Math.max(...alike.flatMap((one) => [one.value, ...others.map((key) => twin(runs[key], one) ?? 0)]));
+  return Math.max(...alike.flatMap((one) => [one.value, ...others.map((key) => twin(runs[key], one)?.value ?? 0)]));
 }
 
 function line(bar, runs, others, most) {
   const width = (value) => `${most ? Math.max(0, (100 * value) / most) : 0}%`;
-  const values = others.map((key) => [key, twin(runs[key], bar)]);
+  const pairs = others.map((key) => [key, twin(runs[key], bar)]);
   const height = 15 / (1 + others.length);
   const picture = svg("svg", { "aria-hidden": "true" }, svg("rect", { x: 0, y: 1, height: height + 1, width: width(bar.value), rx: 1.5, fill: "var(--current)" }),
-    ...values.map(([key, value], i) => svg("rect", { x: 0, y: 2 + (i + 1) * height, height: height - 1, width: width(value ?? 0), rx: 1, fill: `var(--${RUNS[key].colour})` })));
-  const where = bar.time === null || bar.time === undefined ? "" : `at t = ${show(bar.time, "")} a/c (${show(bar.time * runs.current.transit_time_seconds, "s")})${bar.angle === null || bar.angle === undefined ? "" : `, ${show(bar.angle, "deg")}`}`;
+    ...pairs.map(([key, other], i) => svg("rect", { x: 0, y: 2 + (i + 1) * height, height: height - 1, width: width(other?.value ?? 0), rx: 1, fill: `var(--${RUNS[key].colour})` })));
+  const where = bar.time === null || bar.time === undefined ? "" : `at t = ${show(bar.time, "")} a/c (${show(bar.time * runs.current.transit_time_seconds, "s")})${bar.angle === null || bar.angle === undefined ? "" : `, ${show(bar.angle, "deg")}`}${bar.growing ? ", still growing" : ""}`;
   return el("tr", { title: where }, el("th", { scope: "row" }, bar.label), el("td", { class: "bars" }, picture), el("td", { class: "number", "data-bar": `${bar.name}/${bar.shell ?? ""}` }, show(bar.value, bar.unit)),
-    ...values.flatMap(([, value]) => {
-      const change = value === undefined ? null : percent(bar.value, value);
-      return [el("td", { class: "number" }, show(value ?? null, bar.unit)), el("td", { class: `number ${change === null || Math.abs(change) < 0.05 ? "" : change < 0 ? "better" : "worse"}` }, inComparison(change))];
+    ...pairs.flatMap(([, other]) => {
+      // What still grows at the end of its run depends on the length of the run: how it stands to another says nothing.
+      const grows = bar.growing || other?.growing;
+      const change = other === undefined || grows ? null : percent(bar.value, other.value);
+      const kind = change === null || Math.abs(change) < 0.05 ? "" : change < 0 ? "better" : "worse";
+      return [el("td", { class: "number" }, show(other?.value ?? null, bar.unit)), el("td", { class: `number ${kind}` }, other && grows ? "still growing" : inComparison(change))];
     }));
 }
 
