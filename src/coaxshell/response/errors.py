@@ -16,8 +16,8 @@ CAUSES_SHOWN = (*CAUSES, "combined")
 def errors(solution: ModalSolution) -> xr.DataArray:
     """Return the estimated relative errors of a run, dims (shell, quantity, cause).
 
-    ``|error|/|answer|``, both in the L2 norm over the surface of the shell and the whole time: sqrt(int oint x^2 dtheta dt). The quantity is
-    "displacement" (normal) or "stress" (hoop, of the core at the mid-surface); the cause "orders" (those above M), "time step" (the
+    ``|error|/|answer|``, both in the L2 norm over the surface of the shell and the whole time: sqrt(int oint x^2 dtheta dt). The quantity
+    is "displacement" (normal) or "stress" (hoop, of the core at the mid-surface); the cause "orders" (those above M), "time step" (the
     band limit of the inverse transform), "march" (the steps of nonlinear absorbers and saturating actuators, 0 without them) or
     "combined", their sum. NaN for what the engine does not estimate, and for a rigid shell.
 
