@@ -15,7 +15,7 @@ from coaxshell.apps.paper.slips import SLIPS, SWITCHED, effects, growth, simulat
 from coaxshell.apps.paper.slips.switches import slipped
 from coaxshell.apps.paper.slips.waves import PrintedPotential
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver import Prepared
+from coaxshell.response import PreparedSystem
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
@@ -308,5 +308,6 @@ def test_bad_input_is_refused(slips, system, where):
 
 @pytest.mark.parametrize("slip", ["diffraction-sign", "radius-factor", "printed-strain"])
 def test_what_is_prepared_without_a_slip_is_not_taken_for_it(slip):
-    prepared = Prepared(dimensionless(BARE), TINY).retuned(slipped(BARE, {slip}))
-    np.testing.assert_array_equal(prepared.solve().normal, simulate(BARE, TINY, frozenset({slip})).solution.normal)
+    prepared = PreparedSystem(dimensionless(BARE), TINY)
+    other = PreparedSystem(slipped(BARE, {slip}), TINY, like=prepared.structure)
+    np.testing.assert_array_equal(other.simulate().solution.normal, simulate(BARE, TINY, frozenset({slip})).solution.normal)

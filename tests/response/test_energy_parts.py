@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,12 +19,26 @@ from coaxshell.response.energy.fluids import Sampler, fluid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.solver.excitation import SurfaceLoads, incident_on_surface
-from coaxshell.solver.recompute import SolvedSpectra
-from coaxshell.solver.scaling import FluidRegion, dimensionless
+from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.scaling import FluidRegion, Problem, dimensionless
+from coaxshell.solver.settings import Settings
+from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 M, GRID = 3, LaplaceGrid(0.25, 1600)
 SLOW = 30.0
 """Time constant of the walls' motion, in transits."""
+
+
+def run_of(problem: Problem) -> Any:
+    """Return what stands in for a run of which only the transforms are looked at."""
+    return SimpleNamespace(problem=problem, settings=Settings(modes=M))
+
+
+def spectra_of(problem: Problem, normal: np.ndarray) -> SolvedSpectra:
+    """Return the transforms of a run without absorbers in which the walls have no tangential motion."""
+    structure, nothing = StructureSpectra(problem, GRID, Modes.up_to(M)), np.zeros((0, 2, GRID.time.size))
+    return SolvedSpectra(structure, absorber_set(problem, (), 1), normal, np.zeros_like(normal), nothing, nothing[:, 0])
 
 
 @pytest.fixture
@@ -35,8 +50,8 @@ def moved(double: cx.System) -> Callable[[dict[tuple[int, int, int], float]], Mo
         normal = np.zeros((2, 2, M + 1, GRID.nodes.size), np.complex128)
         for place, amplitude in amplitudes.items():
             normal[place] = amplitude * 24.0 / SLOW**4 / (GRID.nodes + 1 / SLOW) ** 5
-        spectra = SolvedSpectra(problem, GRID, M, normal, np.zeros_like(normal))
-        return Motion(SimpleNamespace(problem=problem), 10, spectra)  # type: ignore[arg-type]
+        spectra = spectra_of(problem, normal)
+        return Motion(run_of(problem), 10, spectra)
 
     return make
 
@@ -80,7 +95,7 @@ def test_a_gap_shaken_slowly_has_the_added_mass_of_potential_flow(moved) -> None
 def test_a_vacuum_holds_nothing(double: cx.System) -> None:
     problem = dimensionless(double.replace(fluids=[cx.VACUUM, double.fluids[1], double.fluids[2]]))
     empty = np.zeros((2, 1, M + 1, GRID.nodes.size), np.complex128)
-    motion = Motion(SimpleNamespace(problem=problem), 10, SolvedSpectra(problem, GRID, M, empty, empty))  # type: ignore[arg-type]
+    motion = Motion(run_of(problem), 10, spectra_of(problem, empty))
     assert fluid_energy(motion, 0) is None
 
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import csv
+import pickle
+import weakref
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -135,12 +139,20 @@ def test_refinement_keeps_the_runs_instants(tmp_path):
     np.testing.assert_allclose(response.shell_velocity("outer"), fine.shell_velocity("outer")[::2], rtol=0, atol=1e-12)
 
 
-def test_what_the_last_run_was_made_from_is_let_go():
-    response = simulate(SYSTEMS["bare"], **COARSE)
-    assert len(recompute._last) == 1
-    simulate(SYSTEMS["bare"], engine="direct", **{**COARSE, "time_step": 4e-3})
-    del response
-    assert not recompute._last
+def test_what_a_run_was_made_from_goes_with_its_solution():
+    solution = simulate(SYSTEMS["bare"], **COARSE).solution
+    assert solution.spectra.normal.nbytes
+    assert "SolvedSpectra" not in repr(solution)
+    for other in (replace(solution), copy.copy(solution), pickle.loads(pickle.dumps(solution))):
+        assert other.spectra is None
+    kept = weakref.ref(solution.spectra)
+    del solution
+    assert kept() is None
+
+
+def test_more_than_half_a_gigabyte_is_not_kept(monkeypatch):
+    monkeypatch.setattr("coaxshell.solver.solution.KEPT_BYTES", 1000)
+    assert simulate(SYSTEMS["bare"], **COARSE).solution.spectra is None
 
 
 def test_files_of_the_version_before_have_velocities():

@@ -12,12 +12,13 @@ import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
-from coaxshell.solver.interface.linked import AbsorberSolution, solve_linked
+from coaxshell.solver.interface.linked import solve_linked
 from coaxshell.solver.interface.march import MarchResult, march, march_block
 from coaxshell.solver.interface.plan import march_plan, motion_without
 from coaxshell.solver.interface.saturation import circle, voltage_limit
 from coaxshell.solver.interface.state import MarchState
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 PAPERS = {"mass": 10, "damping": 1e6, "linear_stiffness": 1e9}
@@ -28,7 +29,7 @@ def relative(found: object, expected: object) -> float:
     return float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
 
 
-def strain(structure: StructureSpectra, linked: AbsorberSolution) -> np.ndarray:
+def strain(structure: StructureSpectra, linked: SolvedSpectra) -> np.ndarray:
     """Return m V - W of every mode in time, which the stress is proportional to."""
     orders = np.arange(structure.modes.count)[:, None]
     return structure.grid.invert(orders * linked.tangential - linked.normal)

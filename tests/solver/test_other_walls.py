@@ -15,8 +15,7 @@ from scipy.special import kv, kvp
 import coaxshell as cx
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.modes import Modes
-from coaxshell.response import Response
-from coaxshell.solver import Prepared
+from coaxshell.response import PreparedSystem, Response
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.shell_model import Gain, ShellModel, WallEnergy, WallOperator, square
@@ -73,18 +72,18 @@ def sprung() -> Problem:
     return replace(dimensionless(bare.replace(shells=plain, fluids=[cx.VACUUM, cx.VACUUM, bare.exterior])), shells=WALLS)
 
 
-def solved(time_step: float, absorbers) -> tuple[Prepared, Response]:
-    prepared = Prepared(sprung(), Settings(duration=2.0, time_step=time_step, modes=M))
-    return prepared, Response(prepared.solve(absorbers))
+def solved(time_step: float, absorbers) -> tuple[PreparedSystem, Response]:
+    prepared = PreparedSystem(sprung(), Settings(duration=2.0, time_step=time_step, modes=M))
+    return prepared, prepared.simulate(absorbers)
 
 
-def answers(prepared: Prepared) -> tuple[np.ndarray, np.ndarray]:
+def answers(prepared: PreparedSystem) -> tuple[np.ndarray, np.ndarray]:
     """Return C_m of the inner and the outer wall, shape (2, M + 1, nodes), and W of the outer under the shock, by hand."""
     s, m = prepared.structure.grid.nodes, all_orders(M)[:, None]
     inner, outer = (wall.mass * s**2 + wall.damper * s + wall.spring for wall in WALLS)
     outside = 1.0 / (outer - s * kv(m, s) / kvp(m, s))
     rigid = replace(prepared.problem, shells=tuple(replace(wall, spring=1e15) for wall in WALLS))
-    load = 1e15 * Prepared(rigid, prepared.settings).structure.normal[1, 0]  # on a wall that hardly gives way
+    load = 1e15 * PreparedSystem(rigid, prepared.settings).structure.normal[1, 0]  # on a wall that hardly gives way
     return np.stack([np.broadcast_to(1.0 / inner, outside.shape), outside]), outside * load
 
 
@@ -92,7 +91,7 @@ def same(actual: np.ndarray, expected: np.ndarray, rtol: float) -> None:
     np.testing.assert_allclose(actual, expected, rtol=0, atol=rtol * np.abs(expected).max())
 
 
-def by_hand(prepared: Prepared) -> np.ndarray:
+def by_hand(prepared: PreparedSystem) -> np.ndarray:
     """Return W of both walls with one linear absorber at the head, shape (2, M + 1, T)."""
     (compliance, alone), s, scales = answers(prepared), prepared.structure.grid.nodes, prepared.problem.scales
     mass = LINEAR["mass"] * scales.velocity**2 / scales.pressure / scales.length**2 * s**2

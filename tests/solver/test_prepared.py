@@ -9,8 +9,9 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.response import PreparedSystem
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.solve import Prepared, solve
+from coaxshell.solver.solve import solve
 
 SETTINGS = Settings(duration=1.0, time_step=5e-3, modes=15)
 BARE = cx.presets.load("bare")
@@ -26,14 +27,14 @@ ARRAYS = ("normal", "tangential", "normal_rate", "tangential_rate", "absorber_di
 
 
 @pytest.fixture(scope="module", params=["bare", "active"])
-def prepared(request) -> Prepared:
-    return Prepared(cx.presets.load(request.param), SETTINGS)
+def prepared(request) -> PreparedSystem:
+    return cx.prepare(cx.presets.load(request.param), settings=SETTINGS)
 
 
 @pytest.mark.parametrize("name", [*SETS, *reversed(SETS)])
-def test_equals_a_fresh_run_exactly(prepared: Prepared, name: str) -> None:
-    system = prepared.problem.system.replace(absorbers=SETS[name])
-    reused, fresh = prepared.solve(SETS[name]), solve(system, settings=SETTINGS)
+def test_equals_a_fresh_run_exactly(prepared: PreparedSystem, name: str) -> None:
+    system = prepared.system.replace(absorbers=SETS[name])
+    reused, fresh = prepared.simulate(SETS[name]).solution, solve(system, settings=SETTINGS)
     assert reused.problem.system == fresh.problem.system
     for array in ARRAYS:
         found, expected = getattr(reused, array), getattr(fresh, array)
@@ -54,16 +55,16 @@ def test_public_form() -> None:
 
 def test_the_systems_own_absorbers_are_the_default() -> None:
     system = BARE.replace(absorbers=SETS["ring"])
-    ready = Prepared(system, SETTINGS)
-    np.testing.assert_array_equal(ready.solve().normal, ready.solve(SETS["ring"]).normal)
-    assert ready.solve(()).absorber_force is None
+    ready = cx.prepare(system, settings=SETTINGS)
+    np.testing.assert_array_equal(ready.simulate().solution.normal, ready.simulate(SETS["ring"]).solution.normal)
+    assert ready.simulate(()).solution.absorber_force is None
 
 
-def test_an_absorber_that_does_not_fit_is_refused_and_does_no_harm(prepared: Prepared) -> None:
-    before = prepared.solve(SETS["ring"]).normal
+def test_an_absorber_that_does_not_fit_is_refused_and_does_no_harm(prepared: PreparedSystem) -> None:
+    before = prepared.simulate(SETS["ring"]).solution.normal
     with pytest.raises(InputError, match=r"absorbers\[0\]\.inner_shell: 1 has no shell outside it"):
-        prepared.solve([cx.Absorber(inner_shell=1, **CUBIC)])
-    np.testing.assert_array_equal(prepared.solve(SETS["ring"]).normal, before)
+        prepared.simulate([cx.Absorber(inner_shell=1, **CUBIC)])
+    np.testing.assert_array_equal(prepared.simulate(SETS["ring"]).solution.normal, before)
 
 
 def test_refinement_is_a_finer_run_read_less_often() -> None:

@@ -9,10 +9,11 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.response import PreparedSystem
 from coaxshell.solver import coupling, excitation
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import shared_parts
-from coaxshell.solver.solve import Prepared, solve
+from coaxshell.solver.solve import solve
 
 SETTINGS = Settings(duration=1.0, time_step=5e-3, modes=15)
 RING = cx.absorber_ring(5, mass=10, damping=2e5, linear_stiffness=1e9, cubic_stiffness=1e21)
@@ -52,8 +53,8 @@ CHANGES: dict[str, Callable[[cx.System], cx.System]] = {
 }
 
 
-def assert_the_same(found: Prepared, system: cx.System, settings: Settings = SETTINGS) -> None:
-    reused, fresh = found.solve(), solve(system, settings=settings)
+def assert_the_same(found: PreparedSystem, system: cx.System, settings: Settings = SETTINGS) -> None:
+    reused, fresh = found.simulate().solution, solve(system, settings=settings)
     assert reused.problem == fresh.problem
     assert reused.settings == fresh.settings
     for array in ARRAYS:
@@ -68,8 +69,8 @@ def assert_the_same(found: Prepared, system: cx.System, settings: Settings = SET
 
 @pytest.mark.parametrize("name", CHANGES)
 def test_equals_a_fresh_run_exactly(name: str) -> None:
-    prepared = Prepared(ACTIVE, SETTINGS)
-    prepared.solve()
+    prepared = cx.prepare(ACTIVE, settings=SETTINGS)
+    prepared.simulate()
     changed = CHANGES[name](ACTIVE)
     once = prepared.retuned(changed)
     assert_the_same(once, changed)
@@ -78,7 +79,7 @@ def test_equals_a_fresh_run_exactly(name: str) -> None:
 
 
 def test_a_chain_of_changes() -> None:
-    prepared, system = Prepared(ACTIVE, SETTINGS), ACTIVE
+    prepared, system = cx.prepare(ACTIVE, settings=SETTINGS), ACTIVE
     for change in CHANGES.values():
         system = change(system) if system.control is not None else change(ACTIVE)
         prepared = prepared.retuned(system)
@@ -87,7 +88,7 @@ def test_a_chain_of_changes() -> None:
 
 def test_the_number_of_modes_is_chosen_anew() -> None:
     automatic = Settings(duration=0.5, time_step=1e-2, modes="auto", tolerance=0.05)
-    prepared = Prepared(ACTIVE, automatic)
+    prepared = cx.prepare(ACTIVE, settings=automatic)
     changed = ACTIVE.replace(source=shock(decay_time=2e-3))
     assert_the_same(prepared.retuned(changed), changed, automatic)
 
@@ -113,16 +114,16 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> dict[str, int]:
 
 @pytest.mark.parametrize("name", ["absorbers", "gains", "pulse", "angle", "saturation"])
 def test_fluids_and_loads_are_made_once(name: str, counted: dict[str, int]) -> None:
-    prepared = Prepared(ACTIVE, SETTINGS).retuned(CHANGES["gains"](ACTIVE.replace(source=shock(peak_pressure=1.0))))
-    prepared.solve()
+    prepared = cx.prepare(ACTIVE, settings=SETTINGS).retuned(CHANGES["gains"](ACTIVE.replace(source=shock(peak_pressure=1.0))))
+    prepared.simulate()
     before = dict(counted)
     assert before["fluids"] > 0
-    prepared.retuned(CHANGES[name](ACTIVE)).solve()
+    prepared.retuned(CHANGES[name](ACTIVE)).simulate()
     assert counted == before
 
 
 def test_sources_share_the_answers_to_forces() -> None:
-    prepared = Prepared(ACTIVE, SETTINGS)
+    prepared = cx.prepare(ACTIVE, settings=SETTINGS)
     other = prepared.retuned(CHANGES["two sources"](ACTIVE))
     assert other.structure.compliance is prepared.structure.compliance
     assert other.structure.kernels is prepared.structure.kernels
@@ -130,7 +131,7 @@ def test_sources_share_the_answers_to_forces() -> None:
 
 
 def test_unstable_gains_are_refused_and_do_no_harm() -> None:
-    prepared = Prepared(ACTIVE, SETTINGS)
+    prepared = cx.prepare(ACTIVE, settings=SETTINGS)
     with pytest.raises(InputError, match=r"control\.proportional"):
         prepared.retuned(ACTIVE.replace(control=cx.PDControl(proportional=2e5, derivative=0.0)))
     assert_the_same(prepared, ACTIVE)

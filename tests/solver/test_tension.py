@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.solver.settings import Settings
-from coaxshell.solver.solve import Prepared
+from coaxshell.response import PreparedSystem
 from coaxshell.solver.tension import AMBIENT, HARMLESS, spectra_of_motion, tensions, wall_pressures
 
 QUICK = {"duration": 3.0, "time_step": 0.01, "modes": 24}
 LOUD = {"source": cx.PlaneWave(pulse=cx.Gaussian(peak_pressure="2 MPa", width="0.15 ms"))}  # smooth: what 24 orders resolve
 
 
-def prepared(name: str, changes: dict[str, object]) -> Prepared:
-    return Prepared(cx.presets.load(name).with_overrides(changes), Settings(**QUICK))
+def prepared(name: str, changes: dict[str, object]) -> PreparedSystem:
+    return cx.prepare(cx.presets.load(name).with_overrides(changes), **QUICK)
 
 
 @pytest.mark.parametrize("name", ["iakovlev-evacuated", "bare"])
@@ -70,7 +69,7 @@ def test_tension_scales_with_the_shock_and_lies_where_it_is_told() -> None:
 def test_rigid_and_evacuated_systems_are_looked_at_too() -> None:
     source = cx.PlaneWave(pulse=cx.Gaussian(peak_pressure=-3e5, width="0.1 ms"))
     rigid = cx.System(shells=[cx.RigidShell(radius=1.0)], fluids=["vacuum", "freshwater"], source=source)
-    found = Prepared(rigid, Settings(duration=3.0, time_step=0.01, modes=12))
+    found = cx.prepare(rigid, duration=3.0, time_step=0.01, modes=12)
     (low,) = tensions(found.problem, found.structure.grid, found.structure.normal)
     assert low.angle < 15
     assert -6.6e5 < low.pressure < -4e5  # nearly doubled where it falls in squarely

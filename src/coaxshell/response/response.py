@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -22,9 +23,9 @@ from coaxshell.response.translation import translation
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_solution
-from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 if TYPE_CHECKING:  # no run needs them, and importing them takes as long as a tenth of one
     from coaxshell.response import energy, fields
@@ -249,6 +250,14 @@ class Response:
         See :func:`coaxshell.response.summary.summarise`.
         """
         return summarise(self.solution, window, segment, motion=self.motion)
+
+    def without_transforms(self) -> Response:
+        """Return the response without the transforms that a run keeps as long as it is in use: for keeping many responses at a time.
+
+        They take a few times the memory of the histories, half a gigabyte at most, and make fields, energies, velocities and
+        accelerations start at once. Without them all of these are the same, and begin with making them again.
+        """
+        return Response(replace(self.solution))
 
     def thin(self, every: int = 1, window: Sequence[float] | None = None) -> Response:
         """Return the response with every so many instants of a window (start, end) in transits, for a smaller file.

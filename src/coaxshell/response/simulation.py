@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Unpack
 
 from coaxshell import solver
-from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
+from coaxshell.solver.cost import require_room
+from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings, SettingsKeywords
-from coaxshell.solver.shared_parts import shared_parts
+from coaxshell.solver.shared_parts import SharedParts, shared_parts
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 @showing(SettingsKeywords, Settings)
@@ -63,18 +66,27 @@ def simulate(
 class PreparedSystem:
     """A structure solved once, ready for any number of absorber sets; made by :func:`prepare`."""
 
-    def __init__(self, prepared: solver.Prepared) -> None:
-        self._prepared = prepared
+    def __init__(
+        self,
+        problem: Problem,
+        settings: Settings,
+        progress: Progress | None = None,
+        *,
+        shared: SharedParts | None = None,
+        like: StructureSpectra | None = None,
+    ) -> None:
+        self.problem, self._settings, self._progress = problem, settings, progress
+        self.structure = solver.prepare(problem, settings, progress, shared=shared, like=like)
 
     @property
     def system(self) -> System:
         """The system it was prepared for."""
-        return self._prepared.problem.system
+        return self.problem.system
 
     @property
     def settings(self) -> Settings:
         """The resolution, with the number of modes resolved."""
-        return self._prepared.settings
+        return replace(self._settings, modes=self.structure.modes.max_order)
 
     def simulate(
         self,
@@ -91,7 +103,11 @@ class PreparedSystem:
         InputError
             If an absorber does not fit the system.
         """
-        return Response(self._prepared.solve(absorbers, progress))
+        problem = self.problem
+        if absorbers is not None:
+            problem = replace(problem, system=problem.system.replace(absorbers=absorbers))
+            require_room(problem, self.settings)
+        return Response(solver.solve_prepared(self.structure, problem, self._settings, progress or self._progress))
 
     def retuned(self, system: SystemLike) -> PreparedSystem:
         """Return a prepared system for a changed description, at the same settings; everything that the change leaves alone is shared.
@@ -111,7 +127,7 @@ class PreparedSystem:
         InputError
             If the feedback is unstable.
         """
-        return PreparedSystem(self._prepared.retuned(as_system(system)))
+        return PreparedSystem(dimensionless(as_system(system)), self._settings, self._progress, like=self.structure)
 
 
 @showing(SettingsKeywords, Settings)
@@ -139,6 +155,4 @@ def prepare(
     """
     system = as_system(system)
     settings = Settings.asked(system, keywords)
-    if settings.engine != "spectral":
-        raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
-    return PreparedSystem(solver.Prepared(system, settings, progress, shared=shared_parts() if retunable else None))
+    return PreparedSystem(dimensionless(system), settings, progress, shared=shared_parts() if retunable else None)

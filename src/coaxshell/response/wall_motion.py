@@ -16,8 +16,9 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.modal import amplitudes
 from coaxshell.response.peaks import Amplitudes
 from coaxshell.response.synthesis import at_angles
-from coaxshell.solver.recompute import SolvedSpectra, marches, spectra_of
+from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.structure.shell_model import Gain
 
 
@@ -90,7 +91,7 @@ class WallMotion:
         return wanted
 
     def _inverse(self, spectrum: ComplexArray) -> FloatArray:
-        return self._for_rates.grid.invert(spectrum)[..., :: self._for_rates.refinement]
+        return self._for_rates.grid.invert(spectrum)[..., :: self.solution.settings.refinement]
 
     def _differences(self, shell: int, gain: Gain, rate: int) -> FloatArray:
         """Return central differences; at the end, where none is, one-sided ones of the same order. The run begins at rest."""

@@ -1,5 +1,5 @@
 """From a system to its modal histories."""
 
-from coaxshell.solver.solve import Prepared, solve
+from coaxshell.solver.solve import prepare, solve, solve_prepared
 
-__all__ = ["Prepared", "solve"]
+__all__ = ["prepare", "solve", "solve_prepared"]

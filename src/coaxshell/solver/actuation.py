@@ -36,9 +36,15 @@ def pressure_asked(
     return pressure
 
 
+def saturated(solution: ModalSolution) -> bool:
+    """Return whether an actuator reached its limit in a run."""
+    lack = solution.control_correction
+    return lack is not None and solution.normal_rate is not None and bool(lack.any())
+
+
 def pressure_given(solution: ModalSolution) -> FloatArray | None:
     """Return the pressure that saturating actuators gave, shape (shells, parities, M + 1, T); None where the linear law held throughout."""
     lack, w_rate, v_rate = solution.control_correction, solution.normal_rate, solution.tangential_rate
-    if lack is None or w_rate is None or v_rate is None or not lack.any():
+    if lack is None or w_rate is None or v_rate is None or not saturated(solution):
         return None
     return pressure_asked(solution.problem, solution.normal, solution.tangential, w_rate, v_rate) + lack

@@ -19,13 +19,12 @@ from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.electrodes import largest_demand
-from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
-from coaxshell.solver.interface.linked import AbsorberSolution
+from coaxshell.solver.interface.absorbers import InterfacePoints
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
-from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.tension import AMBIENT, Tension
 
 TRUNCATION_LIMIT = 1e-2
@@ -80,18 +79,18 @@ def _finer(settings: Settings) -> str:
     return f"time_step = {settings.time_step / 2:g} or refinement = {2 * settings.refinement}"
 
 
-def absorbers(structure: StructureSpectra, links: AbsorberSet, linked: AbsorberSolution, refinement: int) -> list[str]:
+def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
     """Return the warning about absorbers that vibrate faster than the step, time_step/*refinement*, resolves.
 
     The fastest motions are those of a shell's own points (their mobility over one step is the kernel's weight at lag 0, about
     dt/2 over the local mass) and of the absorber's mass on the tangent stiffness reached, k_l + 3 k_nl max D^2.
     """
-    if linked.iterations == 0 or links.count == 0:
+    links, step = solved.absorbers, solved.grid.time_step
+    if not solved.marched or links.count == 0:
         return []  # solved exactly, or none
-    step = structure.grid.time_step
-    points = InterfacePoints(structure.problem, links, structure.modes)
-    local = 2.0 / step * np.diag(points.immediate(structure.kernels.present)).reshape(2, links.count).max(axis=0)
-    force = np.abs(linked.force).max(axis=(1, 2))
+    points = InterfacePoints(solved.problem, links, solved.modes)
+    local = 2.0 / step * np.diag(points.immediate(solved.passive.kernels.present)).reshape(2, links.count).max(axis=0)
+    force = np.abs(solved.force).max(axis=(1, 2))
     peak = np.zeros(links.count)
     np.maximum.at(peak, links.member, force)
     stretch = np.array([_stretch(f, k, c) for f, k, c in zip(peak, links.linear, links.cubic, strict=True)])

@@ -11,9 +11,8 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.finite import Array, first_bad
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.interface.linked import AbsorberSolution
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 FINER = "use a smaller time_step or fewer modes"
 
@@ -74,26 +73,24 @@ def require_finite_solution(solution: ModalSolution, where: str = "response", re
             raise _told(Stage(where, name, values, axes, True, remedy), index, solution.time)
 
 
-def require_finite_stages(structure: StructureSpectra, linked: AbsorberSolution | None) -> None:
+def require_finite_stages(solved: SolvedSpectra) -> None:
     """Refuse spectra of the spectral engine with NaN or infinity, naming the stage in which it began.
 
     What the earlier stages left is looked through only once their result has been found wanting.
     """
-    if linked is None:
-        results: list[Array] = [structure.normal, structure.tangential]
-    else:
-        results = [linked.normal, linked.tangential, linked.force, linked.displacement]
-        results += [] if linked.actuation is None else [linked.actuation]
+    results: list[Array] = [solved.normal, solved.tangential, solved.force, solved.displacement]
+    results += [] if solved.actuation is None else [solved.actuation]
     if all(first_bad(array) is None for array in results):
         return
-    for stage in _stages(structure, linked):
+    for stage in _stages(solved):
         index = first_bad(stage.values)
         if index is not None:
-            raise _told(stage, index, structure.grid.time if stage.in_time else structure.grid.nodes.imag)
+            raise _told(stage, index, solved.grid.time if stage.in_time else solved.grid.nodes.imag)
 
 
-def _stages(structure: StructureSpectra, linked: AbsorberSolution | None) -> Iterator[Stage]:
+def _stages(solved: SolvedSpectra) -> Iterator[Stage]:
     """Yield what the stages made, in their order."""
+    structure = solved.structure
     pair, shells = ("answering shell", "loaded shell", "order"), ("shell", "half", "order")
     extreme = "look for a layer, fluid or gap of extreme size, density or stiffness"
     for parts in (structure.units, structure.units.open_loop):
@@ -107,14 +104,13 @@ def _stages(structure: StructureSpectra, linked: AbsorberSolution | None) -> Ite
     if structure.units.kernels_with_voltage is not None:
         voltage = structure.units.kernels_with_voltage.kernels
         yield Stage("control", "the kernels of the voltages asked for", voltage, pair, True, f"{FINER}, or lower the gains")
-    if linked is not None:
-        softer = f"{FINER}, or softer, less damped absorbers"
-        yield Stage("absorbers", "the force of the absorbers", linked.force, ("absorber", "side"), True, softer)
-        yield Stage("absorbers", "the displacement of the absorbers", linked.displacement, ("absorber",), True, softer)
-        if linked.actuation is not None:
-            yield Stage("control", "what saturating actuators give", linked.actuation, shells, True, f"{FINER}, or lower the gains")
-        yield Stage("absorbers", "the motion with absorbers and limits", linked.normal, shells, False, softer)
-        yield Stage("absorbers", "the motion with absorbers and limits", linked.tangential, shells, False, softer)
+    softer = f"{FINER}, or softer, less damped absorbers"
+    yield Stage("absorbers", "the force of the absorbers", solved.force, ("absorber", "side"), True, softer)
+    yield Stage("absorbers", "the displacement of the absorbers", solved.displacement, ("absorber",), True, softer)
+    if solved.actuation is not None:
+        yield Stage("control", "what saturating actuators give", solved.actuation, shells, True, f"{FINER}, or lower the gains")
+    yield Stage("absorbers", "the motion with absorbers and limits", solved.normal, shells, False, softer)
+    yield Stage("absorbers", "the motion with absorbers and limits", solved.tangential, shells, False, softer)
 
 
 def _told(stage: Stage, index: tuple[int, ...], along: Array) -> InputError:

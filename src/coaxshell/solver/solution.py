@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,9 +12,15 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 
+if TYPE_CHECKING:
+    from coaxshell.solver.solved_spectra import SolvedSpectra
+
 QUANTITIES = ("displacement", "stress")
 CAUSES = ("orders", "time step", "march")
 """Where errors come from, in the order of :meth:`Estimates.by_cause`."""
+
+KEPT_BYTES = 512 * 1024 * 1024
+"""Most bytes of the transforms that a solution keeps."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +97,9 @@ class ModalSolution:
         Line force f_n^(i)/(rho_e c_e^2 a) on the inner [0] and outer [1] of the shells it links, positive inward on the shell.
     control_correction : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure of the saturated minus that of the linear control law, where saturation is on.
+    spectra : SolvedSpectra or None
+        The transforms that it was made from, as long as it is in the process that solved it. They belong to these very histories: a
+        copy (:func:`dataclasses.replace`, :mod:`copy`, pickle) has none, and nothing is different without them but the time it takes.
     """
 
     problem: Problem
@@ -105,6 +115,16 @@ class ModalSolution:
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
     control_correction: FloatArray | None = None
+    spectra: SolvedSpectra | None = field(default=None, init=False, repr=False, compare=False)
+
+    def keep(self, spectra: SolvedSpectra) -> None:
+        """Keep the transforms that the histories were made from; nothing larger than half a gigabyte."""
+        if spectra.nbytes <= KEPT_BYTES:
+            object.__setattr__(self, "spectra", spectra)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy takes over: all but the transforms."""
+        return {**vars(self), "spectra": None}
 
     @property
     def whole(self) -> bool:

@@ -19,7 +19,7 @@ from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, volt
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.solver.shared_parts import SharedParts, shared_parts
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 
 
@@ -60,6 +60,8 @@ class StructureSpectra:
         Where parts of other structures are found, and left for others.
     units : optional
         Another structure's ``units``; it differs at most in its sources, absorbers and field limits.
+    notes : tuple of str
+        What was found when its modes were chosen, for the warnings of its answers.
 
     Attributes
     ----------
@@ -76,11 +78,28 @@ class StructureSpectra:
         *,
         shared: SharedParts | None = None,
         units: _UnitAnswers | None = None,
+        notes: tuple[str, ...] = (),
     ) -> None:
         self.problem, self.grid, self.modes, self.shared = problem, grid, modes, shared
-        self.units = units or _UnitAnswers()
+        self.units, self.notes = units or _UnitAnswers(), notes
         self._progress = progress
         self._under_sources: tuple[ComplexArray, ComplexArray] | None = None
+
+    def same_structure(self, problem: Problem) -> bool:
+        """Return whether a problem differs at most in its sources, absorbers and field limits."""
+        own = self.problem
+        return all(getattr(own, name) == getattr(problem, name) for name in ("shells", "fluids", "scales", "point_force_shares"))
+
+    def same_but_absorbers(self, problem: Problem) -> bool:
+        """Return whether a problem differs at most in its absorbers."""
+        same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
+        return same and problem.sources == self.problem.sources and self.same_structure(problem)
+
+    def share(self) -> SharedParts:
+        """Return where parts are left for other structures, from now on at the latest."""
+        if self.shared is None:
+            self.shared = shared_parts()
+        return self.shared
 
     def solve(self, *, units: bool) -> None:
         """Solve for the sources, and for unit pressures on each shell if asked for, in one pass; what is known is left as it is.

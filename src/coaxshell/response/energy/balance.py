@@ -20,8 +20,8 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.shells import actuator_work, shell_dissipation, shell_energy
 from coaxshell.response.energy.work import SurfaceWork, surface_pressures
 from coaxshell.response.labels import time_coordinates
-from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 _ARRAYS = 40.0
 """Arrays of the size of all normal displacements that stand side by side at the worst, as measured."""
@@ -169,6 +169,6 @@ def _labelled(motion: Motion, entries: dict[str, Entry]) -> xr.Dataset:
         require_finite(entry.values, f"energy.{name}", [("time", motion.grid.time[motion.kept])], "look for extreme layers or absorbers")
         attributes = {"units": "1" if relative else "J/m", "long_name": entry.long_name, "role": entry.role, "group": entry.group}
         variables[name] = xr.Variable("time", entry.values * (1.0 if relative else unit), attributes)
-    every = motion.every // motion.spectra.refinement
+    every = motion.every // motion.solution.settings.refinement
     coordinates = {name: variable[::every] for name, variable in time_coordinates(motion.solution).items()}
     return xr.Dataset(variables, coordinates, {"title": motion.problem.system.name or "energy", "balance": BALANCE})

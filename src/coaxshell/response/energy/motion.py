@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.recompute import SolvedSpectra, spectra_of
+from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
 class Motion:
@@ -32,12 +32,12 @@ class Motion:
     def __init__(self, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> None:
         self.solution = solution
         self.spectra = spectra_of(solution) if spectra is None else spectra
-        self.every = every * self.spectra.refinement
+        self.every = every * solution.settings.refinement
 
     @property
     def problem(self) -> Problem:
         """The dimensionless problem."""
-        return self.spectra.problem
+        return self.solution.problem
 
     @property
     def grid(self) -> LaplaceGrid:
@@ -52,7 +52,7 @@ class Motion:
     @cached_property
     def orders(self) -> FloatArray:
         """Orders 0, 1, ..., M."""
-        return all_orders(self.spectra.max_order)
+        return self.spectra.modes.orders
 
     @cached_property
     def circle(self) -> FloatArray:

@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.solver.excitation import incident_on_surface
-from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
 class SurfacePressures(NamedTuple):
@@ -42,7 +42,7 @@ class SurfacePressures(NamedTuple):
 def surface_pressures(spectra: SolvedSpectra) -> SurfacePressures:
     """Return the three parts of the pressure on the outermost surface of a finished run."""
     s = spectra.grid.nodes
-    radial = RadialBasis(Modes.up_to(spectra.max_order), s)
+    radial = RadialBasis(spectra.modes, s)
     surface = radial.surface
     incident, slope = incident_on_surface(spectra.problem, spectra.grid, radial)
     return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * spectra.normal[-1])

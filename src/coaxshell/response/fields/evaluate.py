@@ -21,7 +21,7 @@ from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.modal_field import Quantity
 from coaxshell.response.fields.request import FieldRequest, request, require_room, when_of
 from coaxshell.response.fields.scattered import Points, add_exact, add_gridded, grouped, raster_radii
-from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
 def settled(spectra: SolvedSpectra, asked: FieldRequest, grid: Grid) -> FieldRequest:

@@ -12,7 +12,7 @@ from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.request import FieldRequest, axis
 from coaxshell.response.labels import TRANSIT
-from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
 @dataclass(frozen=True)

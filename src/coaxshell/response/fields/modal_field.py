@@ -31,7 +31,7 @@ from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.response.fields.inversion import Inversion
 from coaxshell.response.fields.request import Region
 from coaxshell.solver.excitation import incident_on_surface
-from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 SCATTERED = {"radiated": ("radiated",), "diffracted": ("diffracted",), "scattered": ("radiated", "diffracted")}
 SCATTERED["total"] = SCATTERED["scattered"]
@@ -51,7 +51,7 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
         return None
     nodes = grid.nodes
-    fluid, problem, radial = region.fluid, spectra.problem, RadialBasis(Modes.up_to(spectra.max_order), nodes)
+    fluid, problem, radial = region.fluid, spectra.problem, RadialBasis(spectra.modes, nodes)
     acceleration = fluid.density * nodes * nodes
 
     def radiated(shell: int) -> ComplexArray:
@@ -246,4 +246,4 @@ def modal_field(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     slopes = wall_slopes(spectra, grid, region, part)
     if slopes is None:
         return None
-    return ModalField(region, Transfer(region, slopes, grid.nodes, spectra.max_order), grid)
+    return ModalField(region, Transfer(region, slopes, grid.nodes, spectra.modes.max_order), grid)

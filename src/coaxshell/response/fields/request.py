@@ -17,8 +17,8 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
-from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.scaling import FluidRegion, Problem
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 Tell = ShareDone
 

@@ -16,8 +16,8 @@ from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.modal_field import modal_field
 from coaxshell.response.fields.request import Domain, FieldRequest, default_instants, domain_of, mode_filter, request, when_of
 from coaxshell.response.synthesis import mean_square
-from coaxshell.solver.recompute import SolvedSpectra
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 _HELD = 3.0
 """Arrays of all orders, circles of a block and instants that stand side by side."""
@@ -79,7 +79,7 @@ def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, ti
     """Return the mean square of the dimensionless pressure over a domain, shape (times,)."""
     radii, weights = domain.rule(asked.resolution)
     field = modal_field(spectra, band(spectra.grid, asked.resolution), domain.region, asked.part)
-    weight = mode_filter(asked.filter, spectra.max_order)[:, None]
+    weight = mode_filter(asked.filter, spectra.modes.max_order)[:, None]
     points = scipy.fft.next_fast_len(max(720, 4 * weight.size), real=True) if domain.region.exterior else 0
     block = max(1, int(asked.memory / 4 / (8 * times.size * (4 * weight.size + 3 * points))))
     _require_room(spectra, times.size, min(block, radii.size))
@@ -104,7 +104,7 @@ def _require_room(spectra: SolvedSpectra, instants: int, circles: int) -> None:
     cost = Cost(_HELD * 8.0 * circles * instants * orders + 2.0 * spectra.normal.nbytes)
     if not cost.fits:
         cost.require(
-            f"the mean square pressure of orders 0 to {spectra.max_order} at {instants:,} instants", "ask for some instants at a time"
+            f"the mean square pressure of orders 0 to {spectra.modes.max_order} at {instants:,} instants", "ask for some instants at a time"
         )
 
 

@@ -26,7 +26,7 @@ from coaxshell.response.fields.inversion import band, few_offsets
 from coaxshell.response.fields.modal_field import Quantity, modal_field
 from coaxshell.response.fields.request import FieldRequest, Region, Tell, mode_filter, reach, split
 from coaxshell.response.synthesis import angle_basis
-from coaxshell.solver.recompute import SolvedSpectra
+from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def add_exact(
     out: FloatArray, spectra: SolvedSpectra, request: FieldRequest, points: Points, times: FloatArray, quantity: Quantity, tell: Tell
 ) -> None:
     """Add the scattered field of a part at points to ``out``, shape (times, points)."""
-    weight = mode_filter(request.filter, spectra.max_order)
+    weight = mode_filter(request.filter, spectra.modes.max_order)
     done = 0
     grid = band(spectra.grid, request.resolution)
     for region, at in split(spectra.problem, points.radius):
@@ -208,8 +208,8 @@ def add_gridded(
             at = at[radius[at] <= reach(spectra.problem, times, asked.resolution)]
         if field is not None and at.size:
             spacing = STEPS_PER_RESOLUTION * grid.time_step * region.spacing
-            raster = raster_of(region, radius[at], spacing, spectra.max_order)
-            weight = mode_filter(asked.filter, spectra.max_order) * compensation(spectra.max_order, raster.angles)
+            raster = raster_of(region, radius[at], spacing, spectra.modes.max_order)
+            weight = mode_filter(asked.filter, spectra.modes.max_order) * compensation(spectra.modes.max_order, raster.angles)
             # Stores of modal histories, then of the field around the raster, each within a quarter of the memory.
             per_instant = 4 * raster.count * (2 * field.parities * weight.size)
             width = max(1, min(times.size, int(asked.memory / 4 / per_instant)))

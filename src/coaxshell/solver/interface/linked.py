@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import solve_linear
@@ -15,36 +13,8 @@ from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.point_forces import point_force_shares
+from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
-
-
-@dataclass(frozen=True)
-class AbsorberSolution:
-    """The answer with absorbers and saturation.
-
-    Attributes
-    ----------
-    normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
-        Transforms of W and V.
-    force : ndarray, shape (N, 2, T)
-        Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
-    displacement : ndarray, shape (N, T)
-        q of every absorber of the description.
-    actuation : ndarray, shape (shells, parities, M + 1, T), or None
-        Modal pressure that saturating actuators gave, None where the linear law held throughout.
-    iterations : int
-        Of all steps, 0 if solved exactly.
-    exact : tuple of ndarray, shapes (2 N, nodes) and (N, nodes), or None
-        Transforms of force and displacement of the absorbers carried, where they were solved exactly.
-    """
-
-    normal: ComplexArray
-    tangential: ComplexArray
-    force: FloatArray
-    displacement: FloatArray
-    actuation: FloatArray | None
-    iterations: int
-    exact: tuple[ComplexArray, ComplexArray] | None = None
 
 
 def solve_linked(
@@ -54,7 +24,7 @@ def solve_linked(
     *,
     saturate: bool = False,
     exact: bool | None = None,
-) -> AbsorberSolution:
+) -> SolvedSpectra:
     """Return the response with absorbers, and with saturating actuators if asked for.
 
     ``exact`` None chooses: linear absorbers in the Laplace domain, anything nonlinear by the march. False marches linear ones
@@ -65,11 +35,10 @@ def solve_linked(
         result = march(structure, absorbers, saturate=True, progress=progress)
         if not result.saturated:
             return solve_linked(structure, absorbers, progress, exact=exact)
-        return _marched(structure.open_loop, absorbers, result)
+        return _marched(structure, absorbers, result)
     if absorbers.count == 0:
-        return AbsorberSolution(
-            structure.normal, structure.tangential, np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size)), None, 0
-        )
+        force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
+        return SolvedSpectra(structure, absorbers, structure.normal, structure.tangential, force, displacement)
     if absorbers.is_linear if exact is None else exact:
         if is_ring(absorbers) and structure.problem.point_force_shares is point_force_shares:
             found = solve_ring(structure, absorbers)
@@ -77,15 +46,17 @@ def solve_linked(
             found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.modes), progress)
         normal, tangential = structure.forced_spectra(found.modal_pressure)
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
-        return AbsorberSolution(normal, tangential, force, displacement, None, 0, (found.force, found.mass_displacement))
+        transforms = found.force, found.mass_displacement
+        return SolvedSpectra(structure, absorbers, normal, tangential, force, displacement, exact=transforms)
     return _marched(structure, absorbers, march(structure, absorbers, progress=progress))
 
 
-def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult) -> AbsorberSolution:
-    """Return the answer of a structure to the forces of a march."""
-    normal, tangential = structure.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
+def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult) -> SolvedSpectra:
+    """Return the answer of a structure to the forces of a march, without its feedback where actuators saturated."""
+    moved = structure if result.actuation is None else structure.open_loop
+    normal, tangential = moved.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
     force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
-    return AbsorberSolution(normal, tangential, force, displacement, result.actuation, result.iterations)
+    return SolvedSpectra(structure, absorbers, normal, tangential, force, displacement, result.actuation, result.iterations)
 
 
 def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -94,19 +65,30 @@ def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArra
     return sides[absorbers.member], displacement[absorbers.member]
 
 
-def interface_of(
-    structure: StructureSpectra, absorbers: AbsorberSet, linked: AbsorberSolution, normal: FloatArray, kept: slice
-) -> Interface:
-    """Return what absorbers and actuators did, for the error estimates; ``normal`` is W at the instants kept of the grid."""
+def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: FloatArray | None) -> Interface | None:
+    """Return what absorbers and actuators did, for the error estimates; None without any.
+
+    Parameters
+    ----------
+    solved : SolvedSpectra
+    normal : ndarray, shape (shells, parities, M + 1, instants)
+        W at the instants kept of the grid.
+    kept : slice
+    asked : ndarray, same shape, or None
+        Modal pressures that the control law asked for, where actuators may saturate.
+    """
+    absorbers = solved.absorbers
+    if not absorbers.count and asked is None:
+        return None
     first = _representatives(absorbers)
-    force = linked.force[first].swapaxes(0, 1)
+    force = solved.force[first].swapaxes(0, 1)
     stretch = np.zeros((2, 0, 0))
-    if absorbers.count and not absorbers.is_linear:
-        walls = InterfacePoints(structure.problem, absorbers, structure.modes).evaluate(normal)
-        stretch = linked.displacement[first][:, kept] - walls.reshape(2, absorbers.count, -1)
-    force = force.reshape(2 * absorbers.count, structure.grid.time.size)
-    saturating = None if linked.actuation is None else structure
-    return Interface(absorbers, force, stretch, linked.actuation, linked.iterations > 0, saturating)
+    if not absorbers.is_linear:
+        walls = InterfacePoints(solved.problem, absorbers, solved.modes).evaluate(normal)
+        stretch = solved.displacement[first][:, kept] - walls.reshape(2, absorbers.count, -1)
+    force = force.reshape(2 * absorbers.count, solved.grid.time.size)
+    saturating = None if solved.actuation is None else solved.structure
+    return Interface(absorbers, force, stretch, solved.actuation, solved.marched, saturating, asked)
 
 
 def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:

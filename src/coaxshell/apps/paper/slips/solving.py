@@ -65,11 +65,10 @@ def solve_each(
 
 def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> PreparedSystem:
     from coaxshell.response import PreparedSystem
-    from coaxshell.solver import Prepared
 
     if resolution.engine != "spectral":
         raise InputError("engine", f"{resolution.engine!r} knows no slips", 'use engine="spectral"')
-    prepared = Prepared(slipped(system, slips), resolution)
+    prepared = PreparedSystem(slipped(system, slips), resolution)
     if slips & SELF_EXCITED:
         assert isinstance(prepared.settings.modes, int)
         fastest = growth(system, slips, prepared.settings.modes, 1.0 / resolution.duration)
@@ -79,4 +78,4 @@ def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> Pr
                 f"{', '.join(sorted(slips))}: order {fastest.order} grows without bound, by e^({fastest.rate:.3g} t)",
                 f"use a duration below {1.0 / fastest.rate:.2g}",
             )
-    return PreparedSystem(prepared)
+    return prepared

@@ -1,0 +1,90 @@
+"""The answer of a structure with absorbers and limited actuators: transforms of its motion, and what links and actuators did."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from coaxshell.acoustics.basis import Modes
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.structure_spectra import StructureSpectra
+
+
+@dataclass(frozen=True)
+class SolvedSpectra:
+    """Transforms of the motion of a run, with the histories of its links and of its actuators' pressure.
+
+    Attributes
+    ----------
+    structure : StructureSpectra
+        With its feedback.
+    absorbers : AbsorberSet
+        Those that acted, maybe none.
+    normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
+        W and V.
+    force : ndarray, shape (N, 2, T)
+        Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
+    displacement : ndarray, shape (N, T)
+        q of every absorber of the description.
+    actuation : ndarray, shape (shells, parities, M + 1, T), or None
+        Modal pressure that saturating actuators gave, None where the linear law held throughout.
+    iterations : int
+        Of all steps of a march, 0 if nothing was marched.
+    exact : tuple of ndarray, shapes (2 N, nodes) and (N, nodes), or None
+        Transforms of force and displacement of the absorbers carried, where they were solved exactly.
+    """
+
+    structure: StructureSpectra
+    absorbers: AbsorberSet
+    normal: ComplexArray
+    tangential: ComplexArray
+    force: FloatArray
+    displacement: FloatArray
+    actuation: FloatArray | None = None
+    iterations: int = 0
+    exact: tuple[ComplexArray, ComplexArray] | None = None
+
+    @property
+    def problem(self) -> Problem:
+        """The structure's problem; the absorbers that acted are ``absorbers``, whatever its description has."""
+        return self.structure.problem
+
+    @property
+    def grid(self) -> LaplaceGrid:
+        """The grid of the run: its ``time`` has ``refinement`` steps to one that the run kept; ``invert`` gives histories on it."""
+        return self.structure.grid
+
+    @property
+    def modes(self) -> Modes:
+        """Orders 0 to M."""
+        return self.structure.modes
+
+    @property
+    def passive(self) -> StructureSpectra:
+        """What the forces moved: the structure, without feedback where saturating actuators acted as forces."""
+        return self.structure if self.actuation is None else self.structure.open_loop
+
+    @property
+    def marched(self) -> bool:
+        """Whether steps were taken, or everything solved exactly."""
+        return self.iterations > 0
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all transforms, those of the structure that forces need included."""
+        structure = self.passive if self.absorbers.count or self.actuation is not None else None
+        unit = 0 if structure is None else structure.compliance.nbytes + structure.tangential_ratio.nbytes
+        return self.normal.nbytes + self.tangential.nbytes + unit
+
+    @cached_property
+    def links(self) -> LinkMotion | None:
+        """Histories of the absorbers; None if there are none."""
+        if not self.absorbers.count:
+            return None
+        if self.exact is not None:
+            return exact_motion(self.absorbers, self.grid, *self.exact)
+        return marched_motion(self.absorbers, self.grid.time_step, self.force, self.displacement)
