@@ -297,3 +297,12 @@ def test_an_unstable_material_is_refused():
 
 def test_elastic_stiffness():
     assert plane_stiffness(STEEL) == pytest.approx((210e9 / 0.91, 63e9 / 0.91, 210e9 / 0.91, 210e9 / 2.6), rel=1e-14)
+
+
+def test_a_node_at_which_nothing_changes_along_the_axis():
+    # k = 0 at one node of several: the row of U, singular at order 0, leaves V and W as in the plane problem.
+    model = ThinWall.of(lopsided())
+    mixed, plane = model.passive(Modes(ORDERS, np.array([0j, 1.0 + 0j, 0j])), S), model.passive(Modes(ORDERS), S)
+    np.testing.assert_allclose(mixed.impedance[:, ::2], plane.impedance[:, ::2], rtol=1e-12)
+    np.testing.assert_allclose(mixed.tangential[:, ::2], plane.tangential[:, ::2], rtol=1e-12, atol=1e-15)
+    assert not mixed.axial[:, ::2].any()

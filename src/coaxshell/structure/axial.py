@@ -131,20 +131,20 @@ def axial_operator(section: Section, modes: Modes, s: ComplexArray) -> WallOpera
     """Return impedance, V/W and U/W of a wall whose load is normal to it.
 
     K + I s^2 is symmetric; U and V are eliminated by the 2 x 2 of their own. V drops out of order 0 and U at k = 0, where they do not
-    couple to W: their rows, which may be singular, are left out.
+    couple to W: their rows, which may be singular by themselves, become copies of the other's.
     """
     stiffness = axial_stiffness(section, modes)
     if stiffness.ndim == 3:
         stiffness = stiffness[..., None]
     inertia = section.mass * s * s
     uv, uw, vw = stiffness[U, V], stiffness[U, W], stiffness[V, W]
-    uu = np.where(np.equal(modes.wavenumber, 0.0), 1.0, inertia + stiffness[U, U])
-    vv = np.where(modes.column == 0, 1.0, inertia + stiffness[V, V])
-    determinant = uu * vv - uv * uv
-    axial = (uv * vw - vv * uw) / determinant
-    tangential = (uv * uw - uu * vw) / determinant
-    impedance = inertia + stiffness[W, W] + uw * axial + vw * tangential
-    return WallOperator(impedance, np.asarray(tangential, np.complex128), np.asarray(axial, np.complex128))
+    uu = inertia + np.where(np.equal(modes.wavenumber, 0.0), stiffness[V, V], stiffness[U, U])
+    vv = inertia + np.where(modes.column == 0, stiffness[U, U], stiffness[V, V])
+    inverse = np.reciprocal(uu * vv - uv * uv)
+    axial = (uv * vw - vv * uw) * inverse
+    tangential = (uv * uw - uu * vw) * inverse
+    impedance = (inertia + stiffness[W, W]) + (uw * axial + vw * tangential)
+    return WallOperator(impedance, tangential, axial)
 
 
 def axial_gain(per_displacement: npt.NDArray[Any]) -> Gain:
