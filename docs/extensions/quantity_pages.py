@@ -38,7 +38,8 @@ def _row(cells: tuple[str, ...]) -> str:
 
 def _what(quantity: Quantity) -> tuple[str, ...]:
     sign = quantity.sign.removeprefix("positive ").replace("phi_s", r"$\varphi_s$").replace("of u ", "of $u$ ")
-    return f"`{quantity.name}`", quantity.long_name, pretty(quantity.unit), sign, _NEEDS[quantity.needs]
+    needs = [_NEEDS[quantity.needs], *(["three dimensions"] if quantity.dimensions == 3 else [])]
+    return f"`{quantity.name}`", quantity.long_name, pretty(quantity.unit), sign, ", ".join(needs)
 
 
 def _where(quantity: Quantity) -> tuple[str, ...]:

@@ -41,7 +41,7 @@ def test_a_run_is_refused_for_all_that_makes_it_large_together():
 
 
 def test_a_run_in_three_dimensions_costs_as_many_as_it_has_wavenumbers(monkeypatch):
-    monkeypatch.setattr(limits, "require_dimensions", lambda system, settings: None)
+    monkeypatch.setattr(limits, "require_two_dimensions", lambda system, settings: None)
     bare, fine = presets.load("bare"), {"time_step": 1e-3, "modes": 150, "dimensions": 3}
     with pytest.raises(InputError, match=r"^resolution: .* takes about .*fewer orders, stations or shells"):
         limits.check_cost(bare, Settings(**fine), live=True)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.labels import history, modal_array
 from coaxshell.response.modal import amplitudes, combined, elastic_wall, stress_gain_of, voltage_gain
-from coaxshell.response.quantities import QUANTITIES, Quantity
+from coaxshell.response.quantities import QUANTITIES, SIDES, STRESSES, Quantity, von_mises
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.voltages import actuator_limit, actuator_values, mean_shares
 from coaxshell.response.wall_motion import WallMotion
@@ -39,6 +40,8 @@ def of_quantity(motion: WallMotion, shell: int, quantity: str, angle: npt.ArrayL
     """
     entry = QUANTITIES[arguments.one_of("quantity", quantity, QUANTITIES)]
     theta = arguments.angles(angle)
+    if entry.dimensions == 3 and motion.solution.along is None:
+        raise InputError("quantity", f"{quantity!r} belongs to three dimensions", "run with dimensions=3")
     return _labelled(motion.solution, shell, entry, entry.at(motion, shell, theta), theta)
 
 
@@ -61,7 +64,7 @@ def displacement(
     angle : array_like, shape () or (A,)
         Degrees from the source direction.
     component : str
-        "normal" (positive inward) or "tangential" (positive towards increasing angle).
+        "normal" (positive inward), "tangential" (positive towards increasing angle) or, at stations of three-dimensional runs, "axial".
     relative : bool
         Relative to the translation of the shell's section (its centre of mass), so that only what deforms the shell is left; see
         :mod:`coaxshell.response.translation`.
@@ -75,7 +78,9 @@ def displacement(
     InputError
         If the angle or the component is not allowed.
     """
-    component = arguments.one_of("component", component, ("normal", "tangential"))
+    component = arguments.one_of("component", component, ("normal", "tangential", "axial"))
+    if component == "axial":
+        return of_quantity(WallMotion(solution), shell, "axial_displacement", angle)
     name = "displacement" if component == "normal" else "tangential_displacement"
     return of_quantity(WallMotion(solution), shell, f"relative_{name}" if relative else name, angle)
 
@@ -141,8 +146,10 @@ def _of_component(motion: WallMotion, shell: int, angle: npt.ArrayLike, componen
     return of_quantity(motion, shell, name if component == "normal" else QUANTITIES[name].partner, angle)
 
 
-def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: float | str | None = None) -> xr.DataArray:
-    """Return the hoop stress at angles, Pa: the core's design stress at the mid-surface (Eq. 22), or the stress at a depth (Eqs. A.4, A.5).
+def stress(
+    solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: float | str | None = None, component: str = "hoop"
+) -> xr.DataArray:
+    """Return the stress at angles, Pa: the core's design stress at the mid-surface (Eq. 22), or the stress at a depth (Eqs. A.4, A.5).
 
     Parameters
     ----------
@@ -154,6 +161,8 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
         z in metres from the mid-surface, positive outward, or a face, "inner" or "outer". The modulus is that of the layer at z (the
         outer one on a boundary), bending is included, and in a piezoelectric layer the field of its own open-circuit potential and,
         in the actuator of a controlled shell, of the control voltage (-e32 u/t, Eq. A.10).
+    component : str
+        "hoop", and at stations of three-dimensional runs "axial", "shear" (between hoop and axis) and "von_mises".
 
     Returns
     -------
@@ -162,26 +171,41 @@ def stress(solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: flo
     Raises
     ------
     InputError
-        If the shell is rigid, or the angle or the depth is not allowed.
+        If the shell is rigid, or the angle, the depth or the component is not allowed.
     """
     theta = arguments.angles(angle)
+    component = arguments.one_of("component", component, (*STRESSES, "von_mises"))
+    if component != "hoop" and solution.along is None:
+        raise InputError("component", f"{component!r} belongs to three dimensions", "run with dimensions=3")
     wall = elastic_wall(solution.problem, shell)
-    if depth is None:
-        values = combined(solution, shell, stress_gain_of(solution, shell), theta)
-        long_name = ""
-    else:
-        scales = solution.problem.scales
-        inner, outer = (scales.length * face for face in wall.faces)
-        z = arguments.depth_of((inner, outer), depth)
-        values = combined(solution, shell, stress_gain_of(solution, shell, z), theta)
-        per_volt = scales.pressure * wall.control_stress(z / scales.length)
-        if per_volt and wall.gains is not None:
-            values = values + per_volt * actuator_values(solution, shell, theta)
-        long_name = f"hoop stress at {z:g} m outward of the mid-surface"
-    labelled = _labelled(solution, shell, QUANTITIES["stress"], values, theta, long_name)
+    z, long_name = None, ""
     if depth is not None:
+        length = solution.problem.scales.length
+        z = arguments.depth_of((length * wall.faces[0], length * wall.faces[1]), depth)
+        long_name = f"{component.replace('_', ' ')} stress at {z:g} m outward of the mid-surface"
+    if component == "von_mises":
+        values = von_mises(*(_stress(solution, shell, theta, z, name) for name in STRESSES))
+    else:
+        values = _stress(solution, shell, theta, z, component)
+    labelled = _labelled(solution, shell, QUANTITIES[_STRESS_NAMES[component]], values, theta, long_name)
+    if z is not None:
         labelled.attrs["depth"] = z
     return labelled
+
+
+_STRESS_NAMES = {"hoop": "stress", "axial": "axial_stress", "shear": "shear_stress", "von_mises": "von_mises_stress"}
+
+
+def _stress(solution: ModalSolution, shell: int, theta: FloatArray, z: float | None, component: str) -> FloatArray:
+    """Return a component of the stress at angles, Pa, shape (T, A), with what the control voltage adds to it at a depth z (m)."""
+    wall, scales = elastic_wall(solution.problem, shell), solution.problem.scales
+    values = combined(solution, shell, stress_gain_of(solution, shell, z, component), theta, SIDES[component])
+    if z is None or component == "shear":
+        return values
+    per_volt = scales.pressure * wall.control_stress(z / scales.length, component)
+    if per_volt and wall.gains is not None:
+        values = values + per_volt * actuator_values(solution, shell, theta)
+    return values
 
 
 def sensor_voltage(solution: ModalSolution, shell: int, angle: npt.ArrayLike, segment: Segment = "point") -> xr.DataArray:

@@ -16,6 +16,7 @@ TRANSIT = "a/c_e"
 INWARD = "positive inward"
 TENSION = "positive in tension"
 COUNTERCLOCKWISE = "positive towards increasing angle"
+ALONG_AXIS = "positive towards increasing z"
 
 
 def time_coordinates(solution: ModalSolution) -> dict[str, xr.Variable]:

@@ -1,6 +1,8 @@
 """Modal amplitudes of a quantity on a shell: a linear combination of V and W of the same order, in SI: a
 :class:`~coaxshell.structure.shell_model.Gain` whose entries have the shape (M + 1,).
 
+At a station of a three-dimensional run it may be one of all fields there, a :class:`~coaxshell.structure.shell_model.FieldGain`.
+
 Every quantity here has a cosine in parity 0 and a sine in parity 1, like w and dv/dtheta.
 """
 
@@ -14,7 +16,7 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import Gain, ShellModel
+from coaxshell.structure.shell_model import FieldGain, Gain, ShellModel
 
 
 def orders(solution: ModalSolution) -> FloatArray:
@@ -42,29 +44,59 @@ def tangential_gain(solution: ModalSolution) -> Gain:
     return Gain(gain.w, gain.v)
 
 
-def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None) -> Gain:
-    """Return the gain of the hoop stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5)."""
-    scales = solution.problem.scales
-    gain = elastic_wall(solution.problem, shell).stress_gain(Modes(orders(solution)), None if depth is None else depth / scales.length)
-    return Gain(scales.pressure * gain.v, scales.pressure * gain.w)
+def axial_gain(solution: ModalSolution) -> FieldGain:
+    """Return the gain of the axial displacement, m: a u."""
+    return FieldGain(u=np.full_like(orders(solution), solution.problem.scales.length))
 
 
-def voltage_gain(solution: ModalSolution, shell: int, role: str = "sensor") -> Gain:
+def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None, component: str = "hoop") -> Gain | FieldGain:
+    """Return the gain of a stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5).
+
+    At a station of a three-dimensional run the hoop stress feels the axial strain, and "axial" and "shear" are others.
+    """
+    scales, wall = solution.problem.scales, elastic_wall(solution.problem, shell)
+    depth, modes = None if depth is None else depth / scales.length, Modes(orders(solution))
+    if solution.along is None:
+        gain = wall.stress_gain(modes, depth)
+        return Gain(scales.pressure * gain.v, scales.pressure * gain.w)
+    return wall.field_gain(modes.orders, depth, component).times(scales.pressure)
+
+
+def voltage_gain(solution: ModalSolution, shell: int, role: str = "sensor") -> Gain | FieldGain:
     """Return the gain of the open-circuit voltage of a layer, V (Eq. 20); InputError if the shell has no layer of that role."""
     wall = elastic_wall(solution.problem, shell)
     if not wall.has(role):
         raise InputError(f"shells[{shell}].layers", f"there is no {role}", f'give a piezoelectric layer the role "{role}"')
+    if solution.along is not None:
+        return FieldGain(potential=np.ones(solution.normal.shape[2]), layer=wall.layer_number(role))
     return wall.sensor_gain(Modes(orders(solution)), role)
 
 
-def amplitudes(solution: ModalSolution, shell: int, gain: Gain, window: slice = slice(None)) -> FloatArray:
-    """Return the modal amplitudes of a quantity, gain.v V + gain.w W, in SI.
+def scaled(gain: Gain | FieldGain, share: FloatArray) -> Gain | FieldGain:
+    """Return a gain times a factor for each order."""
+    if isinstance(gain, Gain):
+        return Gain(gain.v * share, gain.w * share)
+    return gain.times(share)
+
+
+def _parts(solution: ModalSolution, shell: int, gain: Gain | FieldGain) -> list[tuple[FloatArray, FloatArray]]:
+    """Return the fields (parities, M + 1, T) that a quantity is made of, each with its factor."""
+    if isinstance(gain, Gain):
+        return [(solution.normal[shell], gain.w)] + ([(solution.tangential[shell], gain.v)] if np.any(gain.v) else [])
+    parts = [(solution.field(name)[shell], factor) for name, factor in gain.fields.items()]
+    if gain.layer is not None and solution.along is not None:
+        parts.append((solution.along.potentials[gain.layer][shell], np.broadcast_to(gain.potential, solution.normal.shape[2:3])))
+    return parts
+
+
+def amplitudes(solution: ModalSolution, shell: int, gain: Gain | FieldGain, window: slice = slice(None)) -> FloatArray:
+    """Return the modal amplitudes of a quantity, gain.v V + gain.w W, or that of all fields, in SI.
 
     Parameters
     ----------
     solution : ModalSolution
     shell : int
-    gain : Gain
+    gain : Gain or FieldGain
     window : slice
         Time indices.
 
@@ -72,14 +104,26 @@ def amplitudes(solution: ModalSolution, shell: int, gain: Gain, window: slice = 
     -------
     ndarray, shape (parities, M + 1, T)
     """
-    result: FloatArray = solution.normal[shell, :, :, window] * gain.w[:, None]
-    if np.any(gain.v):
-        result += solution.tangential[shell, :, :, window] * gain.v[:, None]
+    (first, factor), *others = _parts(solution, shell, gain)
+    result: FloatArray = first[:, :, window] * factor[:, None]
+    for values, factor in others:
+        result += values[:, :, window] * factor[:, None]
     return result
 
 
-def combined(solution: ModalSolution, shell: int, gain: Gain, theta: FloatArray, component: str = "normal") -> FloatArray:
-    """Return gain.v V + gain.w W at angles, shape (T, A); the gains go into the basis, so no modal array is built."""
-    normal, tangential = solution.normal[shell], solution.tangential[shell]
-    basis = angle_basis(np.atleast_1d(theta), normal.shape[1], normal.shape[0], component)
-    return at_angles(normal, basis * gain.w) + at_angles(tangential, basis * gain.v)
+def combined(
+    solution: ModalSolution,
+    shell: int,
+    gain: Gain | FieldGain,
+    theta: FloatArray,
+    component: str = "normal",
+    window: slice = slice(None),
+) -> FloatArray:
+    """Return a quantity at angles, shape (T, A); the gains go into the basis, so no modal array is built."""
+    parities, modes = solution.normal.shape[1:3]
+    basis = angle_basis(np.atleast_1d(theta), modes, parities, component)
+    if isinstance(gain, Gain):
+        normal, tangential = solution.normal[shell, :, :, window], solution.tangential[shell, :, :, window]
+        return at_angles(normal, basis * gain.w) + at_angles(tangential, basis * gain.v)
+    parts = (at_angles(values[:, :, window], basis * factor) for values, factor in _parts(solution, shell, gain))
+    return np.asarray(sum(parts), dtype=np.float64)

@@ -15,19 +15,30 @@ import numpy as np
 
 from coaxshell.model import Shell, System
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.response.labels import COUNTERCLOCKWISE, INWARD, TENSION
-from coaxshell.response.modal import amplitudes, combined, displacement_gain, stress_gain_of, tangential_gain, voltage_gain
-from coaxshell.response.peaks import Amplitudes, Peak
+from coaxshell.response.labels import ALONG_AXIS, COUNTERCLOCKWISE, INWARD, TENSION
+from coaxshell.response.modal import (
+    amplitudes,
+    axial_gain,
+    combined,
+    displacement_gain,
+    stress_gain_of,
+    tangential_gain,
+    voltage_gain,
+)
+from coaxshell.response.peaks import Amplitudes, Peak, peak_of_values
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import Gain
+from coaxshell.structure.shell_model import FieldGain, Gain
 
 Where = Literal["head", "tail", "anywhere", "rms"]
 Needs = Literal["", "elastic", "sensor", "control"]
 
+STRESSES = ("hoop", "axial", "shear")
+"""Components of the stress of a thin wall in three dimensions."""
+SIDES = {"hoop": "normal", "axial": "normal", "shear": "tangential"}
 _ROLES: dict[Needs, tuple[str, ...]] = {"": (), "elastic": (), "sensor": ("sensor",), "control": ("sensor", "actuator")}
 _PLACES: dict[Where, str] = {"head": "at head", "tail": "at tail", "anywhere": "anywhere", "rms": "RMS"}
 _SUFFIXES: dict[Where, str] = {"head": "_head", "tail": "_tail", "anywhere": "", "rms": "_rms"}
@@ -80,6 +91,8 @@ class Quantity:
         Name of its labelled arrays, where that is another.
     summary, metrics : tuple of str
         Where the summary shows its largest magnitude, and where a study can ask for it: "head", "tail", "anywhere"; "rms".
+    dimensions : int
+        3 for what only a station of a three-dimensional run has.
     """
 
     name: str
@@ -88,7 +101,7 @@ class Quantity:
     long_name: str
     unit: str
     sign: str
-    gain: Callable[[ModalSolution, int], Gain] | None = None
+    gain: Callable[[ModalSolution, int], Gain | FieldGain] | None = None
     values: Callable[[WallMotion, int, FloatArray], FloatArray] | None = None
     largest: Largest | None = None
     rate: int = 0
@@ -102,6 +115,7 @@ class Quantity:
     array: str = ""
     summary: tuple[Where, ...] = ()
     metrics: tuple[Where, ...] = ()
+    dimensions: int = 2
 
     @property
     def stem(self) -> str:
@@ -166,7 +180,9 @@ class Quantity:
 
     def given(self, motion: WallMotion, shell: int) -> bool:
         """Return whether a run gives it for a shell: the shell has it, and for a rate the run all its instants."""
-        return motion.has_rate(self.rate) and self.lack(motion.solution.problem.system, shell) is None
+        solution = motion.solution
+        there = self.dimensions == 2 or solution.along is not None
+        return there and motion.has_rate(self.rate) and self.lack(solution.problem.system, shell) is None
 
 
 def _displacement(motion: WallMotion, shell: int, theta: FloatArray, component: str = "normal") -> FloatArray:
@@ -188,7 +204,32 @@ def _actuator_voltage(motion: WallMotion, shell: int, theta: FloatArray) -> Floa
     return actuator_values(motion.solution, shell, theta)
 
 
-_TABLE = (
+def von_mises(hoop: FloatArray, axial: FloatArray, shear: FloatArray) -> FloatArray:
+    """Return sqrt(hoop^2 + axial^2 - hoop axial + 3 shear^2), of a wall without stress across it."""
+    return np.asarray(np.sqrt(np.maximum(hoop**2 + axial**2 - hoop * axial + 3.0 * shear**2, 0.0)))
+
+
+def von_mises_at(
+    solution: ModalSolution, shell: int, theta: FloatArray, depth: float | None = None, window: slice = slice(None)
+) -> FloatArray:
+    """Return the von Mises stress at angles (degrees), Pa, shape (T, A), of the core at the mid-surface or at a depth (m)."""
+    gains = {name: stress_gain_of(solution, shell, depth, name) for name in STRESSES}
+    return von_mises(*(combined(solution, shell, gain, theta, SIDES[name], window) for name, gain in gains.items()))
+
+
+def _von_mises(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
+    return von_mises_at(motion.solution, shell, theta)
+
+
+def _largest_von_mises(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
+    """Return the largest von Mises stress anywhere within a window; a mean over a segment is not taken."""
+    parities, orders = solution.normal.shape[1:3]
+    return peak_of_values(
+        lambda theta, block: von_mises_at(solution, shell, theta, window=block), (parities, orders), solution.time, window
+    )
+
+
+_TABLE: tuple[Quantity, ...] = (
     Quantity(
         name="stress",
         label="hoop stress",
@@ -360,21 +401,77 @@ _TABLE = (
     ),
 )
 
+_TABLE += (
+    Quantity(
+        name="axial_stress",
+        label="axial stress",
+        noun="axial stress",
+        long_name="mid-surface axial stress of the core",
+        unit="Pa",
+        sign=TENSION,
+        gain=lambda solution, shell: stress_gain_of(solution, shell, component="axial"),
+        shown=("MPa", 1e-6),
+        column=True,
+        summary=("head", "tail", "anywhere"),
+        dimensions=3,
+    ),
+    Quantity(
+        name="shear_stress",
+        label="shear stress",
+        noun="shear stress",
+        long_name="mid-surface shear stress of the core between hoop and axis",
+        unit="Pa",
+        sign=COUNTERCLOCKWISE,
+        gain=lambda solution, shell: stress_gain_of(solution, shell, component="shear"),
+        component="tangential",
+        shown=("MPa", 1e-6),
+        dimensions=3,
+    ),
+    Quantity(
+        name="von_mises_stress",
+        label="von Mises stress",
+        noun="von Mises stress",
+        long_name="mid-surface von Mises stress of the core",
+        unit="Pa",
+        sign="a magnitude",
+        values=_von_mises,
+        largest=_largest_von_mises,
+        shown=("MPa", 1e-6),
+        column=True,
+        summary=("anywhere",),
+        dimensions=3,
+    ),
+    Quantity(
+        name="axial_displacement",
+        label="axial displacement",
+        noun="axial displacement",
+        long_name="axial displacement of the mid-surface",
+        unit="m",
+        sign=ALONG_AXIS,
+        gain=lambda solution, _: axial_gain(solution),
+        needs="",
+        shown=("µm", 1e6),
+        colour="orange",
+        dimensions=3,
+    ),
+)
+
 QUANTITIES: dict[str, Quantity] = {quantity.name: quantity for quantity in _TABLE}
 """Every output of a shell by name, in the order of the tables."""
 
 
-def columns() -> Iterator[Quantity]:
+def columns(dimensions: int = 2) -> Iterator[Quantity]:
     """Yield those that tables, exports, comparisons and the studio hold at head and tail."""
-    yield from (quantity for quantity in QUANTITIES.values() if quantity.column)
+    yield from (quantity for quantity in QUANTITIES.values() if quantity.column and quantity.dimensions <= dimensions)
 
 
-def summary_rows() -> list[tuple[str, str, str]]:
+def summary_rows(dimensions: int = 2) -> list[tuple[str, str, str]]:
     """Return (key, label, unit) of the rows of a shell's summary, in the order of the tables."""
     return [
         (quantity.key(where), quantity.noun + (f" {_PLACES[where]}" if len(quantity.summary) > 1 else ""), quantity.unit)
         for quantity in QUANTITIES.values()
         for where in quantity.summary
+        if quantity.dimensions <= dimensions
     ]
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy.typing as npt
 
+from coaxshell.errors import InputError
+from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import Late, supplied
@@ -121,71 +123,105 @@ class Response:
         return self.solution.timings
 
     def displacement(
-        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, relative: bool = False
+        self,
+        shell: int | str,
+        angle: npt.ArrayLike = HEAD_AND_TAIL,
+        component: str = "normal",
+        *,
+        relative: bool = False,
+        station: Any = None,
     ) -> xr.DataArray:
         """Return the displacement of the mid-surface, m, dims (time, angle): "normal" (positive inward) or "tangential".
 
         ``relative=True`` takes the translation of the shell's section off it, so that only what deforms the shell is left.
         See :func:`coaxshell.response.histories.displacement`.
         """
-        return histories.displacement(self.solution, self._index(shell), angle, component, relative=relative)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.displacement(motion.solution, number, angle, component, relative=relative))
 
-    def translation(self, shell: int | str) -> xr.DataArray:
+    def translation(self, shell: int | str, *, station: Any = None) -> xr.DataArray:
         """Return the translation of a shell's section (its centre of mass), m, dims (time, direction): x towards the source direction.
 
         See :func:`coaxshell.response.translation.translation`.
         """
-        return translation(self.solution, self._index(shell))
+        number = self._index(shell)
+        return self._read(station, lambda motion: translation(motion.solution, number))
 
-    def stress(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, depth: float | str | None = None) -> xr.DataArray:
-        """Return the hoop stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
+    def stress(
+        self,
+        shell: int | str,
+        angle: npt.ArrayLike = HEAD_AND_TAIL,
+        depth: float | str | None = None,
+        *,
+        component: str = "hoop",
+        station: Any = None,
+    ) -> xr.DataArray:
+        """Return the stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
 
+        The component is "hoop"; three-dimensional runs have "axial", "shear" and "von_mises" too.
         See :func:`coaxshell.response.histories.stress`.
         """
-        return histories.stress(self.solution, self._index(shell), angle, depth)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.stress(motion.solution, number, angle, depth, component))
 
-    def shell_velocity(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal") -> xr.DataArray:
+    def shell_velocity(
+        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, station: Any = None
+    ) -> xr.DataArray:
         """Return the velocity of a shell's mid-surface, m/s, dims (time, angle): "normal" (positive inward) or "tangential".
 
         From the transforms of the run, not by differences. See :func:`coaxshell.response.histories.shell_velocity`.
         """
-        return histories.shell_velocity(self.motion, self._index(shell), angle, component)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.shell_velocity(motion, number, angle, component))
 
-    def shell_acceleration(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal") -> xr.DataArray:
+    def shell_acceleration(
+        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, station: Any = None
+    ) -> xr.DataArray:
         """Return the acceleration of a shell's mid-surface, m/s^2, dims (time, angle): "normal" (positive inward) or "tangential".
 
         Where a front jumps, it jumps: see :func:`coaxshell.response.histories.shell_acceleration` for what the time step makes of that.
         """
-        return histories.shell_acceleration(self.motion, self._index(shell), angle, component)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.shell_acceleration(motion, number, angle, component))
 
-    def history(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress") -> xr.DataArray:
+    def history(
+        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress", *, station: Any = None
+    ) -> xr.DataArray:
         """Return the history of any quantity of a shell by its name, SI, dims (time, angle); the names are those of a plot.
 
         See :func:`coaxshell.response.histories.of_quantity`.
         """
-        return histories.of_quantity(self.motion, self._index(shell), quantity, angle)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.of_quantity(motion, number, quantity, angle))
 
-    def modal(self, shell: int | str, quantity: str = "displacement") -> xr.DataArray:
+    def modal(self, shell: int | str, quantity: str = "displacement", *, station: Any = None) -> xr.DataArray:
         """Return modal amplitudes of "displacement", "tangential", "stress", "sensor_voltage", ... in SI, dims (half, mode, time).
 
         See :func:`coaxshell.response.histories.modal`.
         """
-        return histories.modal(self.motion, self._index(shell), quantity)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.modal(motion, number, quantity))
 
-    def sensor_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point") -> xr.DataArray:
+    def sensor_voltage(
+        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point", station: Any = None
+    ) -> xr.DataArray:
         """Return the open-circuit voltage of the sensor, V, dims (time, angle) (Eq. 20): at points, or as means over a *segment* around.
 
         A segment is a length ("50 mm", m) or None for the one of the summary. Behind a sharp front only means converge with the orders.
         See :func:`coaxshell.response.histories.sensor_voltage`.
         """
-        return histories.sensor_voltage(self.solution, self._index(shell), angle, segment)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.sensor_voltage(motion.solution, number, angle, segment))
 
-    def actuator_voltage(self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point") -> xr.DataArray:
+    def actuator_voltage(
+        self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, *, segment: Segment = "point", station: Any = None
+    ) -> xr.DataArray:
         """Return the control voltage on the actuator, V, dims (time, angle) (Eq. 17): at points, or as means over a *segment* around.
 
         See :func:`coaxshell.response.histories.actuator_voltage`.
         """
-        return histories.actuator_voltage(self.solution, self._index(shell), angle, segment)
+        number = self._index(shell)
+        return self._read(station, lambda motion: histories.actuator_voltage(motion.solution, number, angle, segment))
 
     def pressure(
         self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PressureOptions]
@@ -222,6 +258,12 @@ class Response:
         See :func:`coaxshell.response.fields.rms.pressure_rms`.
         """
         return fields.pressure_rms(self._spectra, region, radius, **options)
+
+    def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
+        """Return what is read of the motion of the walls; two dimensions have no stations."""
+        if station is not None:
+            raise InputError("station", f"{shown(station)} belongs to three dimensions", "run with dimensions=3 and stations=")
+        return read(self.motion)
 
     @property
     def _spectra(self) -> SolvedSpectra:

@@ -72,7 +72,7 @@ def solution_of(file: ForeignFile) -> ModalSolution:
     system = _system(text)
     _agree(sizes, system, settings)
     known = {field.name for field in fields(ModalSolution)}
-    arrays = {name: file.array(name) for name in ("time", "error_estimate", *ARRAYS) if name in file}
+    arrays: dict[str, Any] = {name: file.array(name) for name in ("time", "error_estimate", *ARRAYS) if name in file}
     warnings = _warnings(about["warnings"])
     solution = ModalSolution(
         problem=dimensionless(system),

@@ -53,6 +53,7 @@ def simulate(
     Returns
     -------
     Response
+        A :class:`~coaxshell.response.spatial.SpatialResponse`, read at its stations, with ``dimensions=3``.
 
     Raises
     ------
@@ -60,7 +61,13 @@ def simulate(
         If a setting is not allowed, or there is no such preset or file.
     """
     system = as_system(system)
-    return Response(solver.solve(system, settings=Settings.asked(system, keywords), progress=progress))
+    settings = Settings.asked(system, keywords)
+    if settings.dimensions == 3:
+        from coaxshell.response.spatial import SpatialResponse
+        from coaxshell.solver.axial.solve import solve_spatial
+
+        return SpatialResponse(solve_spatial(system, settings, progress))
+    return Response(solver.solve(system, settings=settings, progress=progress))
 
 
 class PreparedSystem:

@@ -174,6 +174,8 @@ def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates:
     wall = problem.shells[shell]
     found: dict[str, Any] = {}
     for quantity in QUANTITIES.values():
+        if quantity.dimensions == 3 and solution.along is None:
+            continue
         if not quantity.given(motion, shell) or (quantity.rate and not rates):
             found |= dict.fromkeys(quantity.summary_keys)
         elif quantity.summary:

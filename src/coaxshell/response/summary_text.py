@@ -29,12 +29,12 @@ def summary_text(summary: Mapping[str, Any]) -> str:
     """Return the table of a summary in its plain-dict form."""
     rows = [row for shell in summary["shells"] for row in _shell_rows(shell)]
     warnings = (f"warning: {text}" for text in summary["warnings"])
-    return "\n".join([*_title(summary), "", *aligned([_HEADING, *rows], left=2), "", *notes(summary), *warnings])
+    return "\n".join([*title_lines(summary), "", *aligned([_HEADING, *rows], left=2), "", *notes(summary), *warnings])
 
 
 def summary_html(summary: Mapping[str, Any]) -> str:
     """Return the same as an HTML table for a notebook."""
-    title, run = (escape(line) for line in _title(summary))
+    title, run = (escape(line) for line in title_lines(summary))
     rows = [row for shell in summary["shells"] for row in _shell_rows(shell)]
     left, right = (f'style="text-align:{side}; padding:0 0.8em 0 0; font-variant-numeric:tabular-nums"' for side in ("left", "right"))
 
@@ -49,7 +49,8 @@ def summary_html(summary: Mapping[str, Any]) -> str:
     return f"<div><b>{title}</b><br>{run}</div>{table}{below}"
 
 
-def _title(summary: Mapping[str, Any]) -> tuple[str, str]:
+def title_lines(summary: Mapping[str, Any]) -> tuple[str, str]:
+    """Return the title, and the line that says what was run."""
     settings = summary["settings"]
     start, end = summary["window"]
     return (
@@ -97,8 +98,8 @@ def _change(peak: Mapping[str, Any]) -> float:
 
 def _shell_rows(shell: Mapping[str, Any]) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
-    for key, label, unit in summary_rows():
-        value = shell[key]
+    for key, label, unit in summary_rows(3):
+        value = shell.get(key)  # two dimensions lack some
         if isinstance(value, Mapping):
             rows.append((shell["name"], label, engineering(value["value"], unit), when(value), f"{value['angle']:.4g}"))
         elif value is not None:

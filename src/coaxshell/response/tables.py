@@ -44,7 +44,7 @@ def history_table(motion: WallMotion) -> dict[str, FloatArray]:
 
 def quantities_of(motion: WallMotion, shell: int) -> list[Quantity]:
     """Return the quantities with columns that a shell has: voltages only where it has the layers and the control."""
-    return [quantity for quantity in columns() if quantity.given(motion, shell)]
+    return [quantity for quantity in columns(3) if quantity.given(motion, shell)]
 
 
 def at_ends(motion: WallMotion, quantity: Quantity, shell: int) -> FloatArray:

@@ -12,7 +12,7 @@ from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.numerics.renamed import renamed
-from coaxshell.response.modal import amplitudes, elastic_wall, orders, voltage_gain
+from coaxshell.response.modal import amplitudes, elastic_wall, orders, scaled, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import lower_half, segment_mean
@@ -72,7 +72,7 @@ def sensor_rate(solution: ModalSolution, shell: int) -> FloatArray:
     """Return d/dt of the modal sensor voltage, V per transit, shape (parities, M + 1, T): by the engine's rates, else by differences."""
     gain = voltage_gain(solution, shell)
     normal, tangential = getattr(solution, "normal_rate", None), getattr(solution, "tangential_rate", None)
-    if normal is None or tangential is None:
+    if not isinstance(gain, Gain) or normal is None or tangential is None:
         solution.need_every_instant("a voltage of derivative control")
         return time_derivative(amplitudes(solution, shell, gain), solution.settings.time_step)
     rate: FloatArray = gain.w[:, None] * normal[shell] + gain.v[:, None] * tangential[shell]
@@ -129,8 +129,7 @@ def actuator_values(solution: ModalSolution, shell: int, theta: FloatArray, leng
 def largest_sensor_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
     """Return the largest sensor voltage anywhere within a window, as a mean over a segment of a length (m; 0 a point)."""
     gain, share = voltage_gain(solution, shell), mean_shares(solution, shell, length)
-    mean = Gain(gain.v * share, gain.w * share)
-    return _largest(solution, lambda block: amplitudes(solution, shell, mean, block), window)
+    return _largest(solution, lambda block: amplitudes(solution, shell, scaled(gain, share), block), window)
 
 
 def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:

@@ -9,17 +9,27 @@ differences that it is made of.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.modal import amplitudes
 from coaxshell.response.peaks import Amplitudes
 from coaxshell.response.synthesis import at_angles
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
-from coaxshell.structure.shell_model import Gain
+from coaxshell.structure.shell_model import FieldGain, Gain
+
+
+class MotionSpectra(NamedTuple):
+    """Transforms of W and V, (shells, parities, M + 1, nodes), on the grid of a run."""
+
+    grid: LaplaceGrid
+    normal: ComplexArray
+    tangential: ComplexArray
 
 
 class WallMotion:
@@ -39,21 +49,22 @@ class WallMotion:
         return spectra_of(self.solution)
 
     @cached_property
-    def _for_rates(self) -> SolvedSpectra:
+    def for_rates(self) -> MotionSpectra:
         """Transforms of W and V whose derivatives do not feel that the forces of a march end with the run."""
-        return spectra_of(self.solution, continued=True) if marches(self.solution) else self.spectra
+        found = spectra_of(self.solution, continued=True) if marches(self.solution) else self.spectra
+        return MotionSpectra(found.grid, found.normal, found.tangential)
 
     def has_rate(self, rate: int) -> bool:
         """Return whether derivatives of an order can be given: 0 always, others of a run with all its instants."""
         return rate == 0 or self.solution.whole
 
-    def amplitudes(self, shell: int, gain: Gain, rate: int = 0) -> Amplitudes:
+    def amplitudes(self, shell: int, gain: Gain | FieldGain, rate: int = 0) -> Amplitudes:
         """Return what gives the modal amplitudes gain.v V + gain.w W of a shell at a slice of time indices.
 
         Parameters
         ----------
         shell : int
-        gain : Gain
+        gain : Gain or FieldGain
         rate : int
             0, 1 or 2: order of the time derivative; SI, per second each.
 
@@ -67,7 +78,7 @@ class WallMotion:
         values = self._differences(shell, gain, rate) if self._direct else self._inverse(self._spectrum(shell, gain, rate))
         return lambda window: values[..., window]
 
-    def rates_at(self, shell: int, gain: Gain, rate: int, basis: FloatArray) -> FloatArray:
+    def rates_at(self, shell: int, gain: Gain | FieldGain, rate: int, basis: FloatArray) -> FloatArray:
         """Return sums of the orders of a derivative at the angles of a basis (:func:`~coaxshell.response.synthesis.angle_basis`), (T, A).
 
         Few angles are summed before the inverse transform, so that only they are inverted.
@@ -81,9 +92,10 @@ class WallMotion:
     def _direct(self) -> bool:
         return self.solution.settings.engine == "direct"
 
-    def _spectrum(self, shell: int, gain: Gain, rate: int) -> ComplexArray:
+    def _spectrum(self, shell: int, gain: Gain | FieldGain, rate: int) -> ComplexArray:
         """Return the transform of a derivative by modes, SI."""
-        spectra, per_second = self._for_rates, self.solution.problem.scales.time**-rate
+        assert isinstance(gain, Gain)  # rates of the fields along the axis are no quantities
+        spectra, per_second = self.for_rates, self.solution.problem.scales.time**-rate
         wanted: ComplexArray = spectra.normal[shell] * (per_second * gain.w[:, None])
         if np.any(gain.v):
             wanted += spectra.tangential[shell] * (per_second * gain.v[:, None])
@@ -91,9 +103,9 @@ class WallMotion:
         return wanted
 
     def _inverse(self, spectrum: ComplexArray) -> FloatArray:
-        return self._for_rates.grid.invert(spectrum)[..., :: self.solution.settings.refinement]
+        return self.for_rates.grid.invert(spectrum)[..., :: self.solution.settings.refinement]
 
-    def _differences(self, shell: int, gain: Gain, rate: int) -> FloatArray:
+    def _differences(self, shell: int, gain: Gain | FieldGain, rate: int) -> FloatArray:
         """Return central differences; at the end, where none is, one-sided ones of the same order. The run begins at rest."""
         self.solution.need_every_instant("a velocity or acceleration of a shell")
         x, step = amplitudes(self.solution, shell, gain), self.solution.settings.time_step * self.solution.problem.scales.time

@@ -165,6 +165,10 @@ class ModalSystem:
         """Return V of every shell from W of every shell (no tangential load)."""
         return [wall.tangential * w for wall, w in zip(self.shells, normal, strict=True)]
 
+    def axial(self, normal: list[ComplexArray]) -> list[ComplexArray]:
+        """Return U of every shell from W of every shell (no axial load)."""
+        return [np.zeros_like(w) if wall.axial is None else wall.axial * w for wall, w in zip(self.shells, normal, strict=True)]
+
 
 def determinant(diagonal: Sequence[ComplexArray], coupling: Sequence[ComplexArray | float]) -> ComplexArray:
     """Return the determinant of a tridiagonal matrix by its three-term recursion."""

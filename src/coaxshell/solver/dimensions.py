@@ -1,4 +1,4 @@
-"""What two and three dimensions can solve; whatever solves asks here first."""
+"""What two dimensions can solve; whatever solves in two asks here first."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from coaxshell.solver.settings import Settings
 _WORDS = {"z": "{:g} m is off the plane", "inclination": "{:g} degrees lead out of the plane"}
 
 
-def require_dimensions(system: System, settings: Settings) -> None:
-    """Raise InputError if a system cannot be solved in the dimensions that a run asks for."""
+def require_two_dimensions(system: System, settings: Settings) -> None:
+    """Raise InputError if a run asks for three dimensions where only two can be had, or its sources for more than two."""
     if settings.dimensions == 3:
-        raise InputError("dimensions", "3 is not solved yet", "use dimensions=2")
+        raise InputError("dimensions", "3 is solved by single runs only", "use dimensions=2, or simulate each system")
     for number, source in enumerate(system.sources):
         where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
         for name in OFF_THE_PLANE:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from threading import Lock
 
 import numpy as np
@@ -61,6 +62,32 @@ class UnitLoad:
         return self._load(basis, nodes)
 
 
+@dataclass(frozen=True, eq=False)
+class SourceGroup:
+    """Sources of one geometry, which share their modal load, with the transforms of their pulses at some nodes.
+
+    Attributes
+    ----------
+    geometry : SourceGeometry
+    members : list of (Source, ndarray)
+    """
+
+    geometry: SourceGeometry
+    members: list[tuple[Source, ComplexArray]]
+
+    def at(self, nodes: slice) -> SourceGroup:
+        """Return the group at a slice of its nodes."""
+        return SourceGroup(self.geometry, [(source, spectrum[nodes]) for source, spectrum in self.members])
+
+
+def source_groups(problem: Problem, s: ComplexArray) -> list[SourceGroup]:
+    """Return the sources of a problem by geometry, with the transforms of their pulses."""
+    groups: dict[SourceGeometry, list[tuple[Source, ComplexArray]]] = {}
+    for source, geometry in zip(problem.system.sources, problem.sources, strict=True):
+        groups.setdefault(geometry, []).append((source, source_spectrum(problem, source, s)))
+    return [SourceGroup(geometry, members) for geometry, members in groups.items()]
+
+
 class SurfaceLoads:
     """The modal loads of all sources on the outermost shell, prepared for some modes on a Laplace grid.
 
@@ -70,16 +97,12 @@ class SurfaceLoads:
 
     def __init__(self, problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None = None) -> None:
         self.parities = source_parities(problem.system.sources)
-        self._problem, self._modes = problem, modes
-        self._groups = [
-            (UnitLoad(wave, grid, modes, shared), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
-            for wave, sources in _geometries(problem).items()
-        ]
+        self._modes = modes
+        self._groups = [(UnitLoad(group.geometry, grid, modes, shared), group) for group in source_groups(problem, grid.nodes)]
 
     def __call__(self, basis: RadialBasis, nodes: slice) -> list[ComplexArray]:
         """Return the load of the cosine parity, and of the sine parity if any source needs it, at a slice of the grid's nodes."""
-        units = ((unit(basis, nodes), [(source, x[nodes]) for source, x in sources]) for unit, sources in self._groups)
-        return _superposed(self._problem, self._modes, units)
+        return superposed(self.parities, self._modes, ((unit(basis, nodes), group.at(nodes)) for unit, group in self._groups))
 
 
 def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
@@ -87,34 +110,23 @@ def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis)
 
     *basis* holds the modes at all nodes of the grid.
     """
-    groups = [
-        (wave.incident(grid, basis), [(source, source_spectrum(problem, source, grid.nodes)) for source in sources])
-        for wave, sources in _geometries(problem).items()
-    ]
+    parities, groups = source_parities(problem.system.sources), source_groups(problem, grid.nodes)
+    waves = [group.geometry.incident(grid, basis) for group in groups]
     pressure, slope = (
-        np.stack(_superposed(problem, basis.modes, ((parts[which], sources) for parts, sources in groups))) for which in (0, 1)
+        np.stack(superposed(parities, basis.modes, ((wave[which], group) for wave, group in zip(waves, groups, strict=True))))
+        for which in (0, 1)
     )
     return pressure, slope
 
 
-def _geometries(problem: Problem) -> dict[SourceGeometry, list[Source]]:
-    """Return the sources of each geometry."""
-    groups: dict[SourceGeometry, list[Source]] = {}
-    for source, geometry in zip(problem.system.sources, problem.sources, strict=True):
-        groups.setdefault(geometry, []).append(source)
-    return groups
+def superposed(parities: int, modes: Modes, units: Iterable[tuple[ComplexArray, SourceGroup]]) -> list[ComplexArray]:
+    """Return the cosines, and the sines if there are two parities, of what all sources make, each (orders, nodes).
 
-
-def _superposed(
-    problem: Problem, modes: Modes, units: Iterable[tuple[ComplexArray, list[tuple[Source, ComplexArray]]]]
-) -> list[ComplexArray]:
-    """Return the cosines, and the sines if any source needs them, of what all make.
-
-    *units* are what a unit pulse of each geometry makes, and the sources of that geometry with the transforms of their pulses.
+    *units* are what a unit pulse of each geometry makes, shape (orders, nodes), and its group at the same nodes.
     """
-    totals: list[ComplexArray | float] = [0.0] * source_parities(problem.system.sources)
-    for unit, sources in units:
+    totals: list[ComplexArray | float] = [0.0] * parities
+    for unit, group in units:
         for parity, total in enumerate(totals):
-            weights = sum(modes.projection(source.angle, parity) * spectrum for source, spectrum in sources)
+            weights = sum(modes.projection(source.angle, parity) * spectrum for source, spectrum in group.members)
             totals[parity] = total + unit * weights
     return [np.asarray(total, dtype=np.complex128) for total in totals]

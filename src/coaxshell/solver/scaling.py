@@ -89,6 +89,8 @@ class Problem:
         Where the system's sources are, one each.
     point_force_shares : callable
         From absorbers and modes to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
+    dimensions : int
+        2, or 3 where sources are those of three dimensions.
     """
 
     system: System
@@ -97,6 +99,7 @@ class Problem:
     fluids: tuple[FluidRegion | None, ...]
     sources: tuple[SourceGeometry, ...]
     point_force_shares: PointForceShares = point_force_shares
+    dimensions: int = 2
 
     @property
     def open_loop(self) -> Problem:
@@ -104,19 +107,21 @@ class Problem:
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
 
 
-def dimensionless(system: System) -> Problem:
-    """Return the dimensionless problem of a system."""
+def dimensionless(system: System, dimensions: int = 2) -> Problem:
+    """Return the dimensionless problem of a system in two or three dimensions."""
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
     shells = tuple(_wall(system, i, scales) for i in range(len(system.shells)))
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
-    return Problem(system, scales, shells, fluids, tuple(_geometry(system, source) for source in system.sources))
+    sources = tuple(_geometry(system, source, dimensions) for source in system.sources)
+    return Problem(system, scales, shells, fluids, sources, dimensions=dimensions)
 
 
-def _geometry(system: System, source: Source) -> SourceGeometry:
+def _geometry(system: System, source: Source, dimensions: int) -> SourceGeometry:
     distance = system.source_distance(source)
-    return source_geometry(source.geometry, None if distance is None else distance / system.reference_radius)
+    inclination = getattr(source, "inclination", 0.0) if dimensions == 3 else 0.0
+    return source_geometry(source.geometry, None if distance is None else distance / system.reference_radius, dimensions, inclination)
 
 
 def _wall(system: System, index: int, scales: Scales) -> ShellModel:

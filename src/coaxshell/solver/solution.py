@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 QUANTITIES = ("displacement", "stress")
 CAUSES = ("orders", "time step", "march")
-"""Where errors come from, in the order of :meth:`Estimates.by_cause`."""
+"""Where errors of two-dimensional runs come from, in the order of :meth:`Estimates.by_cause`."""
+AXIAL_CAUSE = "axial wavenumbers"
+"""What comes to them in three dimensions."""
 
 KEPT_BYTES = 512 * 1024 * 1024
 """Most bytes of the transforms that a solution keeps."""
@@ -37,20 +39,30 @@ class Estimates:
         Band limit of the inverse Laplace transform.
     march : ndarray, shape (shells, 2)
         Steps of nonlinear absorbers and saturating actuators; 0 without them.
+    axial : ndarray, shape (shells, 2), or None
+        What axial wavenumbers left out would add, in three dimensions.
     """
 
     orders: FloatArray
     time_step: FloatArray
     march: FloatArray
+    axial: FloatArray | None = None
 
     @property
     def combined(self) -> FloatArray:
-        """Sum of the errors by orders, time step and march, shape (shells, 2)."""
-        return self.orders + self.time_step + self.march
+        """Sum of the errors by all causes, shape (shells, 2)."""
+        total = self.orders + self.time_step + self.march
+        return total if self.axial is None else total + self.axial
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Names of the causes."""
+        return CAUSES if self.axial is None else (*CAUSES, AXIAL_CAUSE)
 
     def by_cause(self) -> FloatArray:
-        """Return the errors by orders, time step and march, shape (shells, 2, causes)."""
-        return np.stack([self.orders, self.time_step, self.march], axis=-1)
+        """Return the errors by each cause, shape (shells, 2, causes)."""
+        parts = [self.orders, self.time_step, self.march]
+        return np.stack(parts if self.axial is None else [*parts, self.axial], axis=-1)
 
     @property
     def modal_displacement(self) -> FloatArray:
@@ -66,6 +78,27 @@ class Estimates:
     def time_window(self) -> float:
         """The largest error by the time step, march included, of any displacement."""
         return float((self.time_step + self.march)[:, 0].max(initial=0.0))
+
+
+class AxialMotion(NamedTuple):
+    """What the walls of a three-dimensional run do along the axis at a station, each (shells, parities, M + 1, T).
+
+    Attributes
+    ----------
+    u : ndarray
+        Axial displacement: u = sum_m u[.,0,m] cos(m theta) + u[.,1,m] sin(m theta).
+    w_z, w_zz, v_z, u_z : ndarray
+        Derivatives along z of W, V and u.
+    potentials : tuple of ndarray
+        Open-circuit voltages of the walls' piezoelectric layers, V, by their number from the inside out; 0 of walls with fewer.
+    """
+
+    u: FloatArray
+    w_z: FloatArray
+    w_zz: FloatArray
+    v_z: FloatArray
+    u_z: FloatArray
+    potentials: tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True)
@@ -97,6 +130,8 @@ class ModalSolution:
         Line force f_n^(i)/(rho_e c_e^2 a) on the inner [0] and outer [1] of the shells it links, positive inward on the shell.
     control_correction : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure of the saturated minus that of the linear control law, where saturation is on.
+    along : AxialMotion or None
+        At a station of a three-dimensional run.
     spectra : SolvedSpectra or None
         The transforms that it was made from, as long as it is in the process that solved it. They belong to these very histories: a
         copy (:func:`dataclasses.replace`, :mod:`copy`, pickle) has none, and nothing is different without them but the time it takes.
@@ -115,6 +150,7 @@ class ModalSolution:
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
     control_correction: FloatArray | None = None
+    along: AxialMotion | None = None
     spectra: SolvedSpectra | None = field(default=None, init=False, repr=False, compare=False)
 
     def keep(self, spectra: SolvedSpectra) -> None:
@@ -125,6 +161,16 @@ class ModalSolution:
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms."""
         return {**vars(self), "spectra": None}
+
+    def field(self, name: str) -> FloatArray:
+        """Return one of :data:`coaxshell.structure.shell_model.FIELDS` at a station of a three-dimensional run.
+
+        Shape (shells, parities, M + 1, T).
+        """
+        if name in ("w", "v"):
+            return self.normal if name == "w" else self.tangential
+        found: FloatArray = getattr(self.along, name)
+        return found
 
     @property
     def whole(self) -> bool:

@@ -14,7 +14,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
-from coaxshell.solver.dimensions import require_dimensions
+from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
@@ -85,7 +85,7 @@ def prepare(
     """
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} cannot be prepared", 'use engine="spectral"')
-    require_dimensions(problem.system, settings)
+    require_two_dimensions(problem.system, settings)
     if like is not None and like.same_but_absorbers(problem):
         return like
     stopwatch = stopwatch or Stopwatch()

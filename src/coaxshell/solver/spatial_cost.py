@@ -9,8 +9,8 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.solver.run_size import Size
 from coaxshell.solver.settings import Settings
 
-_FIELDS = 4
-"""Transforms kept at each station: normal, tangential and axial displacement, sensor voltage."""
+_FIELDS = 9
+"""Transforms kept at each station: three displacements, four derivatives along the axis, potentials of two layers."""
 _ELLIPSE = math.pi / 4.0
 """Share of the pairs of order and wavenumber below both bounds that are solved."""
 

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.acoustics.operators import all_orders
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.winding import turning
@@ -61,9 +60,8 @@ class OpenLoop:
         return sum(x.nbytes for x in arrays if isinstance(x, np.ndarray))
 
     @classmethod
-    def of(cls, problem: Problem, nodes: ComplexArray, orders: FloatArray, shared: SharedParts | None) -> OpenLoop:
+    def of(cls, problem: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None) -> OpenLoop:
         """Return it for a problem, whose gains only tell which shells are controlled."""
-        modes = Modes(orders)
         system = ModalSystem(problem.open_loop, nodes, modes, shared=shared)
         fed_back = {
             i: wall.fed_back(modes, operator)
@@ -88,33 +86,37 @@ def with_gains(problem: Problem, proportional: float, derivative: float) -> Prob
     return replace(problem, shells=tuple(shells))
 
 
-def highest_frequency(problem: Problem, max_order: int) -> float:
+def highest_frequency(problem: Problem, max_order: int, wavenumber: float | ComplexArray = 0.0) -> float:
     """Return a power of two above which feedback is less than half of every controlled shell's inertia."""
-    highest = max(1.0, *(wall.feedback_frequency(Modes.up_to(max_order)) for wall in problem.shells))
+    highest = max(1.0, *(wall.feedback_frequency(Modes.up_to(max_order, wavenumber)) for wall in problem.shells))
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
-def _contour(problem: Problem, max_order: int, duration: float) -> tuple[float, FloatArray]:
+def _contour(problem: Problem, modes: Modes, duration: float) -> tuple[float, FloatArray]:
     """Return sigma_0 and the frequencies: evenly spaced as far as shells resonate, then by a growing step to where feedback fades."""
-    highest = Modes(np.array([float(max_order)]))
+    highest = Modes(modes.orders[-1:], modes.wavenumber)
     resonance = max(float(wall.highest_frequency(highest)[0]) for wall in problem.shells)
-    dense = min(1.2 * resonance, highest_frequency(problem, max_order))
+    fades = highest_frequency(problem, modes.max_order, modes.wavenumber)
+    dense = min(1.2 * resonance, fades)
     shift = max(1.0 / duration, dense / (_SPACING * _MAX_NODES))
     even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)
-    beyond = np.geomspace(even[-1], max(highest_frequency(problem, max_order), 1.02 * even[-1]), 200)
+    beyond = np.geomspace(even[-1], max(fades, 1.02 * even[-1]), 200)
     return shift, np.concatenate([even, beyond[1:]])
 
 
-def unstable_poles(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None) -> UnstablePoles:
-    """Return the orders whose response would grow by more than a factor e within the duration."""
-    shift, frequencies = _contour(problem, max_order, duration)
+def unstable_poles(
+    problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0
+) -> UnstablePoles:
+    """Return the orders whose response, at an axial wavenumber, would grow by more than a factor e within the duration."""
+    modes = Modes.up_to(max_order, wavenumber)
+    shift, frequencies = _contour(problem, modes, duration)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
-    known = (problem.open_loop.shells, controlled, problem.fluids, problem.scales, max_order)
-    orders = all_orders(max_order)
+    known = (problem.open_loop.shells, controlled, problem.fluids, problem.scales, modes.key)
+    orders = modes.orders
     turned = np.zeros(orders.size)
     for start in range(0, frequencies.size, _BLOCK):
         block = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
-        make = partial(OpenLoop.of, problem, block, orders, shared)
+        make = partial(OpenLoop.of, problem, block, modes, shared)
         if shared is not None:
             open_loop = shared.get_or_make(("open loop", *known, block.tobytes()), make)
         else:
@@ -127,24 +129,25 @@ def unstable_poles(problem: Problem, max_order: int, duration: float, shared: Sh
     return UnstablePoles(orders[found], counts[found])
 
 
-def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None) -> None:
-    """Raise InputError, naming gain and order, if the closed loop is unstable."""
+def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0) -> None:
+    """Raise InputError, naming gain and order, if the closed loop is unstable at an axial wavenumber."""
     if all(shell.gains is None for shell in problem.shells):
         return
-    unstable = unstable_poles(problem, max_order, duration, shared)
+    unstable = unstable_poles(problem, max_order, duration, shared, wavenumber)
     if unstable.orders.size == 0:
         return
     control = problem.system.control
     assert control is not None
     gains = {"proportional": control.proportional, "derivative": control.derivative}
     alone = {
-        "proportional": unstable_poles(with_gains(problem, 1.0, 0.0), max_order, duration).orders.size > 0,
-        "derivative": unstable_poles(with_gains(problem, 0.0, 1.0), max_order, duration).orders.size > 0,
+        "proportional": unstable_poles(with_gains(problem, 1.0, 0.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
+        "derivative": unstable_poles(with_gains(problem, 0.0, 1.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
     }
     guilty = [name for name, bad in alone.items() if bad] or list(gains)
+    where = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
     listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5]) + (", ..." if unstable.orders.size > 5 else "")
     raise InputError(
         " and ".join(f"control.{name}" for name in guilty),
-        f"{' and '.join(f'{gains[name]:g}' for name in guilty)} makes the closed loop unstable: order {listed} grows without bound",
+        f"{' and '.join(f'{gains[name]:g}' for name in guilty)} makes the closed loop unstable: order {listed}{where} grows without bound",
         "use a smaller magnitude or the other sign (negative gains stiffen and damp)",
     )

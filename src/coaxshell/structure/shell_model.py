@@ -76,8 +76,8 @@ class FieldGain(NamedTuple):
     ----------
     w, w_z, w_zz, v, v_z, u, u_z : ndarray or None
         Per unit amplitude of w, dw/dz, d2w/dz2, v, dv/dz, u and du/dz.
-    potential : float
-        Per volt of the potential of the piezoelectric layer in which the point lies.
+    potential : float or ndarray
+        Per volt of the potential of a piezoelectric layer, such as that in which the point lies.
     layer : int or None
         Its number among the piezoelectric layers, from the inside out.
     """
@@ -89,7 +89,7 @@ class FieldGain(NamedTuple):
     v_z: FloatArray | None = None
     u: FloatArray | None = None
     u_z: FloatArray | None = None
-    potential: float = 0.0
+    potential: FloatArray | float = 0.0
     layer: int | None = None
 
     @property
@@ -106,8 +106,8 @@ class FieldGain(NamedTuple):
             raise ValueError("the point lies in a piezoelectric layer: give the potential of that layer")
         return total + self.potential * potential
 
-    def times(self, factor: float) -> FieldGain:
-        """Return the gain in other units."""
+    def times(self, factor: FloatArray | float) -> FieldGain:
+        """Return the gain in other units, or times a factor for each order."""
         fields = {name: factor * gain for name, gain in self.fields.items()}
         return FieldGain(**fields, potential=factor * self.potential, layer=self.layer)
 
@@ -257,6 +257,10 @@ class ShellModel(ABC):
     def sensor_gain(self, modes: Modes, role: str = "sensor") -> Gain:
         """Return volts of an open-circuit layer per unit (V, W, U) (Eq. 20); zeros if it has no such layer."""
         return Gain(np.zeros_like(modes.orders), np.zeros_like(modes.orders))
+
+    def layer_number(self, role: str) -> int | None:
+        """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
+        return None
 
     def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:
         """Return volts per unit (V, W, U) of every open-circuit layer, from the inside out (Eq. 20)."""

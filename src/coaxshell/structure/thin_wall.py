@@ -98,6 +98,10 @@ class ThinWall(ShellModel):
             return super().sensor_gain(modes, role)
         return self._potential_gain(layer, modes)
 
+    def layer_number(self, role: str) -> int | None:
+        """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
+        return next((number for number, layer in enumerate(self.section.piezoelectric) if layer.role == role), None)
+
     def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:
         """Return volts per unit (V, W, U) of every open-circuit layer, from the inside out (Eq. 20)."""
         return tuple(self._potential_gain(layer, modes) for layer in self.section.piezoelectric)

@@ -11,7 +11,7 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model.paths import within
 from coaxshell.model.system import System
-from coaxshell.solver.dimensions import require_dimensions
+from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
@@ -143,7 +143,7 @@ def _solvable(system: System | InputError, resolution: Settings) -> System | Inp
     """Return a system, or why it cannot be solved in the dimensions asked for."""
     try:
         if isinstance(system, System):
-            require_dimensions(system, resolution)
+            require_two_dimensions(system, resolution)
     except InputError as error:
         return error
     return system

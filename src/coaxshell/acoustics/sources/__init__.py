@@ -23,11 +23,14 @@ __all__ = [
 ]
 
 
-def source_geometry(kind: str, distance: float | None) -> SourceGeometry:
+def source_geometry(kind: str, distance: float | None, dimensions: int = 2, inclination: float = 0.0) -> SourceGeometry:
     """Return the geometry of a kind of source, "plane", "line" or "spherical", at a distance from the axis in units of a.
 
-    A source of any kind at no distance is a plane wave from infinitely far away.
+    A source of any kind at no distance is a plane wave from infinitely far away. A spherical one is a slice through its wave in two
+    dimensions, the wave itself in three. A plane one may be inclined there, in degrees.
     """
     if distance is None:
-        return PlaneGeometry()
-    return LineGeometry(distance) if kind == "line" else SphericalGeometry(distance)
+        return PlaneGeometry(inclination)
+    if kind == "line":
+        return LineGeometry(distance)
+    return SphericalGeometry(distance) if dimensions == 2 else SphericalFrontGeometry(distance)

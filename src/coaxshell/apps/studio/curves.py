@@ -34,6 +34,7 @@ def bars() -> dict[str, tuple[str, str]]:
             quantity.unit,
         )
         for quantity in QUANTITIES.values()
+        if quantity.dimensions == 2
         for where in quantity.summary
     }
 

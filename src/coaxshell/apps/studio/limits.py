@@ -23,7 +23,7 @@ from coaxshell.model.naming import suggestion
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.memory import words_of
 from coaxshell.solver.cost import run_cost
-from coaxshell.solver.dimensions import require_dimensions
+from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.settings import AXIAL, Settings
 
 BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUDIO_NESTING.value
@@ -127,7 +127,7 @@ def check_cost(system: System, settings: Settings, *, live: bool) -> None:
 
     Also for one that has no solution in the dimensions asked for.
     """
-    require_dimensions(system, settings)
+    require_two_dimensions(system, settings)
     cost, most = run_cost(system, settings), LIVE_COST if live else FULL_COST
     if cost.memory > most.memory or cost.seconds > most.seconds:
         found = f"a run of this system at this resolution takes about {words_of(cost.memory)} and {cost.duration}"

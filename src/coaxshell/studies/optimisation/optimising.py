@@ -14,7 +14,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
-from coaxshell.solver.dimensions import require_dimensions
+from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.execution import Execution, StudyKeywords, asked
 from coaxshell.studies.metrics import ANYWHERE
@@ -166,7 +166,7 @@ def problem_of(
             raise InputError(name, f"{number!r} is not allowed", f"give a whole number of {least} or more")
     if start not in ("auto", "system"):
         raise InputError("start", f"{start!r} is not allowed", 'must be "auto" or "system"')
-    require_dimensions(system, resolution)
+    require_two_dimensions(system, resolution)
     space = space_of(system, variables)
     targets = targets_of(objectives, constraints, space.base, code)
     if targets.statistics and not uncertain:

@@ -1,0 +1,64 @@
+"""The answer of a three-dimensional run at its stations, with names, units and coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import xarray as xr
+from coaxshell.response.response import Response
+from coaxshell.response.spatial_summary import SpatialSummary, summarise_stations
+from coaxshell.response.stations import StationMotion, chosen_stations, joined
+from coaxshell.response.wall_motion import WallMotion
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.electrodes import Segment
+
+
+class SpatialResponse(Response):
+    """Hold the solution of a three-dimensional run and read it in SI, at all of its stations or at some.
+
+    What reads a shell takes *station*: an axial position of the run or several of them, in m or as text ("70 cm"), all of them by
+    default; one alone leaves no dimension. Everything else is as for :class:`Response`.
+
+    Parameters
+    ----------
+    spatial : SpatialSolution
+        What the solver returned, or a file held.
+
+    Attributes
+    ----------
+    spatial : SpatialSolution
+    motions : list of StationMotion
+        What quantities of shells are read from, one a station.
+    """
+
+    def __init__(self, spatial: SpatialSolution) -> None:
+        self.spatial = spatial
+        self.motions = [StationMotion(spatial, i) for i in range(spatial.stations.size)]
+        super().__init__(self.motions[0].solution)
+        self.motion = self.motions[0]
+
+    @property
+    def stations(self) -> FloatArray:
+        """Axial positions at which the run answers, m, shape (stations,)."""
+        return self.spatial.stations
+
+    def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
+        """Return what is read at each of some stations, dims (time, station, ...)."""
+        chosen, alone = chosen_stations(self.stations, station)
+        return joined([read(self.motions[i]) for i in chosen], self.stations, chosen, alone=alone)
+
+    def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> SpatialSummary:  # type: ignore[override]
+        """Return peaks, RMS, error estimates and warnings of every station, and the largest over all of them; print it for a table.
+
+        See :class:`coaxshell.response.spatial_summary.SpatialSummary`.
+        """
+        return summarise_stations(self.spatial, self.motions, window, segment)
+
+    def _repr_html_(self) -> str:
+        return self.summary()._repr_html_()
+
+    def __repr__(self) -> str:
+        plain = super().__repr__().removesuffix(">").replace("<Response", "<SpatialResponse")
+        return f"{plain}, {len(self.motions)} station{'s' * (len(self.motions) != 1)}>"

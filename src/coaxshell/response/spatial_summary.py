@@ -1,0 +1,107 @@
+"""The summary of a three-dimensional run: that of each station, and what is largest over all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from coaxshell.model.prefixes import engineering
+from coaxshell.response.quantities import summary_rows
+from coaxshell.response.stations import StationMotion
+from coaxshell.response.summary import Summary, summarise
+from coaxshell.response.summary_text import aligned, notes, title_lines, when
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.electrodes import Segment
+
+_HEADING = ("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]", "z [m]")
+_PER_STATION = ("stress", "von_mises_stress", "relative_displacement")
+"""Largest magnitudes that are told of each station."""
+
+
+@dataclass(frozen=True)
+class SpatialSummary:
+    """What a three-dimensional run came to; ``str(summary)`` is an aligned table.
+
+    Attributes
+    ----------
+    stations : tuple of float
+        Axial positions, m.
+    each : tuple of Summary
+        One a station.
+    """
+
+    stations: tuple[float, ...]
+    each: tuple[Summary, ...]
+
+    def at(self, station: float) -> Summary:
+        """Return the summary of a station of the run (m)."""
+        return self.each[min(range(len(self.stations)), key=lambda i: abs(self.stations[i] - station))]
+
+    @property
+    def largest(self) -> list[dict[str, Any]]:
+        """The largest magnitudes over all stations, a dict a shell: by the keys of a summary, each with its station (m) beside it."""
+        plain = [summary.to_dict() for summary in self.each]
+        return [self._largest([one["shells"][i] for one in plain]) for i in range(len(plain[0]["shells"]))]
+
+    def _largest(self, shells: Sequence[dict[str, Any]]) -> dict[str, Any]:
+        found: dict[str, Any] = {"name": shells[0]["name"]}
+        for key, _, _ in summary_rows(3):
+            peaks = [_peak(shell.get(key)) for shell in shells]
+            if any(peak is None for peak in peaks):
+                continue
+            largest, station = max(((peak or {}, z) for peak, z in zip(peaks, self.stations, strict=True)), key=lambda one: one[0]["value"])
+            found[key] = {**largest, "station": station}
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all of it as nested plain dicts, lists and numbers, ready for JSON."""
+        each = [{"station": z, **summary.to_dict()} for z, summary in zip(self.stations, self.each, strict=True)]
+        common = {key: each[0][key] for key in ("title", "window", "transit_time", "settings", "warnings")}
+        return {**common, "stations": each, "largest": self.largest}
+
+    def __str__(self) -> str:
+        plain = self.each[0].to_dict()
+        warnings = (f"warning: {text}" for text in plain["warnings"])
+        along = ["", *aligned(self._station_rows(), left=2)] if len(self.stations) > 1 else []
+        return "\n".join([*title_lines(plain), "", *aligned([_HEADING, *self._rows()], left=2), *along, "", *notes(plain), *warnings])
+
+    def _rows(self) -> list[tuple[str, ...]]:
+        rows: list[tuple[str, ...]] = []
+        labels = {key: (label, unit) for key, label, unit in summary_rows(3)}
+        for shell in self.largest:
+            for key, (label, unit) in labels.items():
+                if key in shell:
+                    peak = shell[key]
+                    place = (when(peak), f"{peak['angle']:.4g}") if "time" in peak else ("", "")
+                    rows.append((shell["name"], label, engineering(peak["value"], unit), *place, f"{peak['station']:g}"))
+        return rows
+
+    def _station_rows(self) -> list[tuple[str, ...]]:
+        """Return the table of what is largest at each station, one column a station."""
+        rows: list[tuple[str, ...]] = [("shell", "largest anywhere at z =", *(f"{z:g} m" for z in self.stations))]
+        labels = {key: (label, unit) for key, label, unit in summary_rows(3) if key in _PER_STATION}
+        plain = [summary.to_dict()["shells"] for summary in self.each]
+        for i, shell in enumerate(plain[0]):
+            for key, (label, unit) in labels.items():
+                if shell.get(key) is not None:
+                    values = (engineering(one[i][key]["value"], unit) for one in plain)
+                    rows.append((shell["name"], label.removesuffix(" anywhere"), *values))
+        return rows
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+
+def _peak(value: Any) -> dict[str, Any] | None:
+    """Return a peak, or a bare number as one without time and place."""
+    return value if value is None or isinstance(value, dict) else {"value": value}
+
+
+def summarise_stations(
+    spatial: SpatialSolution, motions: Sequence[StationMotion], window: Sequence[float] | None = None, segment: Segment = None
+) -> SpatialSummary:
+    """Return the summary of each station within a window (start, end) in transits; see :func:`coaxshell.response.summary.summarise`."""
+    each = tuple(summarise(motion.solution, window, segment, motion=motion) for motion in motions)
+    return SpatialSummary(tuple(spatial.stations.tolist()), each)

@@ -1,0 +1,85 @@
+"""The stations of a three-dimensional run: which are asked for, and the motion of the walls at each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import xarray as xr
+from coaxshell.response.wall_motion import MotionSpectra, WallMotion
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.axial.solve import station_spectra
+from coaxshell.solver.stations import stations_of
+
+_SAME = 1e-9
+"""Of a station's position, in m, within which it is found."""
+
+
+def chosen_stations(known: FloatArray, station: Any) -> tuple[list[int], bool]:
+    """Return which of the stations of a run are asked for, by number, and whether it is one alone.
+
+    Parameters
+    ----------
+    known : ndarray, shape (stations,)
+        m.
+    station : float, str, iterable of them, or None
+        Axial positions, m or text; None for all.
+
+    Raises
+    ------
+    InputError
+        One is no position, or the run has no such station.
+    """
+    if station is None:
+        return list(range(known.size)), False
+    try:
+        asked = stations_of(station)
+    except InputError as error:
+        raise InputError(error.where.replace("stations", "station"), error.problem, error.remedy) from None
+    chosen = []
+    for z in asked:
+        near = int(np.abs(known - z).argmin())
+        if abs(known[near] - z) > _SAME:
+            listed = ", ".join(f"{one:g}" for one in known[:8]) + (", ..." if known.size > 8 else "")
+            raise InputError("station", f"{z:g} m is none of the run's", f"it has {listed} m; name others in stations= of the run")
+        chosen.append(near)
+    return chosen, np.ndim(station) == 0 and len(chosen) == 1
+
+
+def joined(arrays: Sequence[xr.DataArray], known: FloatArray, chosen: Sequence[int], *, alone: bool) -> xr.DataArray:
+    """Return arrays of some stations as one, dims (time, station, ...); of one alone with a scalar coordinate."""
+    attributes = {"units": "m", "long_name": "axial position"}
+    if alone:
+        return arrays[0].assign_coords(station=xr.Variable((), known[chosen[0]], attributes))
+    first = arrays[0]
+    axis = first.dims.index("time") + 1 if "time" in first.dims else 0
+    dims = (*first.dims[:axis], "station", *first.dims[axis:])
+    values = np.stack([np.asarray(one) for one in arrays], axis=axis)
+    coordinates = {**first.coords, "station": xr.Variable("station", known[list(chosen)], attributes)}
+    return xr.DataArray(values, dims=dims, coords=coordinates, name=first.name, attrs=first.attrs)
+
+
+class StationMotion(WallMotion):
+    """The motion of all walls at a station of a three-dimensional run.
+
+    Parameters
+    ----------
+    spatial : SpatialSolution
+    station : int
+        Its number.
+    """
+
+    def __init__(self, spatial: SpatialSolution, station: int) -> None:
+        super().__init__(spatial.at(station))
+        self._spatial, self._station = spatial, station
+
+    @cached_property
+    def for_rates(self) -> MotionSpectra:
+        """Transforms of W and V at the station; InputError if instants of the run are missing."""
+        found = station_spectra(self._spatial)
+        return MotionSpectra(found.grid, found.normal[self._station], found.tangential[self._station])

@@ -1,0 +1,112 @@
+"""The waves along the axis of which a three-dimensional answer is made: wavenumbers, and their shares at the stations.
+
+At one axial wavenumber k walls and fluids answer with amplitudes W, V, U that do not depend on z. Along the axis they go with an even
+function e and an odd one o,
+
+    w = e W,    v = e V,    u = o U,        de/dz = -k o,    do/dz = k e.
+
+For the share of a spherical wave from z0 with the axial period L (theory manual, section "Axial wavenumber")
+
+    e = c cos k(z - z0),    o = c sin k(z - z0),    c = 2/L for k = 0, else 4/L,
+
+and for a plane wave inclined by alpha, of complex wavenumber k = -i s sin alpha,
+
+    e = e^{-s z sin alpha},    o = i e.
+
+Line sources and plane waves across the axis are uniform along it: k = 0, e = 1, o = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
+from coaxshell.model.sources import Source
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.excitation import SourceGroup, source_groups
+from coaxshell.solver.scaling import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Sources whose waves go along the axis alike.
+
+    Attributes
+    ----------
+    groups : list of SourceGroup
+    even, odd : ndarray, shape (stations, waves) or, for the one wave of inclined sources, (stations, 1, nodes)
+        e and o of every wavenumber at the stations.
+    mean : ndarray, shape (waves,)
+        Mean square of e along the axis.
+    """
+
+    groups: list[SourceGroup]
+    even: npt.NDArray[np.number]
+    odd: npt.NDArray[np.number]
+    mean: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class WaveSet:
+    """Axial wavenumbers that some families share: one factored system of walls and fluids serves all of them.
+
+    Attributes
+    ----------
+    modes : list of Modes
+        One a wavenumber.
+    families : list of Family
+    """
+
+    modes: list[Modes]
+    families: list[Family]
+
+    @property
+    def wavenumber(self) -> npt.NDArray[np.number]:
+        """k of every wave, shape (waves,), or (1, nodes) where it is complex."""
+        return np.stack([np.asarray(modes.wavenumber) for modes in self.modes])
+
+
+def axial_position(source: Source) -> float:
+    """Return z of a source, m; 0 of one that has none."""
+    return float(getattr(source, "z", 0.0))
+
+
+def wave_sets(problem: Problem, sampling: AxialSampling, stations: FloatArray, s: ComplexArray) -> list[WaveSet]:
+    """Return all waves of the sources of a problem at some nodes.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of three dimensions.
+    sampling : AxialSampling
+    stations : ndarray, shape (stations,)
+        z of the stations, in a.
+    s : ndarray, shape (nodes,)
+    """
+    a, top = problem.scales.length, sampling.max_order
+    spherical: dict[float, list[SourceGroup]] = {}
+    uniform: list[SourceGroup] = []
+    sets: list[WaveSet] = []
+    for group in source_groups(problem, s):
+        geometry = group.geometry
+        if isinstance(geometry, SphericalFrontGeometry):
+            for member in group.members:
+                spherical.setdefault(axial_position(member[0]) / a, []).append(SourceGroup(geometry, [member]))
+        elif isinstance(geometry, PlaneGeometry) and geometry.inclination:
+            shape = np.exp(-np.multiply.outer(stations, s) * geometry.trace_slowness)[:, None]
+            modes = Modes(np.arange(top + 1.0), -1j * s * geometry.trace_slowness)
+            sets.append(WaveSet([modes], [Family([group], shape, 1j * shape, np.ones(1))]))
+        else:
+            uniform.append(group)
+    if uniform:
+        ones = np.ones((stations.size, 1))
+        sets.append(WaveSet([Modes.up_to(top)], [Family(uniform, ones, np.zeros_like(ones), np.ones(1))]))
+    if spherical:
+        families = [Family(groups, *sampling.shares(stations - z0), sampling.mean) for z0, groups in spherical.items()]
+        sets.append(WaveSet(sampling.modes, families))
+    return sets

@@ -1,0 +1,149 @@
+"""One verb in three dimensions: solve a system at its stations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from coaxshell.acoustics.sources import PlaneGeometry
+from coaxshell.errors import InputError
+from coaxshell.model.system import System
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver import checks
+from coaxshell.solver.axial.left_out import estimated_errors
+from coaxshell.solver.axial.mode_choice import resolved_sampling
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
+from coaxshell.solver.axial.sums import StationSums, station_sums
+from coaxshell.solver.cost import require_room
+from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.settings import Settings
+from coaxshell.solver.solution import KEPT_BYTES
+from coaxshell.solver.spectral import Stopwatch
+from coaxshell.solver.stability import require_stable
+
+_BLOCK_ELEMENTS = 8 * 1024
+"""Order-node pairs of a block, 128 kB a complex array: a few dozen of them stay in a processor's cache."""
+
+_CHECKED = 16
+"""Wavenumbers at which a feedback is checked; poles move with k as smoothly as with the order."""
+
+Work = Callable[[slice], StationSums]
+Map = Callable[[Work, list[slice]], Iterable[StationSums]]
+"""Gives what a function makes of each block, in the order of the blocks: threads, or processes of one or many machines."""
+
+
+def on_threads(work: Work, blocks: list[slice]) -> Iterable[StationSums]:
+    """Map blocks on all cores of this machine."""
+    with ThreadPoolExecutor(WORKERS) as pool:
+        yield from pool.map(work, blocks)
+
+
+def solve_spatial(system: System, settings: Settings, progress: Progress | None = None, on: Map = on_threads) -> SpatialSolution:
+    """Return the modal histories of a system at its stations.
+
+    Parameters
+    ----------
+    system : System
+    settings : Settings
+        Of three dimensions.
+    progress : callable, optional
+    on : callable
+        Where blocks of Laplace nodes are worked on. The answer does not depend on it.
+
+    Raises
+    ------
+    InputError
+        If the system has what three dimensions do not know, its feedback is unstable, or the axial period is too short.
+    """
+    stopwatch = Stopwatch()
+    problem = dimensionless(system, dimensions=3)
+    require_known(problem, settings)
+    grid = _grid(settings)
+    sampling, notes = resolved_sampling(problem, grid, settings)
+    stopwatch.lap("choosing the number of modes")
+    period = sampling.period * problem.scales.length
+    settings = replace(settings, modes=sampling.max_order, axial_modes=sampling.highest, axial_period=period)
+    require_room(problem, settings)
+    for modes in sampling.modes[:: max(1, len(sampling.modes) // _CHECKED)]:
+        require_stable(problem, modes.max_order, settings.duration, wavenumber=float(modes.wavenumber))
+    stopwatch.lap("stability of the feedback")
+    spectra, squares = _summed(problem, grid, sampling, settings, progress, on)
+    stopwatch.lap("axial wavenumbers at all Laplace nodes")
+    keep = slice(None, None, settings.refinement)
+    histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in spectra.items()}
+    stopwatch.lap("inverse transform")
+    motion = StationSpectra(grid, spectra["w"], spectra["v"])
+    estimates = estimated_errors(problem, grid, sampling, squares, motion, (histories["w"], histories["v"]))
+    stopwatch.lap("error estimates")
+    warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
+    solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
+    return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
+
+
+def station_spectra(solution: SpatialSolution) -> StationSpectra:
+    """Return the transforms of W and V at the stations of a finished run, solved again where they have not been kept."""
+    if solution.spectra is not None:
+        return solution.spectra
+    solution.at(0).need_every_instant("what is computed from its transforms (velocity and acceleration of shells)")
+    grid = _grid(solution.settings)
+    spectra, _ = _summed(solution.problem, grid, solution.sampling, solution.settings, None, on_threads)
+    return StationSpectra(grid, spectra["w"], spectra["v"])
+
+
+def _grid(settings: Settings) -> LaplaceGrid:
+    return LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+
+
+def _summed(
+    problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, settings: Settings, progress: Progress | None, on: Map
+) -> tuple[dict[str, ComplexArray], FloatArray]:
+    """Return the transforms of the motion at all stations, and its mean squares along the axis, from those of blocks of nodes in turn."""
+    stations = np.array(settings.stations) / problem.scales.length
+    blocks = node_blocks(grid, sampling.max_order)
+    work = partial(station_sums, problem, grid, sampling, stations)
+    spectra: dict[str, ComplexArray] = {}
+    squares: FloatArray = np.zeros(1)
+    for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
+        for name, values in part.fields.items():
+            whole = spectra.setdefault(name, np.zeros((*values.shape[:-1], grid.nodes.size), np.complex128))
+            whole[..., block] = values
+        squares = squares + part.squares
+        if progress is not None:
+            progress(done / len(blocks), "axial wavenumbers")
+    return spectra, squares
+
+
+def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:
+    """Return consecutive slices of the Laplace nodes, each of about the same size."""
+    count = grid.nodes.size
+    blocks = max(WORKERS, round(count / max(32, _BLOCK_ELEMENTS // (max_order + 1))))
+    edges = np.linspace(0, count, blocks + 1).astype(int)
+    return [slice(int(a), int(b)) for a, b in pairwise(edges)]
+
+
+def require_known(problem: Problem, settings: Settings) -> None:
+    """Refuse what belongs to two dimensions, and stations that an inclined wave has passed before t = 0."""
+    system = problem.system
+    if system.absorber_list:
+        raise InputError(
+            "absorbers", "line absorbers are uniform along the axis, a spherical shock is not", "use dimensions=2, or no absorbers"
+        )
+    if system.control is not None and system.control.saturation:
+        raise InputError("control.saturation", "is marched in two dimensions alone", "use saturation = false")
+    for source, geometry in zip(system.sources, problem.sources, strict=True):
+        if not isinstance(geometry, PlaneGeometry):
+            continue
+        for z in settings.stations:
+            early = -(z / problem.scales.length * geometry.trace_slowness + source.delay / problem.scales.time)
+            if early > 0.0:
+                where = f"{z:g} m is passed by the inclined wave {early:.3g} transits before t = 0, when it reaches the head at z = 0"
+                needed = early * problem.scales.time + source.delay
+                raise InputError("stations", where, f"give the source a delay of {needed:.3g} s or more, or use stations behind z = 0")

@@ -1,0 +1,142 @@
+"""The motion of the walls at stations along the axis: the sum of all waves, at a block of Laplace nodes.
+
+Blocks of nodes are independent of each other and small enough for a processor's cache; within a block all wavenumbers are solved and
+added up, so that a run keeps what is at its stations alone, however many wavenumbers there are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.excitation import source_parities, superposed
+from coaxshell.solver.scaling import Problem
+
+_TOGETHER = 16
+"""Wavenumbers whose amplitudes are added up at once, by a matrix product."""
+
+
+@dataclass(frozen=True)
+class StationSums:
+    """Transforms of the walls' motion at stations, at a block of nodes.
+
+    Attributes
+    ----------
+    fields : dict of str to ndarray, shape (stations, shells, parities, M + 1, nodes)
+        Of :data:`coaxshell.structure.shell_model.FIELDS` and "potential 0", ..., those that are zero at all stations left out.
+    squares : ndarray, shape (shells, 2, M + 1)
+        Mean squares along the axis of W and of the strains, |m V - W|^2 + |k U|^2, parities and nodes added up.
+    """
+
+    fields: dict[str, ComplexArray]
+    squares: FloatArray
+
+
+def station_sums(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, stations: FloatArray, block: slice) -> StationSums:
+    """Return the motion at stations (z in a) at a slice of the grid's nodes."""
+    s = grid.nodes[block]
+    shape = (stations.size, len(problem.shells), source_parities(problem.system.sources), sampling.max_order + 1, s.size)
+    fields: dict[str, ComplexArray] = {}
+    squares = np.zeros((shape[1], 2, shape[3]))
+    layers = piezoelectric_layers(problem)
+    for waves in wave_sets(problem, sampling, stations, s):
+        for first in range(0, len(waves.modes), _TOGETHER):
+            some = range(first, min(first + _TOGETHER, len(waves.modes)))
+            amplitudes = [np.zeros((3 + layers, len(some), *shape[1:]), np.complex128) for _ in waves.families]
+            for place, j in enumerate(some):
+                for one, solved in zip(amplitudes, amplitudes_of(problem, waves, j, grid, block), strict=True):
+                    one[:, place, :, :, : waves.modes[j].count] = solved
+            for family, found in zip(waves.families, amplitudes, strict=True):
+                _add(fields, shape, family, waves.wavenumber, some, found)
+                squares += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
+    return StationSums(fields, squares)
+
+
+def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
+    """Return W, V, U of wave j under each family's sources, and the potentials of piezoelectric layers if there are any.
+
+    One array a family, (3 + layers, shells, parities, orders, nodes).
+    """
+    modes, last, parities = waves.modes[j], len(problem.shells) - 1, source_parities(problem.system.sources)
+    layers = piezoelectric_layers(problem)
+    system = ModalSystem(problem, grid.nodes[block], modes)
+    found = []
+    for family in waves.families:
+        units = [(group.geometry.prepare(grid, modes)(system.radial, block), group) for group in family.groups]
+        motions = []
+        for load in superposed(parities, modes, units):
+            normal = system.solve(last, load)
+            motion = [normal, system.tangential(normal), system.axial(normal)]
+            motions.append(np.array([*motion, *_potentials(problem, modes, layers, *motion)]))
+        found.append(np.stack(motions, axis=2))
+    return found
+
+
+def piezoelectric_layers(problem: Problem) -> int:
+    """Return the largest number of piezoelectric layers of a wall."""
+    return max(len(wall.potential_gains(Modes.up_to(0))) for wall in problem.shells)
+
+
+def _potentials(
+    problem: Problem, modes: Modes, layers: int, normal: list[ComplexArray], tangential: list[ComplexArray], axial: list[ComplexArray]
+) -> list[list[ComplexArray]]:
+    """Return the open-circuit voltage of each piezoelectric layer of each wall, by layer and wall; 0 of a wall with fewer."""
+    found = [[np.zeros_like(w) for w in normal] for _ in range(layers)]
+    for i, (wall, w, v, u) in enumerate(zip(problem.shells, normal, tangential, axial, strict=True)):
+        for number, gain in enumerate(wall.potential_gains(modes)):
+            per = gain.columns
+            found[number][i] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
+    return found
+
+
+def _add(
+    fields: dict[str, ComplexArray],
+    shape: tuple[int, ...],
+    family: Family,
+    wavenumber: npt.NDArray[np.number],
+    some: range,
+    amplitudes: ComplexArray,
+) -> None:
+    """Add some waves of a family to the fields, by e and o and their derivatives."""
+    w, v, u, *potentials = amplitudes
+    part = slice(some.start, some.stop)
+    even, odd, k = family.even[:, part], family.odd[:, part], wavenumber[part]
+    shares = {
+        "w": (even, w),
+        "v": (even, v),
+        "u": (odd, u),
+        "w_z": (-k * odd, w),
+        "w_zz": (-k * k * even, w),
+        "v_z": (-k * odd, v),
+        "u_z": (k * even, u),
+    }
+    shares |= {f"potential {number}": (even, x) for number, x in enumerate(potentials)}
+    for name, (share, amplitude) in shares.items():
+        if not np.any(share):
+            continue
+        total = fields.setdefault(name, np.zeros(shape, np.complex128))
+        if np.iscomplexobj(share):
+            total += share.reshape(shape[0], 1, 1, 1, -1) * amplitude[0]
+        else:
+            columns = amplitude.reshape(len(some), -1).view(np.float64)
+            total += (share @ columns).view(np.complex128).reshape(shape)
+
+
+def mean_squares(mean: FloatArray, wavenumber: npt.NDArray[np.number], w: ComplexArray, v: ComplexArray, u: ComplexArray) -> FloatArray:
+    """Return the mean squares along the axis of W and of the strains, (shells, 2, M + 1).
+
+    W, V, U of some waves have the shape (waves, shells, parities, M + 1, nodes).
+    """
+    m, k = np.arange(w.shape[3], dtype=np.float64)[:, None], wavenumber.reshape(len(mean), 1, 1, 1, -1)
+    found = np.zeros((w.shape[1], 2, w.shape[3]))
+    for which, x in ((0, w), (1, m * v - w), (1, k * u)):
+        found[:, which] += np.einsum("j,jipmn,jipmn->im", mean, x, x.conj()).real
+    return found
