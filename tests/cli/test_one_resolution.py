@@ -74,7 +74,21 @@ def test_an_item_of_an_option_is_called_by_the_option(refused):
     assert told == "error: --stations: '1 s' is not a length; give a length as a finite number in m or as text such as '6 mm'\n"
     assert "--stations: has no effect in two dimensions" in refused("plot", "bare", "--stations", "-0.5")
     assert "--engine: 'direct' solves two dimensions only" in refused("run", "bare", "--dimensions", "3", "--engine", "direct")
-    assert "--dimensions: 3 is not what the paper's figures have" in refused("figure", "2", "--dimensions", "3")
+
+
+@pytest.mark.parametrize("command", [("plot", "bare"), ("snapshots", "bare"), ("animate", "bare"), ("figure", "2"), ("figure", "12")])
+def test_commands_that_show_two_dimensions_say_so(refused, command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    told = refused(*command, "--dimensions", "3")
+    assert told == "error: --dimensions: 3 is not for this command, which shows two; use coaxshell run, or --dimensions 2\n"
+
+
+@pytest.mark.parametrize("option", ["--figure=x.png", "--energy=x.pdf", "--output=x.nc", "--compare=active"])
+def test_options_that_show_two_dimensions_say_so(refused, option, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    name = option.partition("=")[0]
+    told = refused("run", "bare", "--dimensions", "3", option)
+    assert told == f"error: {name}: is for runs in two dimensions; leave it out, or use --dimensions 2\n"
 
 
 def test_the_defaults_that_a_command_shows_are_those_of_a_run():

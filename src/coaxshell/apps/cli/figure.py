@@ -49,10 +49,6 @@ def figure(
     from coaxshell.apps.paper import StudyRecipe, figure_recipe
     from coaxshell.plotting import FIGURE_SUFFIXES
 
-    if request.dimensions != options.DIMENSIONS:
-        raise InputError(
-            "--dimensions", f"{request.dimensions} is not what the paper's figures have", "leave it out: they are of two dimensions"
-        )
     recipe = figure_recipe(number)
     target = Outputs(force).file(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
     if source and (preset or changes):
@@ -83,6 +79,7 @@ def _draw_study(
     from coaxshell.studies.executors import worker_count
 
     systems = [load_system(name, changes or (), "--preset") for name in sources]
+    request.require_two_dimensions(systems[0])
     with named_as_options(), progress(quiet) as report:
         drawn = recipe.draw(systems, Runs(request.settings(systems[0]), workers=worker_count(None)), report)
     write_figure(drawn.figure, target, "--output")

@@ -65,6 +65,9 @@ def run(
     outputs.figure(figure)
     outputs.figure(energy, "--energy")
     systems = [load_system(scenario, changes or ())]
+    given = {"--output": output, "--compare": compare, "--figure": figure, "--energy": energy}
+    for option in (name for name, value in given.items() if value is not None):
+        request.require_two_dimensions(systems[0], option)
     if compare is not None:
         systems.append(load_reference(compare, changes or ()))
     responses = [request.solve(system, quiet=quiet) for system in systems]

@@ -121,6 +121,14 @@ class Request:
         """Return the settings of a run of a system; InputError names the option that is wrong."""
         return settings_of(system, {name: text for name, text in asdict(self).items() if text is not None})
 
+    def require_two_dimensions(self, system: System, *options: str) -> None:
+        """Refuse options, or with none of them the command, that show runs in two dimensions only."""
+        if self.settings(system).dimensions == 3:
+            for option in options:
+                raise InputError(option, "is for runs in two dimensions", "leave it out, or use --dimensions 2")
+            if not options:
+                raise InputError("--dimensions", "3 is not for this command, which shows two", "use coaxshell run, or --dimensions 2")
+
 
 def settings_of(system: System, given: Mapping[str, str]) -> Settings:
     """Return the settings that the texts of some options describe; InputError names the option that is wrong."""
@@ -190,7 +198,9 @@ def answers(
             found.append(load_response(source))
         else:
             load = load_reference if number else load_system
-            found.append(request.solve(load(source, changes or (), options[number > 0]), quiet=quiet))
+            system = load(source, changes or (), options[number > 0])
+            request.require_two_dimensions(system)
+            found.append(request.solve(system, quiet=quiet))
     return found
 
 
