@@ -83,3 +83,15 @@ def test_forward_of_a_known_history() -> None:
     found = grid.transform(np.exp(-DECAY * grid.time))
     ratio = np.exp(-(grid.nodes + DECAY) * grid.time_step)  # a geometric sum
     np.testing.assert_allclose(found, grid.time_step * (1 - ratio**301) / (1 - ratio), rtol=1e-11)
+
+
+@pytest.mark.parametrize(("step", "steps"), [(1e-3, 5000), (1e-2, 777), (7e-3, 3)])
+def test_a_sparser_grid_has_every_so_many_of_the_nodes(step: float, steps: int) -> None:
+    grid = LaplaceGrid(step, steps)
+    kept = grid.nodes[::16]
+    np.testing.assert_allclose(grid.sparser(16).nodes[: kept.size], kept, rtol=1e-14)
+
+
+def test_the_roll_off_is_shared_and_stays_as_it_is() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        LaplaceGrid(1e-2, 100).taper()[0] = 2.0

@@ -21,7 +21,10 @@ def motions(response: cx.Response, every: int = 1) -> np.ndarray:
 
 
 def distance(found: np.ndarray, true: np.ndarray) -> np.ndarray:
-    """Return the relative L2 distance over surface and time, shape (shells, 2); NaN for a rigid shell."""
+    """Return the least and the most that the relative L2 distance over surface and time may be, for the noise in both.
+
+    Shape (2, shells, 2); NaN for a rigid shell.
+    """
     parities, orders = (max(found.shape[i], true.shape[i]) for i in (2, 3))
     steps = min(found.shape[4], true.shape[4])
 
@@ -34,11 +37,11 @@ def distance(found: np.ndarray, true: np.ndarray) -> np.ndarray:
     size = [np.sqrt((weight * x**2).sum(axis=(2, 3, 4))) for x in (padded(found) - padded(true), padded(true))]
     largest = size[1].max(axis=0)
     whole = np.where(size[1] > 0, np.maximum(size[1], REST * largest), np.nan)
-    return np.maximum(size[0] - NOISE * largest, 0.0) / whole
+    return np.stack([np.maximum(size[0] - NOISE * largest, 0.0), size[0] + NOISE * largest]) / whole
 
 
 def true_errors(case: Case, response: cx.Response) -> dict[str, np.ndarray]:
-    """Return the errors by cause, "orders" and "step" (march included), each of shape (shells, 2)."""
+    """Return the bounds of the errors by cause, "orders" and "step" (march included), each of shape (2, shells, 2)."""
     settings = case.settings
     many = max(4 * settings["modes"], FEWEST_ORDERS)
     step = settings["time_step"]

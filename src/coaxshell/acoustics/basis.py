@@ -39,7 +39,7 @@ class RadialBasis:
 
     def passing(self, slowness: float, radius: float) -> RadialFunctions:
         """Return the ratios at a radius that is visited once: they are not kept."""
-        return RadialFunctions(self.modes.kappa(slowness, self.s), radius, self.modes.orders)
+        return RadialFunctions(self.modes.kappa(slowness, self.s), radius, self.modes.orders, self.modes.sparse)
 
     @property
     def surface(self) -> RadialFunctions:

@@ -18,6 +18,7 @@ import numpy as np
 
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.bessel_samples import BesselSample, i_sample, k_sample
 
 
 def all_orders(max_order: int) -> FloatArray:
@@ -37,11 +38,14 @@ class RadialFunctions:
         Radius in units of the reference radius.
     orders : ndarray, shape (M,)
         Ascending circumferential orders to be kept, all or a sample; the recurrences run through all of them.
+    sparse : bool
+        Whether they run by the functions themselves, of which the sample is kept, instead of by ratios of all orders.
     """
 
     kappa: ComplexArray
     radius: float
     orders: FloatArray
+    sparse: bool = False
 
     @cached_property
     def argument(self) -> ComplexArray:
@@ -68,12 +72,22 @@ class RadialFunctions:
         return br.k_ratios(self.max_order, self.argument)
 
     @cached_property
+    def i_sample(self) -> BesselSample:
+        """I_m at the orders kept."""
+        return i_sample(self.orders.astype(np.int64), self.argument)
+
+    @cached_property
+    def k_sample(self) -> BesselSample:
+        """K_m at the orders kept."""
+        return k_sample(self.orders.astype(np.int64), self.argument)
+
+    @cached_property
     def disc(self) -> ComplexArray:
         """I_m(kr)/(k I_m'(kr)) = r/(m + kr R_m) (DLMF 10.29.2), shape (M, n).
 
         Wall pressure per unit wall acceleration of a disc of radius r.
         """
-        derivative = self.argument * self.keep(self.i_ratios)
+        derivative = self.argument * (self.i_sample.ratio if self.sparse else self.keep(self.i_ratios))
         derivative += self.orders[:, None]
         return np.divide(self.radius, derivative, out=derivative)
 
@@ -83,9 +97,25 @@ class RadialFunctions:
 
         Wall pressure per unit wall acceleration of the unbounded fluid outside radius r.
         """
-        derivative = self.argument * self.keep(self.k_ratios)
+        derivative = self.argument * (self.k_sample.ratio if self.sparse else self.keep(self.k_ratios))
         np.subtract(self.orders[:, None], derivative, out=derivative)
         return np.divide(self.radius, derivative, out=derivative)
+
+
+def i_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
+    """Return I_m(kr)/I_m(k r1), the smaller of two radii over the larger, shape (M, n)."""
+    za, zb = inner.argument, outer.argument
+    if inner.sparse:
+        return np.asarray(inner.i_sample.over(outer.i_sample) * np.exp(za.real - zb.real), dtype=np.complex128)
+    return inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, za, zb))
+
+
+def k_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
+    """Return K_m(kr)/K_m(k r1), the larger of two radii over the smaller, shape (M, n)."""
+    za, zb = inner.argument, outer.argument
+    if inner.sparse:
+        return np.asarray(outer.k_sample.over(inner.k_sample) * np.exp(za - zb), dtype=np.complex128)
+    return inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, za, zb))
 
 
 class AnnulusOperator(NamedTuple):
@@ -112,11 +142,9 @@ def annulus_amplitudes(inner: RadialFunctions, outer: RadialFunctions) -> Annulu
     p = A I_m(kr)/(k I_m'(k rb)) + B K_m(kr)/(k K_m'(k ra)) the walls' accelerations g_a, g_b give
     A = (g_b - eps_K g_a)/(1 - eps_I eps_K), B = (g_a - eps_I g_b)/(1 - eps_I eps_K).
     """
-    i_across = inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, inner.argument, outer.argument))
-    k_across = inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, inner.argument, outer.argument))
     # I'(ka)/I'(kb) = [I(ka)/I(kb)] * [I'(ka)/I(ka)] / [I'(kb)/I(kb)], and disc = I/(k I').
-    epsilon_i = i_across * outer.disc / inner.disc
-    epsilon_k = k_across * inner.exterior / outer.exterior
+    epsilon_i = i_across(inner, outer) * outer.disc / inner.disc
+    epsilon_k = k_across(inner, outer) * inner.exterior / outer.exterior
     return AnnulusAmplitudes(epsilon_i, epsilon_k, 1.0 - epsilon_i * epsilon_k)
 
 

@@ -15,8 +15,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from coaxshell.acoustics.operators import AnnulusAmplitudes, RadialFunctions, annulus_amplitudes
-from coaxshell.numerics import bessel_ratios as br
+from coaxshell.acoustics.operators import AnnulusAmplitudes, RadialFunctions, annulus_amplitudes, i_across, k_across
 from coaxshell.numerics.arrays import ComplexArray
 
 
@@ -37,7 +36,7 @@ def disc_field(here: RadialFunctions, wall: RadialFunctions) -> RadialField:
     wall : RadialFunctions
         At the disc's wall r1, with the same wavenumbers and orders.
     """
-    pressure = _i_across(here, wall) * wall.disc
+    pressure = i_across(here, wall) * wall.disc
     return RadialField(pressure, pressure / here.disc)
 
 
@@ -60,7 +59,7 @@ def exterior_field(here: RadialFunctions, wall: RadialFunctions) -> RadialField:
 
 def outgoing(here: RadialFunctions, wall: RadialFunctions) -> ComplexArray:
     """Return K_m(kr)/K_m(k r1), r >= r1: pressure of an outgoing wave at r per pressure at the wall, shape (orders, nodes)."""
-    return here.keep(br.k_across(wall.k_ratios, here.k_ratios, wall.argument, here.argument))
+    return k_across(wall, here)
 
 
 def annulus_field(
@@ -81,15 +80,10 @@ def annulus_field(
         Those of the two walls, if known; they do not depend on r.
     """
     eps_i, eps_k, determinant = annulus_amplitudes(inner, outer) if amplitudes is None else amplitudes
-    standing = _i_across(here, outer) * outer.disc / determinant
+    standing = i_across(here, outer) * outer.disc / determinant
     evanescent = outgoing(here, inner) * inner.exterior / determinant
     standing_slope, evanescent_slope = standing / here.disc, evanescent / here.exterior
     return (
         RadialField(evanescent - eps_k * standing, evanescent_slope - eps_k * standing_slope),
         RadialField(standing - eps_i * evanescent, standing_slope - eps_i * evanescent_slope),
     )
-
-
-def _i_across(here: RadialFunctions, wall: RadialFunctions) -> ComplexArray:
-    """Return I_m(kr)/I_m(k r1) for r <= r1, shape (orders, nodes)."""
-    return here.keep(br.i_across(here.i_ratios, wall.i_ratios, here.argument, wall.argument))

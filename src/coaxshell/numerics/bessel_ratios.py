@@ -24,7 +24,8 @@ _ASYMPTOTIC_LIMIT = 0.75
 _FORGETTING_STEPS = 24
 
 
-def _as_complex(z: npt.ArrayLike) -> ComplexArray:
+def as_complex(z: npt.ArrayLike) -> ComplexArray:
+    """Return arguments as a complex array of one dimension; ValueError if any Re z <= 0."""
     argument = np.atleast_1d(np.asarray(z, dtype=np.complex128))
     if argument.ndim != 1:
         raise ValueError(f"z: an array of shape {argument.shape}; a scalar or one-dimensional array is allowed")
@@ -33,7 +34,7 @@ def _as_complex(z: npt.ArrayLike) -> ComplexArray:
     return argument
 
 
-def _starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
+def starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
     """Return R_order(z), the start of the downward recurrence.
 
     Near the imaginary axis with |z| > m the recurrence does not forget its start, so the start must be exact there.
@@ -74,9 +75,9 @@ def i_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
     ValueError
         If any Re z <= 0.
     """
-    z = _as_complex(z)
+    z = as_complex(z)
     ratios = np.empty((max_order + 1, z.size), dtype=np.complex128)
-    ratios[max_order] = _starting_ratio(max_order, z)
+    ratios[max_order] = starting_ratio(max_order, z)
     two_over_z = 2.0 / z
     work = np.empty_like(z)
     for m in range(max_order, 0, -1):
@@ -127,7 +128,7 @@ def k_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
     ValueError
         If any Re z <= 0.
     """
-    z = _as_complex(z)
+    z = as_complex(z)
     ratios = np.empty((max_order + 1, z.size), dtype=np.complex128)
     ratios[0] = kve(1, z) / kve(0, z)
     two_over_z = 2.0 / z
@@ -153,13 +154,13 @@ def running_product(first: Any, factors: ComplexArray) -> ComplexArray:
 
 def i_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike) -> ComplexArray:
     """Return I_m(za)/I_m(zb) for m = 0..M, with |za| < |zb| on one ray, from the ratios R_m at both arguments."""
-    za, zb = _as_complex(za), _as_complex(zb)
+    za, zb = as_complex(za), as_complex(zb)
     order_zero = ive(0, za) / ive(0, zb) * np.exp(za.real - zb.real)
     return running_product(order_zero, ratios_a / ratios_b)
 
 
 def k_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike) -> ComplexArray:
     """Return K_m(zb)/K_m(za) for m = 0..M, with |za| < |zb| on one ray, from the ratios S_m at both arguments."""
-    za, zb = _as_complex(za), _as_complex(zb)
+    za, zb = as_complex(za), as_complex(zb)
     order_zero = kve(0, zb) / kve(0, za) * np.exp(za - zb)
     return running_product(order_zero, ratios_b / ratios_a)

@@ -13,8 +13,8 @@ paper's bare case: outer head displacement 1.0e-5 with the sharp cut, 8e-8 with 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy import fft
@@ -86,6 +86,12 @@ class LaplaceGrid:
         """s_k = sigma + i omega_k for k = 0..samples//2."""
         return np.asarray(self.shift + 1j * self.frequency_step * np.arange(self.samples // 2 + 1), dtype=np.complex128)
 
+    def sparser(self, every: int) -> LaplaceGrid:
+        """Return the grid of every so many of the nodes, the first of them its own; its period is as many times shorter."""
+        count = -(-self.nodes.size // every)
+        short = LaplaceGrid(self.period / every, count - 2, self.wrap_around ** (1.0 / every), 1)
+        return replace(short, time_step=short.time_step / short.samples)
+
     @cached_property
     def time(self) -> FloatArray:
         """0, dt, ..., steps * dt."""
@@ -93,9 +99,7 @@ class LaplaceGrid:
 
     def taper(self, roll_off: float = ROLL_OFF) -> FloatArray:
         """Return 1 over the band and a cos^2 descent to 0 over its top fraction ``roll_off``, at ``nodes``."""
-        position = np.linspace(0.0, 1.0, self.nodes.size)
-        descent: FloatArray = np.cos(0.5 * np.pi * np.maximum(0.0, position - (1.0 - roll_off)) / roll_off) ** 2
-        return descent
+        return _descent(self.nodes.size, roll_off)
 
     def lanczos(self) -> FloatArray:
         """Return sinc(omega/omega_max) at ``nodes``: for spectra that decay slowly (pressures, accelerations)."""
@@ -139,3 +143,12 @@ class LaplaceGrid:
         spectrum = self.transform(histories)
         spectrum *= self.hat
         return spectrum
+
+
+@lru_cache(maxsize=64)
+def _descent(nodes: int, roll_off: float) -> FloatArray:
+    """Return the taper of a band of some nodes; it is shared, and not to be changed."""
+    position = np.linspace(0.0, 1.0, nodes)
+    descent: FloatArray = np.cos(0.5 * np.pi * np.maximum(0.0, position - (1.0 - roll_off)) / roll_off) ** 2
+    descent.flags.writeable = False
+    return descent

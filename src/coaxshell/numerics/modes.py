@@ -23,10 +23,14 @@ class Modes:
         Ascending, all or a sample.
     wavenumber : float or ndarray of complex, shape (nodes,)
         k, in units of 1/a; one for each Laplace node where a wave runs along the axis, k = -i s sin(alpha).
+    sparse : bool
+        Whether the orders are few of many: the recurrences of the Bessel functions then leave out what lies between (not to the last bit
+        what they give at all orders).
     """
 
     orders: FloatArray
     wavenumber: float | ComplexArray = 0.0
+    sparse: bool = False
 
     @classmethod
     def up_to(cls, max_order: int, wavenumber: float | ComplexArray = 0.0) -> Modes:
@@ -49,9 +53,9 @@ class Modes:
         return self.orders[:, None]
 
     @property
-    def key(self) -> tuple[bytes, bytes]:
+    def key(self) -> tuple[bytes, bytes, bool]:
         """What tells these modes from others, for caches."""
-        return self.orders.tobytes(), np.asarray(self.wavenumber).tobytes()
+        return self.orders.tobytes(), np.asarray(self.wavenumber).tobytes(), self.sparse
 
     @property
     def two_dimensional(self) -> bool:

@@ -36,7 +36,7 @@ def simulate(
     duration, time_step : float or str
         In acoustic transit times a/c_e, a the outermost radius and c_e the sound speed outside; or times as text, "3 ms".
     modes : int or "auto"
-        Highest circumferential order M; "auto" chooses it by *tolerance*.
+        Highest circumferential order M; "auto" chooses it by *tolerance*, saturating actuators as if they followed the linear law.
     engine : str
         "spectral" or "direct".
     tolerance : float

@@ -57,7 +57,9 @@ def after(problem: Problem, estimates: Estimates, settings: Settings) -> list[st
     """Return the warnings about the error estimates, one a cause and shell: of displacement or stress, whichever is worse."""
     order = settings.modes
     assert isinstance(order, int)
-    step, more = settings.time_step, f'modes={min(2 * order, MAX_MODES)} or modes="auto"'
+    control = problem.system.control
+    saturating = control is not None and control.saturation  # of which "auto" does not know
+    step, more = settings.time_step, f"modes={min(2 * order, MAX_MODES)}" + ("" if saturating else ' or modes="auto"')
     causes = (
         (f"orders above {order} would change", estimates.orders, TRUNCATION_LIMIT, more),
         (f"the band limit of time_step = {step:g} changes", estimates.time_step, STEP_LIMIT, f"time_step = {step / 2:g}"),

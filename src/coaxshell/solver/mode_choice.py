@@ -2,7 +2,8 @@
 
 What sources excite falls off with the order; what absorbers excite does too, once they are as many modes as they need to feel the wall.
 Their forces are not known before the run: they are estimated for each absorber alone on its two walls, cubic springs by the stiffness of
-the stretch that comes out.
+the stretch that comes out. What saturating actuators change is not estimated beforehand, their feedback counts as the linear law: how far
+they are driven, and so how the harmonics of what they give fall off, is known after the run, which then says so.
 """
 
 from __future__ import annotations
@@ -20,10 +21,12 @@ from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, fo
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.solver.solution import Estimates
 
 _FEWEST = 8
 _GROWTH = 1.25
 _LINEARISATIONS = 4
+_MISSED = 2.0
 
 
 def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, shared: SharedParts | None = None) -> tuple[int, float]:
@@ -113,4 +116,21 @@ def resolve_modes(problem: Problem, grid: LaplaceGrid, settings: Settings, share
     return order, [
         f'modes="auto": {order} orders, the most that are allowed, leave an estimated {remaining:.2g} of the stress, more than '
         f"the tolerance {settings.tolerance:g}; accept it or shorten the source's spectrum (a longer rise_time)"
+    ]
+
+
+def tolerance_missed(asked: Settings, order: int, estimates: Estimates, *, saturating: bool) -> list[str]:
+    """Return a warning where a run by "auto" prints more than twice the error by its orders that was aimed at.
+
+    Printed and chosen from are estimates alike, and with absorbers they differ.
+    """
+    if asked.modes != "auto":
+        return []
+    found = float(np.nan_to_num(estimates.modal_stress).max(initial=0.0))
+    if found <= _MISSED * asked.tolerance:
+        return []
+    why = "; what saturating actuators change is not known before the run" if saturating else ""
+    return [
+        f'modes="auto" chose {order} orders, above which an estimated {found:.2g} of the stress is left, more than the tolerance '
+        f"{asked.tolerance:g}{why}; give modes={min(2 * order, MAX_MODES)} and compare"
     ]

@@ -30,6 +30,8 @@ REST = 1e-7
 LEAST_TRUE = 0.3
 _COUPLED_POINTS = 64
 """Points up to which absorbers are solved together; more of them each alone with its two walls."""
+_CACHED = 512 * 1024
+"""Bytes of a few orders that stay in the processor's cache."""
 _BLOCK_BYTES = 4 * 1024 * 1024
 """Of the matrices between all points, at a few nodes at a time."""
 
@@ -70,10 +72,16 @@ def surface_norms(normal: npt.NDArray[np.number], tangential: npt.NDArray[np.num
     The arguments have the shape (shells, parities, M + 1, instants or nodes).
     """
     m = np.arange(normal.shape[2])
-    strain = m[:, None] * tangential
-    strain -= normal
-    squares = np.stack([np.einsum("ihmt,ihmt->im", x, np.conj(x)).real for x in (normal, strain)], axis=1)
-    return np.asarray(squares * np.where(m == 0, 1.0, 0.5))
+    squares = np.empty((normal.shape[0], 2, m.size))
+    width = max(1, _CACHED // (16 * normal[:, :, 0].size))
+    for start in range(0, m.size, width):
+        some = slice(start, start + width)
+        displacement = np.ascontiguousarray(normal[:, :, some])
+        strain = m[some, None] * tangential[:, :, some] - displacement
+        for quantity, motion in enumerate((displacement, strain)):
+            x = motion.view(np.float64)
+            squares[:, quantity, some] = (x[..., None, :] @ x[..., :, None]).sum(axis=(1, 3, 4))
+    return squares * np.where(m == 0, 1.0, 0.5)
 
 
 def relative(part: FloatArray, whole: FloatArray) -> FloatArray:
@@ -160,12 +168,12 @@ def _against(
             if soft is not None:
                 receptance[:, a * count + index, b * count + index] += soft[sides[a], sides[b]].T
     own, other, _ = admittance(links, nodes)
-    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
-    for a in (0, 1):
-        law[:, a * count + index, a * count + index] = own
-        law[:, a * count + index, (1 - a) * count + index] = other
-    wall = np.linalg.solve(np.eye(2 * count) + receptance @ law, moved.reshape(2 * count, -1).T[:, :, None])
-    return np.asarray(-(law @ wall)[:, :, 0].T.reshape(2, count, -1))
+    by_side = receptance.reshape(nodes.size, 2 * count, 2, count)
+    followed = by_side * own[:, None, None] + by_side[:, :, ::-1] * other[:, None, None]  # of the walls, through the forces
+    followed = followed.reshape(receptance.shape)
+    followed[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
+    wall = np.linalg.solve(followed, moved.reshape(2 * count, -1).T[:, :, None]).reshape(nodes.size, 2, count)
+    return np.asarray(-(wall * own[:, None] + wall[:, ::-1] * other[:, None]).transpose(1, 2, 0))
 
 
 def _mean_mobility(structure: StructureSpectra, which: slice) -> ComplexArray:

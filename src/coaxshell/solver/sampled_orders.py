@@ -75,10 +75,10 @@ class SampledOrders:
     def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> SampledOrders:
         """Solve a problem at some ascending orders."""
         count, nodes = len(problem.shells), grid.nodes[NODES]
-        modes = Modes(orders)
+        modes = Modes(orders, sparse=True)
         modal = ModalSystem(problem, nodes, modes, shared=shared)
         excited = np.zeros((count, orders.size, nodes.size))
-        for load in SurfaceLoads(problem, grid, modes, shared)(modal.radial, NODES):
+        for load in SurfaceLoads(problem, grid.sparser(NODES.step), modes, shared)(modal.radial, slice(0, nodes.size)):
             excited += np.abs(np.stack(modal.solve(count - 1, load))) ** 2
         strain = [np.abs(orders[:, None] * wall.tangential - 1.0) ** 2 for wall in modal.shells]
         weight = standing_for(orders)

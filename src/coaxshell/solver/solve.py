@@ -19,7 +19,7 @@ from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linked import interface_of, solve_linked
-from coaxshell.solver.mode_choice import resolve_modes
+from coaxshell.solver.mode_choice import resolve_modes, tolerance_missed
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
@@ -125,12 +125,13 @@ def solve_prepared(
         If an absorber does not fit the system or the force law cannot be marched at this step.
     """
     with numerical_failures(structure.grid):
-        return _solved(structure, problem, replace(settings, modes=structure.modes.max_order), progress, stopwatch or Stopwatch())
+        return _solved(structure, problem, settings, progress, stopwatch or Stopwatch())
 
 
 def _solved(
-    structure: StructureSpectra, problem: Problem, settings: Settings, progress: Progress | None, stopwatch: Stopwatch
+    structure: StructureSpectra, problem: Problem, asked_for: Settings, progress: Progress | None, stopwatch: Stopwatch
 ) -> ModalSolution:
+    settings = replace(asked_for, modes=structure.modes.max_order)
     system, grid, keep = problem.system, structure.grid, slice(None, None, settings.refinement)
     links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
     saturate = system.control is not None and system.control.saturation
@@ -154,6 +155,7 @@ def _solved(
     errors = estimates.estimated_errors(solved.passive, spectra, (w, v), settings.time_step, interface)
     stopwatch.lap("error estimates")
     warnings = [*structure.notes, *checks.absorbers(solved, settings.refinement), *checks.before(problem, grid, structure.modes.max_order)]
+    warnings += tolerance_missed(asked_for, structure.modes.max_order, errors, saturating=saturate)
     warnings += checks.after(problem, errors, settings) + checks.tension(problem, tensions(problem, grid, solved.normal))
     stopwatch.lap("pressure on the walls")
     solution = ModalSolution(

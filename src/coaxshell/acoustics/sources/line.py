@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.rays import path_to
 from coaxshell.acoustics.sources.source import NEAREST, SurfaceLoad, TimeFunction, UniformField, incident_of_regular, rays
 from coaxshell.numerics import bessel_ratios as br
@@ -38,13 +39,18 @@ class LineGeometry:
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
             surface = basis.surface
-            near, far = surface.kappa, surface.kappa * self.distance
-            far_ratios = br.k_ratios(surface.max_order, far)
-            order_zero = br.kve(0, far) / (br.kve(0, near) * br.kve(0, near * (self.distance - 1.0)))  # exponentials cancel: R0 = 1 + S
-            across = br.running_product(order_zero, far_ratios / surface.k_ratios)
-            return -modes.neumann * surface.keep(across) * surface.exterior
+            return -modes.neumann * self._across(surface) * surface.exterior
 
         return load
+
+    def _across(self, surface: RadialFunctions) -> ComplexArray:
+        """Return K_m(kappa R0)/(K_m(kappa) K_0(kappa S)), shape (orders, nodes); exponentials cancel: R0 = 1 + S."""
+        near, far = surface.kappa, RadialFunctions(surface.kappa, self.distance, surface.orders, surface.sparse)
+        to_head = br.kve(0, near * (self.distance - 1.0))
+        if surface.sparse:
+            return far.k_sample.over(surface.k_sample) / to_head
+        order_zero = br.kve(0, far.argument) / (br.kve(0, near) * to_head)
+        return surface.keep(br.running_product(order_zero, far.k_ratios / surface.k_ratios))
 
     def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return the modal pressure and slope at r = 1 of a unit pulse."""

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.sources.source import SurfaceLoad, TimeFunction, incident_of_regular
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -46,8 +47,7 @@ class PlaneGeometry:
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
             surface = basis.surface
-            inverse_k = br.running_product(1.0 / br.kve(0, surface.kappa), 1.0 / surface.k_ratios)  # e^{-kappa}/K_m(kappa)
-            return -modes.neumann * surface.keep(inverse_k) * surface.exterior
+            return -modes.neumann * _inverse_k(surface) * surface.exterior
 
         return load
 
@@ -62,6 +62,13 @@ class PlaneGeometry:
     def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> SpatialPlaneField:
         """Return the wave at points in space."""
         return SpatialPlaneField(pulse, x, y, z, self.inclination)
+
+
+def _inverse_k(surface: RadialFunctions) -> ComplexArray:
+    """Return e^{-kappa}/K_m(kappa), shape (orders, nodes)."""
+    if surface.sparse:
+        return np.asarray(np.exp(-surface.k_sample.exponent) / surface.k_sample.mantissa, dtype=np.complex128)
+    return surface.keep(br.running_product(1.0 / br.kve(0, surface.kappa), 1.0 / surface.k_ratios))
 
 
 class PlaneField:
