@@ -10,10 +10,10 @@ import typer
 from coaxshell.apps.cli import options
 from coaxshell.apps.cli.output import Outputs, echo
 from coaxshell.apps.cli.progress import progress, tell_time
-from coaxshell.apps.cli.running import Request, answers, tell_all_warnings, with_resolution
+from coaxshell.apps.cli.running import Request, answers, tell_all_warnings, with_options
 
 
-@with_resolution
+@with_options(request=Request, view=options.View)
 def animate(
     context: typer.Context,
     source: options.SourceArgument,
@@ -27,12 +27,8 @@ def animate(
     until: Annotated[
         str | None, typer.Option("--until", metavar="TIME", help="Last instant, transits.", show_default="the end of the shortest run")
     ] = None,
-    width: options.WidthOption = "6",
-    units: options.UnitsOption = "auto",
-    pressure_limit: options.PressureLimitOption = None,
-    stress_limit: options.StressLimitOption = None,
-    changes: options.SetOption = None,
     *,
+    view: options.View,
     request: Request,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
@@ -41,22 +37,20 @@ def animate(
 
     The hoop stress is drawn on the shells; with --compare, two systems side by side.
     """
-    from coaxshell.plotting import FILM_SUFFIXES, FieldView, check_film, check_units, save_film
+    from coaxshell.plotting import FILM_SUFFIXES, check_film, save_film
     from coaxshell.plotting.film import film_cost, require_room
 
     target = Outputs(force).file(output, "--output", FILM_SUFFIXES)
     count, rate = options.whole("--frames", frames), options.number("--fps", fps)
     last = None if until is None else options.number("--until", until)
-    highest_pressure = options.limit("--pressure-limit", pressure_limit)
-    highest_stress = options.limit("--stress-limit", stress_limit)
+    scales = view.scales
     with options.named_as_options(pixels="size"):
-        view = FieldView(0.5 * options.number("--width", width), options.whole("--size", size))
-        check_units(units)
+        seen = view.seen(options.whole("--size", size))
         check_film(target, count, rate)
-        cost = film_cost(2 if compare else 1, count, view)
-        require_room(cost, count, view)
+        cost = film_cost(2 if compare else 1, count, seen)
+        require_room(cost, count, seen)
     tell_time(cost, "the film", quiet)
-    responses = answers(context, [source, *([compare] if compare else [])], changes, request, quiet=quiet)
+    responses = answers(context, [source, *([compare] if compare else [])], request, quiet=quiet)
     with options.named_as_options(path="output"), progress(quiet) as report:
         save_film(
             *responses,
@@ -64,10 +58,8 @@ def animate(
             frames=count,
             fps=rate,
             until=last,
-            view=view,
-            pressure_limit=highest_pressure,
-            stress_limit=highest_stress,
-            units=units,
+            view=seen,
+            **scales,
             progress=report,
         )
     tell_all_warnings(responses)

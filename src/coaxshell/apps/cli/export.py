@@ -37,7 +37,6 @@ def export(
         typer.Option("--displaced", metavar="FACTOR", help="ParaView: draw the shells displaced this many times."),
     ] = "0",
     force: options.ForceOption = False,
-    changes: options.SetOption = None,
     *,
     request: Request,
     quiet: options.QuietOption = False,
@@ -53,7 +52,7 @@ def export(
     side = options.whole("--points", points)
     with options.named_as_options():
         check_grid(half_width, side, factor)
-    (response,) = answers(context, [source], changes, request, quiet=quiet)
+    (response,) = answers(context, [source], request, quiet=quiet)
     with options.named_as_options(folder="output", path="output"), progress(quiet) as report:
         if to == "paraview":
             export_paraview(

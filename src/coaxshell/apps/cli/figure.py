@@ -36,7 +36,6 @@ def figure(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="figure-NUMBER.png")
     ] = None,
-    changes: options.SetOption = None,
     *,
     request: Request,
     force: options.ForceOption = False,
@@ -51,7 +50,7 @@ def figure(
 
     recipe = figure_recipe(number)
     target = Outputs(force).file(output or Path(f"figure-{number}.png"), "--output", FIGURE_SUFFIXES)
-    if source and (preset or changes):
+    if source and (preset or request.changes):
         raise InputError("--from", "cannot be combined with --preset or --set", "a saved run has its own system: give one or the other")
     if source and isinstance(recipe, StudyRecipe):
         raise InputError("--from", f"has no effect on figure {number}, which compares many runs", "leave it out")
@@ -60,9 +59,9 @@ def figure(
         option, wanted = "--from" if source else "--preset", len(recipe.presets)
         raise InputError(option, f"{len(sources)} given, but figure {number} shows {wanted}", f"give the option {wanted} time(s)")
     if isinstance(recipe, StudyRecipe):
-        tell_warnings(_draw_study(recipe, sources, changes, request, target, quiet=quiet))
+        tell_warnings(_draw_study(recipe, sources, request, target, quiet=quiet))
     else:
-        responses = answers(context, sources, changes, request, quiet=quiet, options=("--preset", "--preset"))
+        responses = answers(context, sources, request, quiet=quiet, options=("--preset", "--preset"))
         with progress(quiet) as report:
             drawn = recipe.draw(responses, report)
         write_figure(drawn, target, "--output")
@@ -70,15 +69,13 @@ def figure(
     echo(f"wrote {target}: {recipe.title}")
 
 
-def _draw_study(
-    recipe: StudyRecipe, sources: Sequence[str], changes: Sequence[str] | None, request: Request, target: Path, *, quiet: bool
-) -> tuple[str, ...]:
+def _draw_study(recipe: StudyRecipe, sources: Sequence[str], request: Request, target: Path, *, quiet: bool) -> tuple[str, ...]:
     """Solve, draw and save a figure of many runs, and return their warnings."""
     from coaxshell.apps.cli.running import load_system
     from coaxshell.apps.paper import Runs
     from coaxshell.studies.executors import worker_count
 
-    systems = [load_system(name, changes or (), "--preset") for name in sources]
+    systems = [load_system(name, request.changes or (), "--preset") for name in sources]
     request.require_two_dimensions(systems[0])
     with named_as_options(), progress(quiet) as report:
         drawn = recipe.draw(systems, Runs(request.settings(systems[0]), workers=worker_count(None)), report)

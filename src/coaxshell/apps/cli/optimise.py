@@ -8,13 +8,13 @@ from typing import Annotated
 
 import typer
 
-from coaxshell.apps.cli import options
 from coaxshell.apps.cli.entry import Interrupted
 from coaxshell.apps.cli.options import named_as_options
-from coaxshell.apps.cli.output import Outputs, echo, print_document, write_figure
-from coaxshell.apps.cli.running import study_options, tell_code, tell_study_time
+from coaxshell.apps.cli.output import write_figure
+from coaxshell.apps.cli.running import StudyRequest, tell_code, tell_study_time, with_options
 
 
+@with_options(request=StudyRequest)
 def optimise(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A .toml file: scenario, what may change, what to make small: see docs/optimisation.md.")
@@ -42,13 +42,8 @@ def optimise(
             show_default="STUDY.journal in this folder, removed when all is done",
         ),
     ] = None,
-    resume: options.ResumeOption = False,
-    allow_code: options.AllowCodeOption = False,
-    workers: options.WorkersOption = None,
-    dask: options.DaskOption = None,
-    as_json: options.JsonOption = False,
-    force: options.ForceOption = False,
-    quiet: options.QuietOption = False,
+    *,
+    request: StudyRequest,
 ) -> None:
     """Search for the best system within some ranges.
 
@@ -56,15 +51,15 @@ def optimise(
     """
     from coaxshell.studies import OPTIMUM_PARTS, OptimisationStudy, optimise_problem, read_study
 
-    outputs = Outputs(force or resume)  # what an interrupted search left is its own to replace
+    outputs = request.outputs
     target = outputs.folder(output or Path(f"{study.stem}.optimum"), "--output", OPTIMUM_PARTS)
     outputs.figure(figure)
 
-    problem = read_study(study, OptimisationStudy).problem(study.parent, allow_code=allow_code, tell=tell_code)
+    problem = read_study(study, OptimisationStudy).problem(study.parent, allow_code=request.allow_code, tell=tell_code)
     folder = journal or Path(f"{study.stem}.journal")
-    with study_options(folder, resume, workers, dask, quiet) as execution:
+    with request.execution(folder) as execution:
         runs = problem.evaluations * max(1, len(problem.uncertain.points))
-        tell_study_time([problem.space.base], problem.resolution, runs, execution, quiet=quiet)
+        tell_study_time([problem.space.base], problem.resolution, runs, execution, quiet=request.quiet)
         optimum = optimise_problem(problem, execution)
     with named_as_options(folder="output", path="output"):
         optimum.save(target)
@@ -72,11 +67,7 @@ def optimise(
         from coaxshell.plotting import figure_optimum
 
         write_figure(figure_optimum(optimum), figure)
-    if as_json:
-        print_document(optimum.to_dict())
-    else:
-        echo(str(optimum))
-    echo(f"wrote {target}" + (f", {figure}" if figure is not None else ""), aside=as_json)
+    request.tell(optimum.to_dict, lambda: str(optimum), target, figure)
     if not optimum.complete:
         done = len(optimum.history)
         raise Interrupted(

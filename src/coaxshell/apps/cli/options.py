@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
 import typer
 
 from coaxshell.errors import InputError
+
+if TYPE_CHECKING:
+    from coaxshell.plotting import FieldView
 
 DURATION, TIME_STEP, MODES, DIMENSIONS = "5", "1e-3", "150", "2"
 """The paper's resolution, as the help shows it."""
@@ -87,6 +91,38 @@ StressLimitOption = Annotated[
     str | None,
     typer.Option("--stress-limit", metavar="PRESSURE", help="End of the stress's colour scale in Pa.", show_default="from the fields"),
 ]
+
+
+@dataclass(frozen=True)
+class View:
+    """The options of a command that draws fields, as typed."""
+
+    width: WidthOption = "6"
+    units: UnitsOption = "auto"
+    pressure_limit: PressureLimitOption = None
+    stress_limit: StressLimitOption = None
+
+    def seen(self, pixels: int) -> FieldView:
+        """Return what is seen, so many pixels along a side; InputError names the option that is wrong."""
+        from coaxshell.plotting import FieldView, check_units
+
+        view = FieldView(0.5 * number("--width", self.width), pixels)
+        check_units(self.units)
+        return view
+
+    @property
+    def scales(self) -> Scales:
+        """The ends of the colour scales and the units of the pressure."""
+        highest = limit("--pressure-limit", self.pressure_limit), limit("--stress-limit", self.stress_limit)
+        return {"pressure_limit": highest[0], "stress_limit": highest[1], "units": self.units}
+
+
+class Scales(TypedDict):
+    """What a drawing of fields is told of its scales."""
+
+    pressure_limit: float | None
+    stress_limit: float | None
+    units: str
 
 
 def limit(option: str, text: str | None) -> float | None:

@@ -33,7 +33,6 @@ def plot(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf or .svg.", show_default="QUANTITY.png")
     ] = None,
-    changes: options.SetOption = None,
     *,
     request: Request,
     force: options.ForceOption = False,
@@ -52,7 +51,7 @@ def plot(
     target = Outputs(force).file(output or Path(f"{chosen}.png"), "--output", FIGURE_SUFFIXES)
     angles = [options.number("--angle", each) for each in angle.split(",")]
     sources = [source, *([compare] if compare else [])]
-    responses = answers(context, sources, changes, request, quiet=quiet)
+    responses = answers(context, sources, request, quiet=quiet)
     names = labels(*(response.system for response in responses)) if compare else (responses[0].system.name or Path(source).stem,)
     with options.named_as_options(shell="shell", shells="shell", responses="compare"):
         drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)

@@ -25,7 +25,6 @@ def run(
             metavar="SCENARIO", help="A .toml file (see coaxshell init), a preset (see coaxshell presets), or - for standard input."
         ),
     ],
-    changes: options.SetOption = None,
     *,
     request: Request,
     output: Annotated[
@@ -64,12 +63,12 @@ def run(
         outputs.file(output, "--output", (".nc",))
     outputs.figure(figure)
     outputs.figure(energy, "--energy")
-    systems = [load_system(scenario, changes or ())]
+    systems = [load_system(scenario, request.changes or ())]
     given = {"--output": output, "--compare": compare, "--figure": figure, "--energy": energy}
     for option in (name for name, value in given.items() if value is not None):
         request.require_two_dimensions(systems[0], option)
     if compare is not None:
-        systems.append(load_reference(compare, changes or ()))
+        systems.append(load_reference(compare, request.changes or ()))
     responses = [request.solve(system, quiet=quiet) for system in systems]
     names = labels(systems[0], systems[-1]) if compare is not None else (systems[0].name or scenario,)
     named = dict(zip(names, responses, strict=True))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import wraps
 from inspect import Parameter, signature
 from pathlib import Path
@@ -19,7 +19,7 @@ import typer
 
 from coaxshell.apps.cli import options
 from coaxshell.apps.cli.options import named_as_options, overrides
-from coaxshell.apps.cli.output import tell_warnings
+from coaxshell.apps.cli.output import Outputs, echo, print_document, tell_warnings
 from coaxshell.apps.cli.progress import progress, tell_time
 from coaxshell.errors import InputError
 
@@ -90,11 +90,12 @@ def _of_input(where: str) -> System:
 
 @dataclass(frozen=True)
 class Request:
-    """The resolution options of a command, as typed; their names, help and defaults are those of every command that solves.
+    """The options of a command that solves, as typed: changes of the system, and the resolution; alike for all of them.
 
     The defaults are the texts of :class:`coaxshell.solver.settings.Settings`', which takes too long to import for a page of help.
     """
 
+    changes: options.SetOption = None
     duration: options.DurationOption = options.DURATION
     time_step: options.TimeStepOption = options.TIME_STEP
     modes: options.ModesOption = options.MODES
@@ -119,7 +120,7 @@ class Request:
 
     def settings(self, system: System) -> Settings:
         """Return the settings of a run of a system; InputError names the option that is wrong."""
-        return settings_of(system, {name: text for name, text in asdict(self).items() if text is not None})
+        return settings_of(system, {name: text for name in RESOLUTION if (text := getattr(self, name)) is not None})
 
     def require_two_dimensions(self, system: System, *options: str) -> None:
         """Refuse options, or with none of them the command, that show runs in two dimensions only."""
@@ -138,28 +139,33 @@ def settings_of(system: System, given: Mapping[str, str]) -> Settings:
         return Settings.of(system, given)
 
 
-RESOLUTION = tuple(field.name for field in fields(Request))
+RESOLUTION = tuple(field.name for field in fields(Request))[1:]
 """The names of the resolution's parameters."""
 
 
-def with_resolution(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command whose parameter ``request`` is filled from the options of a :class:`Request`, which stand in its place."""
-    parameters = signature(command, eval_str=True).parameters
-    shown: list[Parameter] = []
-    for parameter in parameters.values():
-        if parameter.name == "request":
-            shown += signature(Request, eval_str=True).parameters.values()
-        else:
-            shown.append(parameter)
+def with_options(**holders: Callable[..., Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Let the parameters of a command that are named be filled from options of their own, the fields of a dataclass, which stand there."""
 
-    @wraps(command)
-    def filled(**given: Any) -> None:
-        request = Request(**{name: given.pop(name) for name in RESOLUTION})
-        command(**given, request=request)
+    def of_command(command: Callable[..., None]) -> Callable[..., None]:
+        shown: list[Parameter] = []
+        for parameter in signature(command, eval_str=True).parameters.values():
+            holder = holders.get(parameter.name)
+            shown += [parameter] if holder is None else signature(holder, eval_str=True).parameters.values()
 
-    told: Any = filled
-    told.__signature__ = signature(command).replace(parameters=[each.replace(kind=Parameter.KEYWORD_ONLY) for each in shown])
-    return filled
+        @wraps(command)
+        def filled(**given: Any) -> None:
+            held = {name: holder(**{each: given.pop(each) for each in signature(holder).parameters}) for name, holder in holders.items()}
+            command(**given, **held)
+
+        told: Any = filled
+        told.__signature__ = signature(command).replace(parameters=[each.replace(kind=Parameter.KEYWORD_ONLY) for each in shown])
+        return filled
+
+    return of_command
+
+
+with_resolution = with_options(request=Request)
+"""Of a command whose parameter ``request`` is filled from the options of a :class:`Request`."""
 
 
 _FOR_SOLVING = {"changes": "--set", **{name: "--" + name.replace("_", "-") for name in RESOLUTION}}
@@ -171,13 +177,7 @@ def is_saved(source: str) -> bool:
 
 
 def answers(
-    context: typer.Context,
-    sources: Sequence[str],
-    changes: Sequence[str] | None,
-    request: Request,
-    *,
-    quiet: bool,
-    options: tuple[str, str] = ("SOURCE", "--compare"),
+    context: typer.Context, sources: Sequence[str], request: Request, *, quiet: bool, options: tuple[str, str] = ("SOURCE", "--compare")
 ) -> list[Response]:
     """Return the response of each source: a saved run (.nc), a preset or a scenario (.toml).
 
@@ -198,7 +198,7 @@ def answers(
             found.append(load_response(source))
         else:
             load = load_reference if number else load_system
-            system = load(source, changes or (), options[number > 0])
+            system = load(source, request.changes or (), options[number > 0])
             request.require_two_dimensions(system)
             found.append(request.solve(system, quiet=quiet))
     return found
@@ -216,25 +216,50 @@ def tell_all_warnings(responses: Sequence[Response]) -> None:
     tell_warnings(dict.fromkeys(text for response in responses for text in response.warnings))
 
 
-@contextmanager
-def study_options(store: Path, resume: bool, workers: str | None, dask: str | None, quiet: bool) -> Iterator[Execution]:
-    """Yield how a study is worked on: on a Dask cluster if there is the address of one, else by a pool of processes of our own.
+@dataclass(frozen=True)
+class StudyRequest:
+    """The options of a command that works on a study file, as typed."""
 
-    Raises
-    ------
-    InputError
-        No number of processes, or one beside a cluster; no cluster at the address.
-    """
-    from coaxshell.solver.settings import whole
-    from coaxshell.studies import Execution
-    from coaxshell.studies.executors import MAX_WORKERS
+    resume: options.ResumeOption = False
+    allow_code: options.AllowCodeOption = False
+    workers: options.WorkersOption = None
+    dask: options.DaskOption = None
+    as_json: options.JsonOption = False
+    force: options.ForceOption = False
+    quiet: options.QuietOption = False
 
-    with ExitStack() as stack:
-        with named_as_options(workers="workers", address="dask", dask="dask"):
-            number = None if workers is None else whole("workers", workers, MAX_WORKERS)
-            asked = Execution(workers=number, store=store, resume=resume, dask=dask)
-            ready = stack.enter_context(asked.started())
-        yield replace(ready, progress=stack.enter_context(progress(quiet, left=True)))
+    @property
+    def outputs(self) -> Outputs:
+        """What is to be written; what an interrupted study left is its own to replace."""
+        return Outputs(self.force or self.resume)
+
+    @contextmanager
+    def execution(self, store: Path) -> Iterator[Execution]:
+        """Yield how the study is worked on: on a Dask cluster if there is the address of one, else by a pool of processes of our own.
+
+        Raises
+        ------
+        InputError
+            No number of processes, or one beside a cluster; no cluster at the address.
+        """
+        from coaxshell.solver.settings import whole
+        from coaxshell.studies import Execution
+        from coaxshell.studies.executors import MAX_WORKERS
+
+        with ExitStack() as stack:
+            with named_as_options(workers="workers", address="dask", dask="dask"):
+                number = None if self.workers is None else whole("workers", self.workers, MAX_WORKERS)
+                asked = Execution(workers=number, store=store, resume=self.resume, dask=self.dask)
+                ready = stack.enter_context(asked.started())
+            yield replace(ready, progress=stack.enter_context(progress(self.quiet, left=True)))
+
+    def tell(self, document: Callable[[], Mapping[str, Any]], text: Callable[[], str], *written: Path | None) -> None:
+        """Print what was found, for programs or for people, and where it was written."""
+        if self.as_json:
+            print_document(document())
+        else:
+            echo(text())
+        echo("wrote " + ", ".join(str(path) for path in written if path is not None), aside=self.as_json)
 
 
 def tell_study_time(systems: Sequence[System | InputError], resolution: Settings, count: int, execution: Execution, *, quiet: bool) -> None:

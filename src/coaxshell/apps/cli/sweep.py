@@ -11,14 +11,15 @@ import typer
 from coaxshell.apps.cli import options
 from coaxshell.apps.cli.entry import kept
 from coaxshell.apps.cli.options import named_as_options
-from coaxshell.apps.cli.output import Outputs, cases_document, echo, print_document, write_figure
-from coaxshell.apps.cli.running import study_options, tell_code, tell_study_time
+from coaxshell.apps.cli.output import cases_document, write_figure
+from coaxshell.apps.cli.running import StudyRequest, tell_code, tell_study_time, with_options
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
+@with_options(request=StudyRequest)
 def sweep(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY", help="A .toml file: scenario, what to vary, what to read: see docs/studies.md.")
@@ -29,19 +30,14 @@ def sweep(
         Path | None, typer.Option("--figure", metavar="FILE", help="Draw it too (over one or two fields); .png, .pdf or .svg.")
     ] = None,
     store: options.StoreOption = None,
-    resume: options.ResumeOption = False,
-    allow_code: options.AllowCodeOption = False,
-    workers: options.WorkersOption = None,
-    dask: options.DaskOption = None,
-    as_json: options.JsonOption = False,
-    force: options.ForceOption = False,
-    quiet: options.QuietOption = False,
+    *,
+    request: StudyRequest,
 ) -> None:
     """Compute a system at many points of some of its fields.
 
     Interrupted, by Ctrl-C or anything else, it goes on with --resume.
     """
-    outputs = Outputs(force or resume)
+    outputs = request.outputs
     target = outputs.file(output or Path(f"{study.stem}.nc"), "--output", (".nc",))
     if csv is not None:
         outputs.file(csv, "--csv", (".csv",))
@@ -50,22 +46,17 @@ def sweep(
     from coaxshell.studies import SweepStudy, read_study, sweep_design
     from coaxshell.studies.table import best_cases
 
-    system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent, allow_code=allow_code, tell=tell_code)
+    system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent, allow_code=request.allow_code, tell=tell_code)
     if figure is not None and len(design.fields) > 2:
         raise InputError("--figure", f"{len(design.fields)} fields vary", "one or two can be drawn: leave it out and draw slices in Python")
     folder = store or Path(f"{study.stem}.store")
-    with kept(folder, len(design.cases)), study_options(folder, resume, workers, dask, quiet) as execution:
-        tell_study_time([system], resolution, len(design.cases), execution, quiet=quiet)
+    with kept(folder, len(design.cases)), request.execution(folder) as execution:
+        tell_study_time([system], resolution, len(design.cases), execution, quiet=request.quiet)
         dataset = sweep_design(system, design, metrics, resolution, execution)
     _write(dataset, target, csv, figure)
     if store is None:
         shutil.rmtree(folder, ignore_errors=True)
-    if as_json:
-        print_document(cases_document(dataset))
-    else:
-        echo(best_cases(dataset))
-    paths = (path for path in (target, csv, figure) if path is not None)
-    echo("wrote " + ", ".join(map(str, paths)), aside=as_json)
+    request.tell(lambda: cases_document(dataset), lambda: best_cases(dataset), target, csv, figure)
 
 
 def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | None) -> None:
