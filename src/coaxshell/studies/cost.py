@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.memory import available
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
 
@@ -23,12 +22,11 @@ def case_cost(systems: Sequence[System | InputError], resolution: Settings) -> C
     return Cost(max((cost.memory for cost in costs), default=0.0), sum(cost.seconds for cost in costs) / max(1, len(costs)))
 
 
-def require_room(case: Cost, count: int, workers: int) -> None:
-    """Raise InputError, with the number of processes that fit, if so many cases side by side do not fit into memory."""
-    study = case.times(count, workers)
-    if study.fits:
-        return
-    free = available() or 0
-    fewer = next((n for n in range(min(count, workers), 0, -1) if case.times(count, n).memory <= free), 0)
-    remedy = f"use workers={fewer}" if fewer else "use fewer orders or a coarser step"
-    study.require(f"a study of {count:,} cases in {min(count, workers)} processes", remedy)
+def require_room(case: Cost, count: int, workers: int, what: str = "a study of {count:,} cases") -> Cost:
+    """Return the cost of so many cases; InputError, with the number of processes that fit, if they do not fit into memory side by side."""
+    together = case.times(count, workers)
+    if not together.fits:
+        fewer = next((n for n in range(min(count, workers), 0, -1) if case.times(count, n).fits), 0)
+        remedy = f"use workers={fewer}" if fewer else "use fewer orders or a coarser step"
+        together.require(f"{what.format(count=count)} in {min(count, workers)} processes", remedy)
+    return together

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
@@ -54,7 +54,12 @@ class Structures:
         return prepare(structure, progress=self._progress, settings=self.resolution)
 
 
-def solve_each(systems: Mapping[str, System], resolution: Settings, progress: Progress | None = None) -> Iterator[tuple[str, Response]]:
+def solve_each(
+    systems: Mapping[str, System],
+    resolution: Settings,
+    progress: Progress | None = None,
+    solve: Callable[[System], Response] | None = None,
+) -> Iterator[tuple[str, Response]]:
     """Yield (name, response) of each system in turn. Neighbours that differ only in their absorbers share one prepared structure.
 
     Parameters
@@ -63,11 +68,13 @@ def solve_each(systems: Mapping[str, System], resolution: Settings, progress: Pr
     resolution : Settings
     progress : callable, optional
         Called with the fraction done and the name of the stage.
+    solve : callable, optional
+        From a system to its response, in place of :class:`Structures`.
     """
-    structures = Structures(resolution)
+    solve = solve or Structures(resolution).response
     for number, (name, system) in enumerate(systems.items()):
         if progress:
             progress(number / len(systems), "solving")
-        yield name, structures.response(system)
+        yield name, solve(system)
     if progress:
         progress(1.0, "solving")

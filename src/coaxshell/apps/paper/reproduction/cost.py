@@ -14,6 +14,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.settings import Settings
+from coaxshell.studies import cost
 
 _FIELDS, _FILM = Cost(1e9, 15.0), Cost(0.7e9, 30.0)
 """Beside their runs; the fields' own blocks stay within 1 GB."""
@@ -54,13 +55,8 @@ def require_room(parts: Sequence[Part], resolution: Settings, workers: int) -> C
     if not parts:
         return Cost(0.0)
     costs = [part_cost(part, resolution) for part in parts]
-    each = Cost(max(cost.memory for cost in costs), sum(cost.seconds for cost in costs) / len(costs))
-    together = each.times(len(costs), workers)
-    if not together.fits:
-        fewer = next((n for n in range(workers, 0, -1) if each.times(len(costs), n).fits), 0)
-        remedy = f"use workers={fewer}" if fewer else "use fewer orders or a coarser step"
-        together.require(f"the reproduction of {len(costs)} parts in {min(workers, len(costs))} processes", remedy)
-    return together
+    each = Cost(max(one.memory for one in costs), sum(one.seconds for one in costs) / len(costs))
+    return cost.require_room(each, len(costs), workers, "the reproduction of {count} parts")
 
 
 def _runs(solved: Iterable[System], resolution: Settings, engine: str = "spectral") -> Cost:

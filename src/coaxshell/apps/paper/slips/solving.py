@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from coaxshell.apps.paper.slips.growth import growth
@@ -10,7 +11,8 @@ from coaxshell.apps.paper.slips.switches import slipped
 from coaxshell.errors import InputError
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.settings import Settings
-from coaxshell.studies.structures import solve_each as solve_each_corrected
+from coaxshell.studies import structures
+from coaxshell.studies.structures import structure_of
 
 if TYPE_CHECKING:
     from coaxshell.model import System
@@ -39,7 +41,7 @@ def simulate(system: System, resolution: Settings, slips: frozenset[str] = CORRE
 def solve_each(
     systems: Mapping[str, System], resolution: Settings, slips: frozenset[str] = CORRECTED, progress: Progress | None = None
 ) -> Iterator[tuple[str, Response]]:
-    """Yield (name, response) of each system in turn, with some slips turned on.
+    """Return (name, response) of each system in turn, solved as they are taken, with some slips turned on.
 
     Neighbours that differ only in their absorbers share one prepared structure.
 
@@ -48,19 +50,12 @@ def solve_each(
     InputError
         As :func:`simulate`.
     """
-    if not slips:
-        yield from solve_each_corrected(systems, resolution, progress)
-        return
-    last: tuple[System, PreparedSystem] | None = None
-    for number, (name, system) in enumerate(systems.items()):
-        if progress:
-            progress(number / len(systems), "solving")
-        structure = system.replace(absorbers=())
-        if last is None or last[0] != structure:
-            last = (structure, _prepared(structure, resolution, slips))
-        yield name, last[1].simulate(system.absorbers)
-    if progress:
-        progress(1.0, "solving")
+    prepared = lru_cache(maxsize=1)(_prepared)
+
+    def solve(system: System) -> Response:
+        return prepared(structure_of(system), resolution, slips).simulate(system.absorbers)
+
+    return structures.solve_each(systems, resolution, progress, solve if slips else None)
 
 
 def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> PreparedSystem:
