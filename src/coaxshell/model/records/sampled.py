@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-import numpy as np
 from pydantic import BeforeValidator, model_validator
 
 from coaxshell.errors import InputError
@@ -144,6 +143,8 @@ class Sampled(Described):
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the record should know: where it is cut off, absurd magnitudes, a baseline that is left."""
+        import numpy as np
+
         from coaxshell.model.records.remarks import remarks
 
         recorded = self.scale * np.asarray(self.pressure) - self.offset
