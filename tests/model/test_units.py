@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 import coaxshell.model as cx
 from coaxshell.errors import InputError
-from coaxshell.model.units import DIMENSIONS, by_pint, to_si
-from coaxshell.model.usual_units import USUAL
+from coaxshell.model.units import DIMENSIONS, USUAL, by_pint, to_si
 
 
 @pytest.mark.parametrize(

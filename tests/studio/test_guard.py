@@ -7,7 +7,7 @@ import stat
 import pytest
 from asking import KEY, PORT
 
-from coaxshell.apps.studio.key import kept_key
+from coaxshell.apps.studio.guard import kept_key
 
 PAGE = "/"
 WITH_KEY = {"Cookie": "", "Authorization": f"Bearer {KEY}"}

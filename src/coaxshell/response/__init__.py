@@ -1,8 +1,7 @@
 """The labelled answer: histories, summary, storage."""
 
-from coaxshell.response.loading import load_response
 from coaxshell.response.response import Response
-from coaxshell.response.simulation import PreparedSystem, prepare, simulate
+from coaxshell.response.simulation import PreparedSystem, load_response, prepare, simulate
 from coaxshell.response.storage import info
 from coaxshell.response.summary import ShellSummary, Summary
 

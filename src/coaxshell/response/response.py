@@ -17,8 +17,7 @@ from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage
-from coaxshell.response.display import response_card
-from coaxshell.response.summary import Summary, summarise
+from coaxshell.response.summary import Summary, response_card, summarise
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
 from coaxshell.response.translation import translation

@@ -1,9 +1,10 @@
-"""The one call from a system to its response, and its prepared form for many absorber sets on one structure."""
+"""The one call from a system to its response, its prepared form for many absorber sets on one structure, and responses from files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 from typing import Unpack
 
 from coaxshell import solver
@@ -13,7 +14,9 @@ from coaxshell.model.system import System
 from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
+from coaxshell.response.storage import load_solution
 from coaxshell.solver.cost import require_room
+from coaxshell.solver.finite import require_finite_solution
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.shared_parts import SharedParts, shared_parts
@@ -163,3 +166,16 @@ def prepare(
     system = as_system(system)
     settings = Settings.asked(system, keywords)
     return PreparedSystem(dimensionless(system), settings, progress, shared=shared_parts() if retunable else None)
+
+
+def load_response(path: str | Path) -> Response:
+    """Return the response saved in a file, equal bit by bit to the one that was saved.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not ours, cut short, damaged (NaN or infinity in an array too), or of a newer format.
+    """
+    solution = load_solution(path)
+    require_finite_solution(solution, str(path), "write the file again")
+    return Response(solution)

@@ -1,4 +1,4 @@
-"""The summary of a run: peaks with their times and places, RMS, error estimates, warnings."""
+"""The summary of a run: peaks with their times and places, RMS, error estimates, warnings; and beside a drawing, for a notebook."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
+from coaxshell.model.display import card
 from coaxshell.model.places import shell_name
+from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.errors import error_table
@@ -210,3 +212,33 @@ def _largest(quantity: Quantity, motion: WallMotion, shell: int, span: slice, le
         found["rms"] = root_mean_square(amplitudes, time, span, width)
     drifting = quantity.drifts and still_grows(solution, shell, span)
     return {quantity.key(where): replace(one, growing=True) if drifting and isinstance(one, Peak) else one for where, one in found.items()}
+
+
+def response_card(solution: ModalSolution) -> str:
+    """Return the drawing of the system that was solved beside its peaks, error estimates and warnings, as HTML."""
+    found = summarise(solution)
+    rows = [
+        ("", *("stress: head", "tail", "anywhere", "RMS", "relative displacement: head", "tail")),
+        *(_row(shell) for shell in found.shells),
+    ]
+    return card(solution.problem.system, found.title or "unnamed system", rows, _notes(found))
+
+
+def _row(shell: ShellSummary) -> tuple[str, ...]:
+    stresses = (shell.stress_head.value, shell.stress_tail.value, shell.stress.value, shell.stress_rms)
+    return (
+        shell.name,
+        *(engineering(value, "Pa") for value in stresses),
+        *(engineering(peak.value, "m") for peak in (shell.relative_displacement_head, shell.relative_displacement_tail)),
+    )
+
+
+def _notes(found: Summary) -> list[str]:
+    settings = found.settings
+    left_out = ", ".join(f"{shell.name} {shell.stress_truncation:.1e}" for shell in found.shells)
+    return [
+        f"{settings['engine']} engine, {settings['modes']} modes, time step {settings['time_step']:g}, "
+        f"t = {found.window[0]:g} to {found.window[1]:g} transits of {engineering(found.transit_time, 's')}",
+        *([f"estimated relative error of the stress: {left_out}"] if left_out else []),
+        *(f"warning: {text}" for text in found.warnings),
+    ]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.numerics.renamed import renamed
-from coaxshell.studies.cluster import dask_executor
 from coaxshell.studies.execution import Execution
+from coaxshell.studies.executors import dask_executor
 from coaxshell.studies.optimisation.optimising import optimise, optimise_problem
 from coaxshell.studies.optimisation.optimum import OPTIMUM_PARTS, Optimum
 from coaxshell.studies.optimisation.study import OptimisationStudy

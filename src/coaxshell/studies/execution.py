@@ -14,8 +14,7 @@ from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.settings import Settings, SettingsKeywords, whole
-from coaxshell.studies.cluster import dask_executor
-from coaxshell.studies.executors import MAX_WORKERS, capacity
+from coaxshell.studies.executors import MAX_WORKERS, capacity, dask_executor
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.store import StudyStore
 

@@ -1,4 +1,4 @@
-"""Study files: a base scenario, what to vary, what to read, at which resolution, as TOML. Sweeps here; other studies extend it."""
+"""Study files, read and written: a base scenario, what to vary, what to read, at which resolution, as TOML. Sweeps here; others extend."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
+import tomli_w
 from pydantic import BeforeValidator, Field
 
 from coaxshell.errors import InputError
@@ -160,3 +161,40 @@ def flat(tables: Mapping[str, Any], entries: frozenset[str] = SPANS) -> dict[str
         else:
             found[key] = value
     return found
+
+
+def study_text(command: str, system: System, entries: Mapping[str, Any], tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the study file of a command; its reader gives back the same study.
+
+    Parameters
+    ----------
+    command : str
+        "sweep", "optimise" or "sensitivity".
+    system : System
+        Its scenario: the name of the preset that it equals, else the description itself at the end.
+    entries : mapping
+        Single entries such as "metrics" in their order, numbers exact; None leaves one out.
+    tables : mapping of mappings
+        Such as "variables" and "resolution", one line an entry.
+    """
+    preset = next((name for name in presets.names() if presets.load(name) == system), None)
+    lines = [f"# for coaxshell {command} FILE.toml", *([] if preset is None else [f"scenario = {_inline(preset)}"])]
+    lines += [f"{_key(name)} = {_inline(value)}" for name, value in entries.items() if value is not None]
+    for title, table in tables.items():
+        lines += ["", f"[{_key(title)}]", *(f"{_key(name)} = {_inline(value)}" for name, value in table.items())]
+    text = "\n".join(lines) + "\n"
+    return text if preset is not None else f"{text}\n{tomli_w.dumps({'scenario': toml.tables(system)})}"
+
+
+def _inline(value: Any) -> str:
+    """Return a value on one line."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(name)} = {_inline(item)}" for name, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(_inline(item) for item in value) + "]"
+    return tomli_w.dumps({"x": value}).removeprefix("x = ").rstrip("\n")
+
+
+def _key(name: str) -> str:
+    """Return a key, in quotation marks where it needs them."""
+    return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")

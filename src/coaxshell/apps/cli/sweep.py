@@ -44,7 +44,7 @@ def sweep(
     outputs.figure(figure)
 
     from coaxshell.studies import SweepStudy, read_study, sweep_design
-    from coaxshell.studies.table import best_cases
+    from coaxshell.studies.labelled import best_cases
 
     system, design, metrics, resolution = read_study(study, SweepStudy).parts(study.parent, allow_code=request.allow_code, tell=tell_code)
     if figure is not None and len(design.fields) > 2:
@@ -65,7 +65,7 @@ def _write(dataset: xr.Dataset, target: Path, csv: Path | None, figure: Path | N
     with named_as_options(path="output"):
         write_netcdf(dataset, target)
     if csv is not None:
-        from coaxshell.studies.table import write_csv
+        from coaxshell.studies.labelled import write_csv
 
         with named_as_options(path="csv"):
             write_csv(dataset, csv)

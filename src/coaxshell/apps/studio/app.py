@@ -1,18 +1,22 @@
-"""The application: routes behind the guard, and the state that lives as long as the server."""
+"""The application: routes behind the guard, files of the page, and the state that lives as long as the server."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
+from importlib.util import find_spec
+from pathlib import Path
 
 from anyio import to_thread
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.routing import BaseRoute, Mount, Route
+from starlette.staticfiles import StaticFiles
 
-from coaxshell.apps.studio import job_routes, record_uploads, refusals, routes, statics, study_routes
+from coaxshell.apps.studio import job_routes, record_uploads, refusals, routes, study_routes
 from coaxshell.apps.studio.guard import NAMES, Guard
 from coaxshell.apps.studio.refusals import RefusedError
 from coaxshell.apps.studio.state import Studio
@@ -30,7 +34,7 @@ def create_app(port: int, key: str, names: Collection[str] = ()) -> Guard:
         Names of hosts, beside those of this machine, under which it may be reached.
     """
     application = Starlette(
-        routes=[*statics.routes(), *routes.routes(), *job_routes.routes(), *study_routes.routes(), *record_uploads.routes()],
+        routes=[*files(), *routes.routes(), *job_routes.routes(), *study_routes.routes(), *record_uploads.routes()],
         lifespan=_alive,
         exception_handlers={RefusedError: _refused, HTTPException: _plain, ClientDisconnect: _gone, Exception: _failed},
     )
@@ -69,3 +73,33 @@ async def _plain(request: Request, error: Exception) -> Response:
         method = RefusedError(405, "method-not-allowed", "method", f"{request.method:.20} is not allowed here", "see docs/studio-api.md")
         return method.response
     return refusals.not_found(request.url.path[:120]).response
+
+
+PAGE = Path(__file__).with_name("page")
+
+
+def plotly_script() -> Path:
+    """Return the file of plotly.js, without importing plotly (which takes a second)."""
+    spec = find_spec("plotly")
+    assert spec is not None  # the command looked for the extra before
+    assert spec.origin is not None
+    return Path(spec.origin).parent / "package_data" / "plotly.min.js"
+
+
+async def index(request: Request) -> Response:
+    """Answer with the page."""
+    return FileResponse(PAGE / "index.html", headers={"Cache-Control": "no-cache"})
+
+
+async def plotly(request: Request) -> Response:
+    """Answer with plotly.js."""
+    return FileResponse(plotly_script(), media_type="text/javascript", headers={"Cache-Control": "max-age=86400"})
+
+
+def files() -> list[BaseRoute]:
+    """Return the routes of the page's files, and of plotly's own script out of its Python package."""
+    return [
+        Route("/", index),
+        Route("/vendor/plotly.min.js", plotly),
+        Mount("/page", StaticFiles(directory=PAGE)),
+    ]

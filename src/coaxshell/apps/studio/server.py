@@ -40,7 +40,7 @@ def serve(port: int, ready: Callable[[str], None], names: Collection[str] = ()) 
     """
     with listening(port) as listener:
         from coaxshell.apps.studio.app import create_app  # takes seconds to import: after the port has been had
-        from coaxshell.apps.studio.key import kept_key
+        from coaxshell.apps.studio.guard import kept_key
 
         port, key = listener.getsockname()[1], kept_key()
         app = create_app(port, key, names)

@@ -33,7 +33,7 @@ class Asked(NamedTuple):
     @property
     def text(self) -> str:
         """Text of the study as a TOML file."""
-        from coaxshell.studies.study_text import study_text
+        from coaxshell.studies.study_file import study_text
 
         name, varied = self.table
         command = "sweep" if name == "over" else "optimise"

@@ -3,9 +3,7 @@
 ORDER = (
     "reference",
     "single_values",
-    "paper_evacuated",
-    "paper_filled",
-    "paper_double",
+    "paper_limits",
     "independent",
     "axial_wavenumbers",
     "engines",
