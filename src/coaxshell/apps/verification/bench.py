@@ -73,5 +73,11 @@ def bare_double_shell() -> dict[str, FloatArray]:
         return dict(stored)
 
 
+def spherical_bare() -> dict[str, FloatArray]:
+    """Return the histories of reference/spherical_bare.npz: t, and hoop, axial (Pa), w (m), each (shell, station, angle, time)."""
+    with _data("spherical_bare.npz").open("rb") as file, np.load(file) as stored:
+        return dict(stored)
+
+
 def _data(name: str) -> Any:
     return resources.files("coaxshell.apps.verification").joinpath("data").joinpath(name)

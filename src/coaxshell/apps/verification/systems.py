@@ -23,6 +23,10 @@ STEP = 1e5
 PLANE_STEP = PlaneWave(pulse=Step(pressure=STEP))
 SMOOTH = Gaussian(peak_pressure=2.5e4, width=0.05 / 1400)
 """A pulse 0.05 transits wide: neither of two methods pays for a front."""
+BROAD = Gaussian(peak_pressure=2.5e4, width=0.1 / 1400)
+"""A pulse twice as wide, for three dimensions."""
+SMOOTH_SPHERE = SphericalWave(distance=3.0, pulse=BROAD)
+"""A source for three dimensions."""
 GAINS = PDControl(proportional=-2e4, derivative=-150)
 """The paper's gains."""
 

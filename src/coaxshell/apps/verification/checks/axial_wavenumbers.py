@@ -12,18 +12,15 @@ from coaxshell.apps.verification.independent import RadialElements
 from coaxshell.apps.verification.modal import modal_histories
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Curve, Finding, Panel, Sheet, within
-from coaxshell.apps.verification.systems import GAINS
+from coaxshell.apps.verification.systems import GAINS, SMOOTH_SPHERE
 from coaxshell.model import presets
 from coaxshell.model.fluids import VACUUM, Fluid
-from coaxshell.model.pulses import Gaussian
-from coaxshell.model.sources import SphericalWave
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 
 SOURCE = "independent: spectral elements in r, Gauss in t"
-SMOOTH_SPHERE = SphericalWave(distance=3.0, pulse=Gaussian(peak_pressure=2.5e4, width=0.1 / 1400))
 MODES, DURATION, STEP = 6, 2.0, 2e-3
 WAVENUMBERS = (0.0, 0.5, 3.0, 12.0)
 TOLERANCE = 1e-6

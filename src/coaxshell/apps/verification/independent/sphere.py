@@ -55,7 +55,7 @@ def incident_sphere(
     p, v = np.zeros((2, len(orders), clock.size))
     for angle in theta:
         plane = np.sqrt(1 + distance**2 - 2 * distance * np.cos(angle))
-        here = (distance - 1.0) * _along_axis(pulse, plane, wavenumber, clock, rule, transit, pressure)
+        here = (distance - 1.0) * along_axis(pulse, plane, wavenumber, clock, rule, transit, pressure)
         here[1] *= (1 - distance * np.cos(angle)) / plane
         shares = np.array([(1 if m == 0 else 2) / count * np.cos(m * angle) for m in orders])
         p += np.outer(shares, here[0])
@@ -63,10 +63,13 @@ def incident_sphere(
     return p, v
 
 
-def _along_axis(
+def along_axis(
     pulse: Gaussian, plane: float, k: float, clock: FloatArray, rule: tuple[FloatArray, FloatArray], transit: float, pressure: float
 ) -> FloatArray:
-    """Return the integrals over z > 0 of f/R3 cos kz and of (f/R3 + F/R3^2) D/R3 cos kz, shape (2, T), at distance D in the plane."""
+    """Return the integrals over z > 0 of f/R3 cos kz and of (f/R3 + F/R3^2) D/R3 cos kz, shape (2, T), f and F at ``clock`` - R3.
+
+    ``plane`` is D, the distance in the plane; ``rule`` nodes and weights of Gauss's rule on [-1, 1].
+    """
     over = (pulse.centre + _LASTING * pulse.width) / transit
     inner, outer = (np.arccosh(np.maximum(x / plane, 1.0)) for x in (clock - over, clock))
     total = np.zeros((2, clock.size))

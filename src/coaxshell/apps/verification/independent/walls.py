@@ -119,6 +119,11 @@ class Wall:
         return wall
 
     @property
+    def a11(self) -> float:
+        """Axial stiffness, the integral of Q11 (N/m)."""
+        return float(sum(point.weight * point.moduli[0, 0] for point in self.points))
+
+    @property
     def a22(self) -> float:
         """Hoop stiffness, the integral of Q22 (N/m)."""
         return float(sum(point.weight * point.moduli[1, 1] for point in self.points))

@@ -1,0 +1,47 @@
+"""Three dimensions added up at stations: two dimensions as their limits and integrals, images kept out, causality along the wall."""
+
+from __future__ import annotations
+
+import pytest
+
+from coaxshell.apps.verification import chosen, run
+from coaxshell.apps.verification.bench import Bench
+from coaxshell.apps.verification.checks import stations
+from coaxshell.apps.verification.rows import Row
+from coaxshell.apps.verification.systems import SMOOTH_SPHERE
+from coaxshell.model import presets
+from coaxshell.model.system import System
+from coaxshell.solver.axial import causality
+
+
+@pytest.fixture(scope="module")
+def bare() -> System:
+    return presets.load("bare").replace(source=SMOOTH_SPHERE)
+
+
+@pytest.mark.parametrize(
+    ("part", "rows", "limit"),
+    [
+        (stations.integral, 4, 5e-8),  # measured 3.3e-8: straight pieces of the line source's record
+        (stations.far_sources, 3, 6e-3),  # 5.2e-3: of the ratio that is 4 in the end
+        (stations.period, 2, 1e-7),  # 4.7e-8 at M = 40
+        (stations.causality, 6, 2e-9),  # 3e-10
+    ],
+    ids=lambda part: getattr(part, "__name__", ""),
+)
+def test_parts_of_the_check(bare: System, part: object, rows: int, limit: float) -> None:
+    found = [row for row in part(Bench(quick=True), bare) if isinstance(row, Row)]  # type: ignore[operator]
+    assert [row.verdict for row in found] == rows * ["pass"]
+    assert max(row.error for row in found) < limit
+
+
+@pytest.mark.slow
+def test_the_whole_check() -> None:
+    (result,) = run(chosen(["stations"], quick=False), quick=False).results
+    assert {row.verdict for row in result.rows} == {"pass"}
+
+
+@pytest.mark.parametrize("z", [0.0, 0.3, 1.0, 2.5, 4.0, 9.0])
+def test_first_arrival_by_fermat_s_principle(bare: System, z: float) -> None:
+    # The solver's closed form, by which axial periods are chosen.
+    assert causality.first_arrival(z, stations.START, 2.866017947) == pytest.approx(stations.first_arrival(bare, z), abs=1e-6)
