@@ -11,16 +11,24 @@ function mixed(stops, share) {
   return stops[low].map((part, k) => Math.round(part + (at - low) * (stops[low + 1][k] - part)));
 }
 
+// The front is tens of times louder than what the shells radiate. As in the library's figures, colours of the pressure are in proportion
+// up to about a tenth of their end and follow the logarithm beyond (arsinh): the front is a line, and a hundredth of it is still seen.
+const LINEAR = 0.1, WHOLE = Math.asinh(1 / LINEAR);
+const compressed = (share) => Math.asinh(share / LINEAR) / WHOLE;
+
 const theme = () => (document.documentElement.dataset.theme === "dark" ? "dark" : "light");
 
 // Colours of the bytes 0..255, 128 in the centre, as little-endian RGBA words, of the present theme.
 const WORDS = Object.fromEntries(Object.entries(PRESSURE).map(([name, stops]) => [name, Uint32Array.from({ length: 256 }, (_, q) => {
-  const [r, g, b] = mixed(stops, 0.5 + (q - 128) / 254);
+  const [r, g, b] = mixed(stops, 0.5 + compressed((q - 128) / 127) / 2);
   return (255 << 24) | (b << 16) | (g << 8) | r;
 })]));
 export const words = () => WORDS[theme()];
 
 export const stressColour = (share) => `rgb(${mixed(STRESS, 0.5 + share / 2).join(" ")})`;
 
-const css = (stops) => `linear-gradient(to right, ${stops.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
-export const pressureBar = () => css(PRESSURE[theme()]), STRESS_BAR = css(STRESS);
+const css = (colours) => `linear-gradient(to right, ${colours.join(", ")})`;
+const SHARES = Array.from({ length: 41 }, (_, k) => (k - 20) / 20);
+// Bars from one end of a scale to the other, in proportion to the pressure or the stress.
+export const pressureBar = () => css(SHARES.map((share) => `rgb(${mixed(PRESSURE[theme()], 0.5 + compressed(share) / 2).join(" ")})`));
+export const STRESS_BAR = css(SHARES.map(stressColour));
