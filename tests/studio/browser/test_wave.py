@@ -64,7 +64,9 @@ def pascal(told, name):
 def test_what_the_shells_radiate_is_seen_beside_the_front(server, open_page):
     """A hundredth of the largest pressure has a colour of its own, and the colours' bar says the same as the picture."""
     page = open_preset(open_page, server, SMALL)
-    shades = page.evaluate("import('/page/js/maps.js').then(({ words }) => [...words()].map((word) => [0, 8, 16].map((bits) => (word >> bits) & 255)))")
+    shades = page.evaluate(
+        "import('/page/js/maps.js').then(({ words }) => [...words()].map((word) => [0, 8, 16].map((bits) => (word >> bits) & 255)))"
+    )
     plain, faint, end = (np.array(shades[q]) for q in (128, 128 + round(0.04 * 127), 255))
     assert np.abs(faint - plain).max() >= 15
     assert np.abs(end - plain).max() > 150
