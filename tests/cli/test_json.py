@@ -61,6 +61,20 @@ def test_run_tells_the_summary_in_si(run, small):
     assert info["file"] == "out.nc"
 
 
+def test_a_run_in_three_dimensions_tells_its_stations(run):
+    options = ("--duration", "1", "--time-step", "0.02", "--modes", "6", "--dimensions", "3", "--stations", "0,70 cm")
+    found = document(run("run", "bare", *options, "--json"))
+    summary = cx.simulate("bare", duration=1, time_step=0.02, modes=6, dimensions=3, stations=["0 m", 0.7]).summary()
+    told = {key: value for key, value in found["runs"][0].items() if key != "name"}
+    assert told == json.loads(json.dumps(summary.to_dict()))
+    assert [one["station"] for one in told["stations"]] == [0.0, 0.7]
+    assert set(told["largest"][0]) - {"name"} <= set(found["units"])
+    assert (found["units"]["station"], found["units"]["von_mises_stress"]) == ("m", "Pa")
+    text = run("run", "bare", *options)
+    assert text.out.strip() == str(summary.without_warnings()).strip()
+    assert all(warning in text.err for warning in summary.warnings)
+
+
 def test_both_runs_of_a_comparison(run, small):
     found = document(run("run", "absorbers", "--compare", "bare", *small, "--json", "-q"))
     assert [one["name"] for one in found["runs"]] == ["absorbers", "bare"]

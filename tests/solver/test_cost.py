@@ -55,9 +55,10 @@ CASES = {
     "six shells": (lambda: _linked(36, 1e18, shells=6), {**COARSE, "modes": 30}),
     "saturated": (_saturated, COARSE),
     "from one side": (lambda: presets.load("bare").with_overrides({"source.angle": 30.0}), COARSE),
+    "in space": (lambda: presets.load("bare"), {**COARSE, "modes": 30, "dimensions": 3, "stations": (0.0, 0.5, 1.0)}),
     "direct": (lambda: presets.load("bare"), {**COARSE, "time_step": 4e-3, "engine": "direct"}),
 }
-QUICK = ("bare", "many orders", "ring", "uneven", "direct")
+QUICK = ("bare", "many orders", "ring", "uneven", "in space", "direct")
 
 
 @pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in CASES])

@@ -14,7 +14,7 @@ from coaxshell.apps.studio.state import Studio
 from coaxshell.errors import InputError
 from coaxshell.model import System, presets
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.spatial_cost import wavenumbers
+from coaxshell.solver.spatial_cost import sampling_of
 
 MOST = Settings(10.0, 1e-3, 300)
 """As fine as is allowed."""
@@ -47,14 +47,20 @@ def test_a_run_in_three_dimensions_costs_as_many_as_it_has_wavenumbers(monkeypat
         limits.check_cost(bare, Settings(**fine), live=True)
     limits.check_cost(bare, Settings(**fine), live=False)
     limits.check_cost(bare, Settings(**{**fine, "modes": 60, "time_step": 4e-3}), live=True)
+
+    def wavenumbers(system, settings, order=150):
+        return sampling_of(system, settings, order).wavenumbers.size
+
     plane = bare.with_overrides({"source": {"type": "plane-shock", "peak_pressure": 1e3, "decay_time": 1e-4}})
-    assert wavenumbers(plane, Settings(dimensions=3), 150) == 1
-    assert wavenumbers(bare, Settings(dimensions=3, axial_period=10.0), 150) == 1 + 238
-    assert wavenumbers(bare, Settings(dimensions=3, axial_period=10.0, axial_modes=30), 150) == 1 + 47
-    near, far = (wavenumbers(bare, Settings(dimensions=3, stations=(z,)), 150) for z in (0.0, 20.0))
+    assert wavenumbers(plane, Settings(dimensions=3)) == 1
+    assert wavenumbers(bare, Settings(dimensions=3, axial_period=20.0)) == 1 + 477
+    assert wavenumbers(bare, Settings(dimensions=3, axial_period=20.0, axial_modes=30)) == 1 + 95
+    near, far = (wavenumbers(bare, Settings(dimensions=3, stations=(z,))) for z in (0.0, 20.0))
     assert far > near + 20.0 * 150 / (2 * 3.15)
     off = bare.with_overrides({"source.z": 20.0})
-    assert wavenumbers(off, Settings(dimensions=3, stations=(20.0,)), 150) == near
+    assert wavenumbers(off, Settings(dimensions=3, stations=(20.0,))) == near
+    with pytest.raises(InputError, match=r"^axial_period: 3 m is too short"):
+        limits.check_cost(bare, Settings(dimensions=3, axial_period=3.0), live=False)
 
 
 def test_a_page_is_told_so_before_anything_is_begun(client):

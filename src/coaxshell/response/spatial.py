@@ -11,11 +11,12 @@ from coaxshell.response.response import Response
 from coaxshell.response.spatial_summary import SpatialSummary, summarise_stations
 from coaxshell.response.stations import StationMotion, chosen_stations, joined
 from coaxshell.response.wall_motion import WallMotion
+from coaxshell.response.without_fields import WithoutFields
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.electrodes import Segment
 
 
-class SpatialResponse(Response):
+class SpatialResponse(WithoutFields, Response):
     """Hold the solution of a three-dimensional run and read it in SI, at all of its stations or at some.
 
     What reads a shell takes *station*: an axial position of the run or several of them, in m or as text ("70 cm"), all of them by

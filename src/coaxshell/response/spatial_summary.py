@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from typing import Any
 
@@ -38,6 +38,15 @@ class SpatialSummary:
     def at(self, station: float) -> Summary:
         """Return the summary of a station of the run (m)."""
         return self.each[min(range(len(self.stations)), key=lambda i: abs(self.stations[i] - station))]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the run warned of."""
+        return self.each[0].warnings
+
+    def without_warnings(self) -> SpatialSummary:
+        """Return the same without warnings, where they are told in another way."""
+        return replace(self, each=tuple(summary.without_warnings() for summary in self.each))
 
     @property
     def largest(self) -> list[dict[str, Any]]:

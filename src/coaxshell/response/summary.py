@@ -121,6 +121,10 @@ class Summary:
     settings: dict[str, Any]
     warnings: tuple[str, ...]
 
+    def without_warnings(self) -> Summary:
+        """Return the same without warnings, where they are told in another way."""
+        return replace(self, warnings=())
+
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as nested plain dicts, lists and numbers, ready for JSON."""
         plain = asdict(self)

@@ -17,7 +17,7 @@ import sys
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -178,9 +178,11 @@ def write_figure(figure: Figure, path: Path, option: str = "--figure") -> None:
 
 def print_summary(response: Response) -> None:
     """Print the summary of a run on stdout and its warnings on stderr."""
+    from coaxshell.response.summary import Summary
+
     whole = response.summary()
-    summary = replace(whole, warnings=())
-    if sys.stdout.isatty():
+    summary = whole.without_warnings()
+    if sys.stdout.isatty() and isinstance(summary, Summary):
         from rich.console import Console
 
         from coaxshell.response.summary_text import notes
@@ -252,7 +254,9 @@ def runs_document(named: Mapping[str, Summary]) -> dict[str, Any]:
     """Return the summaries of named runs, with the units of their fields."""
     from coaxshell.response.quantities import summary_rows
 
-    units = {key: unit for key, _, unit in summary_rows()} | {"segment": "m", "actuator_limit": "V"}
+    runs = [{"name": name, **summary.to_dict()} for name, summary in named.items()]
+    dimensions = max((run["settings"].get("dimensions", 2) for run in runs), default=2)
+    units = {key: unit for key, _, unit in summary_rows(dimensions)} | {"segment": "m", "actuator_limit": "V"}
     units |= {
         "absorber_displacement": "m",
         "absorber_force": "N/m",
@@ -261,7 +265,8 @@ def runs_document(named: Mapping[str, Summary]) -> dict[str, Any]:
         "angle": "deg",
         "transit_time": "s",
     }
-    return {"runs": [{"name": name, **summary.to_dict()} for name, summary in named.items()], "units": units}
+    units |= {"station": "m"} if dimensions == 3 else {}
+    return {"runs": runs, "units": units}
 
 
 def cases_document(dataset: xr.Dataset) -> dict[str, Any]:
