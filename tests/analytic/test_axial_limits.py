@@ -33,6 +33,8 @@ def errors() -> dict[str, float]:
         ("rigid cylinder", 1e-4),  # 7e-5: what 1/s² leaves
         ("reciprocity of a wall and a point at 3 a, ka = 0.4", 1e-13),  # 4e-15
         ("reciprocity of a wall and a point at 3 a, ka = 7", 1e-13),
+        ("reciprocity of points at 3 a and 1.4 a, ka = 0.4", 1e-12),
+        ("reciprocity of points at 3 a and 1.4 a, ka = 7", 1e-12),
     ],
 )
 def test_limits(errors: dict[str, float], start: str, limit: float) -> None:
@@ -52,3 +54,4 @@ def test_a_wavenumber_that_matters_would_show(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(axial_limits, "SphericalFrontGeometry", lambda distance: SphericalFrontGeometry(1.001 * distance))
     assert axial_limits.line_source() > 1e-4
     assert axial_limits.reciprocity(bare, 0.4) > 1e-4
+    assert axial_limits.reciprocity_outside(bare, 0.4) > 1e-4

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+import coaxshell as cx
 from coaxshell.apps.verification import chosen, run
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.checks import stations
@@ -33,6 +35,20 @@ def test_parts_of_the_check(bare: System, part: object, rows: int, limit: float)
     found = [row for row in part(Bench(quick=True), bare) if isinstance(row, Row)]  # type: ignore[operator]
     assert [row.verdict for row in found] == rows * ["pass"]
     assert max(row.error for row in found) < limit
+
+
+@pytest.mark.parametrize("component", ["hoop", "axial", "shear"])
+def test_a_source_elsewhere_is_the_same_shock_elsewhere(bare: System, component: str) -> None:
+    # z = 0.3 m and 25 degrees: all parities around and along the axis.
+    there = bare.replace(source=SMOOTH_SPHERE.replace(z=0.3, angle=25.0))
+    angles, places, common = (
+        np.array([0.0, 40.0, 180.0]),
+        np.array([-0.5, 0.2]),
+        {"duration": 1.0, "time_step": 2e-2, "modes": 6, "dimensions": 3},
+    )
+    moved = cx.simulate(there, **common, stations=places + 0.3, axial_period=12.0).stress("outer", angles + 25.0, component=component)
+    fixed = cx.simulate(bare, **common, stations=places, axial_period=12.0).stress("outer", angles, component=component)
+    np.testing.assert_allclose(moved, fixed, rtol=0, atol=1e-12 * float(abs(fixed).max()))
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coaxshell.apps.verification import chosen, run
 from coaxshell.apps.verification.checks.axial_wavenumbers import compared, configurations
 from coaxshell.apps.verification.independent import RadialElements
 
@@ -45,3 +46,11 @@ def test_the_slice_is_another_wave():
 def test_systems(name, k):
     # Measured 4.2e-8 or less up to ka = 8, 2.4e-7 at 15.
     assert compared(configurations()[name], k, modes=6, duration=2.0, step=2e-3).distance < (1e-7 if k < 10 else 5e-7)
+
+
+@pytest.mark.parametrize("quick", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_waves_added_up_at_stations(quick):
+    # Displacements, stresses, signs and weights of all parities. Measured 6.2e-9 or less (quick, M = 4: QUICK).
+    (result,) = run(chosen(["independent-stations"], quick=quick), quick=quick).results
+    assert len(result.rows) == 12
+    assert max(row.error for row in result.rows) < (1e-7 if quick else 2e-8)

@@ -45,6 +45,30 @@ SPATIAL = (
         "bending waves that keep pace with the trace of an inclined wave",
         "solver/test_inclination.py",
     ),
+    Mutation(
+        "source-off-plane",
+        "solver/axial/families.py",
+        "sampling.shares(stations - z0)",
+        "sampling.shares(stations + z0)",
+        "a source at z0 is the same shock further along the axis",
+        "analytic/test_stations.py",
+    ),
+    Mutation(
+        "axial-displacement-side",
+        "solver/axial/sums.py",
+        '"u": (odd, u)',
+        '"u": (-odd, u)',
+        "axial displacement of a wave: sin kz",
+        "independent/test_axial_waves.py",
+    ),
+    Mutation(
+        "axial-strain-sign",
+        "solver/axial/sums.py",
+        '"u_z": (k * even, u)',
+        '"u_z": (-k * even, u)',
+        "axial strain of a wave: k cos kz",
+        "reference/test_spherical_bare.py",
+    ),
     # structure
     Mutation(
         "axial-tilt",

@@ -8,6 +8,7 @@ ORDER = (
     "axial_wavenumbers",
     "axial_limits",
     "spherical_reference",
+    "independent_stations",
     "stations",
     "engines",
     "energy",
