@@ -104,3 +104,27 @@ def test_a_source_off_the_axis_turns_the_answer() -> None:
     )
     size = np.hypot(turned.normal[:, 0], turned.normal[:, 1])
     np.testing.assert_allclose(size, np.abs(straight.normal[:, 0]), rtol=0, atol=1e-8 * size.max())
+
+
+FOUND_IN_PRACTICE = [(-2e5, 5e-3, 1.0, 2.5e4), (-2e4, 0.05, 1.0, 2.5e4), (-2e6, 1e-3, 5.9e5, 2e6)]
+"""Proportional gain, step, field limit, peak pressure: a recursion that grew made 4 times, 1e10 times and 1e6 times the stress of these,
+and the run said nothing."""
+
+
+@pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
+@pytest.mark.parametrize(("proportional", "step", "field", "peak"), FOUND_IN_PRACTICE)
+def test_no_peak_stress_is_silently_wrong(proportional: float, step: float, field: float, peak: float) -> None:
+    """One 12 mm shell with air inside, M = 20: the direct engine, and for limits that leave nothing the shell without control, agree."""
+    loud = ONE.replace(source=ONE.source.replace(peak_pressure=peak))
+    limited, settings = saturating(loud, proportional, 0.0, field), {"duration": 2.0, "time_step": step, "modes": 20}
+    stress = {}
+    for name, system, engine in (
+        ("march", limited, "spectral"),
+        ("direct", limited, "direct"),
+        ("none", loud.replace(control=None), "spectral"),
+    ):
+        steps = max(2, round(step / 2.5e-3)) if engine == "direct" else 1
+        response = cx.simulate(system, **settings, engine=engine, refinement=steps)
+        stress[name] = response.summary().shells[0].stress.value
+    np.testing.assert_allclose(stress["march"], stress["direct"], rtol=2e-3)
+    np.testing.assert_allclose(stress["march"], stress["none"], rtol=1e-5 if field == 1.0 else 0.02)
