@@ -46,6 +46,7 @@ $(STAMP_DEMO): pyproject.toml
 
 # VTK, 764 MB installed, only reads back what we write for ParaView.
 $(STAMP_ALL): $(STAMP)
+	@echo "installing VTK, 764 MB, into $(VENV): once, for as long as the network takes"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev,paraview-check]'
 	@touch $@
 
@@ -99,6 +100,7 @@ bench: $(STAMP)
 	@$(BIN)/python -m benchmarks
 
 $(STAMP_DOCS): $(STAMP)
+	@echo "installing what builds the documentation into $(VENV): once, about half a minute as the network goes"
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev,docs]'
 	@touch $@
 
@@ -106,7 +108,9 @@ $(STAMP_DOCS): $(STAMP)
 docs: export OPENBLAS_NUM_THREADS = 1
 docs: $(STAMP_DOCS) chromium
 	@rm -rf docs/built
+	@echo "building the pages and running every example: about two minutes where nothing else is done"
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html -d docs/generated/doctrees docs docs/built
+	@echo "checking what came out, in a browser too: about a minute"
 	@$(BIN)/python -m pytest -q -m "$(DOCS_CHECKS)" docs/checks
 	@echo "open docs/built/index.html"
 

@@ -35,6 +35,7 @@ def test_what_a_system_may_be(scenario: Path, monkeypatch: pytest.MonkeyPatch) -
         ("missing.toml", ["missing.toml", "cannot be read"]),
         (Path("missing"), ["missing", "cannot be read"]),
         ("run.nc", ["saved run"]),
+        ("gauge.csv", ["gauge.csv", "coaxshell record"]),
         (3, ["3 is not a system", "preset"]),
         (None, ["None is not a system"]),
     ],

@@ -15,6 +15,7 @@ SystemLike = System | str | Path
 """A system, the name of a preset, or the path of a scenario file (as text or as a path)."""
 
 _TEXT = (".toml", ".txt")
+_TABLES = (".csv", ".mat", ".wav")
 
 
 def as_system(value: Any, where: str = "system") -> System:
@@ -41,6 +42,9 @@ def as_system(value: Any, where: str = "system") -> System:
     suffix = Path(value).suffix.lower()
     if suffix == ".nc":
         raise InputError(where, f"{str(value)!r} is a saved run, solved already", "give a .toml file or a preset; see coaxshell info")
+    if suffix in _TABLES:
+        remedy = "a pressure record is named in a scenario, as pulse = { type = \"sampled\", file = ... }; see coaxshell record"
+        raise InputError(where, f"{str(value)!r} is not a scenario (.toml) or a preset", remedy)
     if isinstance(value, Path) or suffix in _TEXT or Path(value).is_file():
         return System.from_toml(value)
     raise InputError(where, f"there is no preset {value!r}", f"{suggestion(value, presets.names())}, or a .toml file")
