@@ -43,7 +43,7 @@ def as_system(value: Any, where: str = "system") -> System:
     if suffix == ".nc":
         raise InputError(where, f"{str(value)!r} is a saved run, solved already", "give a .toml file or a preset; see coaxshell info")
     if suffix in _TABLES:
-        remedy = "a pressure record is named in a scenario, as pulse = { type = \"sampled\", file = ... }; see coaxshell record"
+        remedy = 'a pressure record is named in a scenario, as pulse = { type = "sampled", file = ... }; see coaxshell record'
         raise InputError(where, f"{str(value)!r} is not a scenario (.toml) or a preset", remedy)
     if isinstance(value, Path) or suffix in _TEXT or Path(value).is_file():
         return System.from_toml(value)
