@@ -155,7 +155,7 @@ def test_a_newer_format(saved: Path) -> None:
     with h5py.File(saved, "r+") as file:
         file.attrs["coaxshell_format_version"] = 99
         file.attrs["coaxshell_version"] = "8.0"
-    assert "has format 99 of coaxshell 8.0, beyond 2 of this version; update coaxshell" in told(load_response, saved)
+    assert "has format 99 of coaxshell 8.0, beyond 3 of this version; update coaxshell" in told(load_response, saved)
 
 
 @pytest.mark.parametrize("lost", ["normal", "scenario"])

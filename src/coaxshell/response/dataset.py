@@ -18,10 +18,10 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.identity import NUMERICS_VERSION
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import TRANSIT, time_coordinates
-from coaxshell.solver.solution import CAUSES, QUANTITIES, ModalSolution
+from coaxshell.solver.solution import QUANTITIES, ModalSolution
 
-FORMAT_VERSION = 2
-"""1: without a checksum."""
+FORMAT_VERSION, SPATIAL_VERSION = 2, 3
+"""Of runs in two and in three dimensions. 1: without a checksum."""
 
 MODAL = ("shell", "half", "mode", "time")
 ERROR = ("shell", "quantity", "cause")
@@ -48,32 +48,59 @@ OURS = "give a file written by coaxshell run --output or Response.save"
 
 def to_dataset(solution: ModalSolution) -> xr.Dataset:
     """Return the solution, its scenario and its circumstances as a dataset; arrays stay dimensionless, as the solver left them."""
+    arrays = {
+        name: xr.Variable(dims, values, {"units": units, "long_name": long_name})
+        for name, (dims, units, long_name) in ARRAYS.items()
+        if (values := getattr(solution, name, None)) is not None
+    }
+    return described(solution, arrays, {}, _attributes(solution, FORMAT_VERSION))
+
+
+def to_spatial_dataset(solution: ModalSolution, arrays: Mapping[str, xr.Variable], station: FloatArray, sampling: str) -> xr.Dataset:
+    """Return the arrays of all stations of a run in three dimensions with what describes it.
+
+    Parameters
+    ----------
+    solution : ModalSolution
+        That of one of its stations.
+    arrays : mapping of name to Variable
+    station : ndarray, shape (stations,)
+        z, m.
+    sampling : str
+        The axial wavenumbers, as JSON.
+    """
+    axis = {"station": xr.Variable("station", station, {"units": "m", "long_name": "axial position z"})}
+    return described(solution, arrays, axis, {**_attributes(solution, SPATIAL_VERSION), "axial_sampling": sampling})
+
+
+def described(
+    solution: ModalSolution, arrays: Mapping[str, xr.Variable], axes: Mapping[str, xr.Variable], attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return arrays with the scenario, estimates and coordinates of a solution, further *axes*, attributes and a checksum over all."""
     variables: dict[str, xr.Variable] = {
         "scenario": xr.Variable((), solution.problem.system.to_toml_string(), {"long_name": "the whole system as TOML, in SI"}),
         "error_estimate": xr.Variable(ERROR, solution.estimates.by_cause(), {"units": "1", "long_name": ERRORS}),
+        **arrays,
     }
-    for name, (dims, units, long_name) in ARRAYS.items():
-        values = getattr(solution, name, None)
-        if values is not None:
-            variables[name] = xr.Variable(dims, values, {"units": units, "long_name": long_name})
     count = len(solution.problem.shells)
     coordinates: dict[str, xr.Variable] = {
         **time_coordinates(solution),
         "shell": xr.Variable("shell", np.arange(count), {"long_name": ", ".join(shell_name(i, count) for i in range(count))}),
         "quantity": xr.Variable("quantity", list(QUANTITIES)),
-        "cause": xr.Variable("cause", list(CAUSES)),
+        "cause": xr.Variable("cause", list(solution.estimates.causes)),
         "mode": xr.Variable("mode", np.arange(solution.normal.shape[2]), {"long_name": "circumferential order m"}),
+        **axes,
     }
-    dataset = xr.Dataset(variables, coordinates, _attributes(solution))
-    arrays = {name: dataset[name].to_numpy() for name in ("time", "error_estimate", *ARRAYS) if name in dataset}
-    dataset.attrs["checksum"] = checksum(arrays, str(dataset["scenario"].item()), dataset.attrs)
+    dataset = xr.Dataset(variables, coordinates, attributes)
+    sealed = {name: dataset[name].to_numpy() for name in ("time", "error_estimate", *axes, *arrays)}
+    dataset.attrs["checksum"] = checksum(sealed, str(dataset["scenario"].item()), dataset.attrs)
     return dataset
 
 
 def checksum(arrays: Mapping[str, FloatArray], scenario: str, attributes: Mapping[Any, Any]) -> str:
     """Return the digest of all that a run consists of: arrays bit by bit, the scenario, settings, estimates and warnings."""
     digest = hashlib.sha256()
-    texts = {"scenario": scenario, **{name: attributes[name] for name in ("settings", "warnings")}}
+    texts = {"scenario": scenario, **{name: attributes[name] for name in ("settings", "warnings", "axial_sampling") if name in attributes}}
     digest.update(json.dumps(texts, sort_keys=True).encode())
     for name in sorted(arrays):
         values = np.ascontiguousarray(arrays[name], "<f8")
@@ -82,12 +109,12 @@ def checksum(arrays: Mapping[str, FloatArray], scenario: str, attributes: Mappin
     return f"sha256 {digest.hexdigest()}"
 
 
-def _attributes(solution: ModalSolution) -> dict[str, Any]:
+def _attributes(solution: ModalSolution, version: int) -> dict[str, Any]:
     scales = solution.problem.scales
     return {
         "title": solution.problem.system.name or "coaxshell response",
         "source": f"coaxshell {__version__}",
-        "coaxshell_format_version": FORMAT_VERSION,
+        "coaxshell_format_version": version,
         "coaxshell_version": __version__,
         "numerics_version": NUMERICS_VERSION,
         "numpy_version": np.__version__,

@@ -6,7 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from coaxshell.errors import InputError
 from coaxshell.model import toml
 from coaxshell.model.absorbers import AbsorberRing
 from coaxshell.model.system import System
-from coaxshell.response.dataset import ARRAYS, ERROR, FORMAT_VERSION, OURS, checksum
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.response.dataset import ARRAYS, ERROR, OURS, SPATIAL_VERSION, checksum
 from coaxshell.response.thinning import with_missing
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
@@ -35,18 +36,37 @@ def judge_format(file: ForeignFile) -> int:
         raise InputError("", "was not written by coaxshell", OURS)
     if not isinstance(version, int) or version < 1:
         raise ValueError(f"its format is {str(version)[:20]!r}")
-    if version > FORMAT_VERSION:
+    if version > SPATIAL_VERSION:
         by = str(file.attribute("coaxshell_version") or "of a newer version")[:40]
-        raise InputError("", f"has format {version} of coaxshell {by}, beyond {FORMAT_VERSION} of this version", "update coaxshell")
+        raise InputError("", f"has format {version} of coaxshell {by}, beyond {SPATIAL_VERSION} of this version", "update coaxshell")
     return version
 
 
 def settings_of(file: ForeignFile) -> dict[str, Any]:
     """Return the settings of a file as they stand in it."""
-    found = _json(file.attribute("settings"))
-    if not isinstance(found, dict):
-        raise TypeError("settings that are not a table")
-    return found
+    return table(file.attribute("settings"))
+
+
+class Described(NamedTuple):
+    """What a file says of its run beside the arrays: attributes as they stand, scenario, settings, system, warnings, timings."""
+
+    about: dict[str, Any]
+    text: str
+    settings: Settings
+    system: System
+    warnings: tuple[str, ...]
+    timings: dict[str, float]
+
+
+def described(file: ForeignFile) -> Described:
+    """Return what a file says of its run; no array is read."""
+    about = {name: file.attribute(name) for name in (*_NEEDED, "checksum", "axial_sampling")}
+    if missing := [name for name in _NEEDED if about[name] is None]:
+        raise KeyError(f"{missing[0]} is missing")
+    told = {name: value for name, value in about.items() if value is not None or name == "checksum"}
+    text = file.text("scenario")
+    settings = Settings(**settings_of(file))
+    return Described(told, text, settings, _system(text), _warnings(about["warnings"]), _timings(about["timings"]))
 
 
 def solution_of(file: ForeignFile) -> ModalSolution:
@@ -63,38 +83,37 @@ def solution_of(file: ForeignFile) -> ModalSolution:
         If something is missing or does not fit; the reader of files turns these into an InputError.
     """
     version = judge_format(file)
-    about = {name: file.attribute(name) for name in _NEEDED}
-    if missing := [name for name, value in about.items() if value is None]:
-        raise KeyError(f"{missing[0]} is missing")
-    text = file.text("scenario")
-    settings = Settings(**settings_of(file))
+    told = described(file)
     sizes = sizes_of(file)
-    system = _system(text)
-    _agree(sizes, system, settings)
+    _agree(sizes, told.system, told.settings)
     known = {field.name for field in fields(ModalSolution)}
     arrays: dict[str, Any] = {name: file.array(name) for name in ("time", "error_estimate", *ARRAYS) if name in file}
-    warnings = _warnings(about["warnings"])
     solution = ModalSolution(
-        problem=dimensionless(system),
-        settings=settings,
+        problem=dimensionless(told.system),
+        settings=told.settings,
         estimates=_estimates(file, arrays),
-        warnings=warnings,
-        timings=_timings(about["timings"]),
+        warnings=told.warnings,
+        timings=told.timings,
         **{name: values for name, values in arrays.items() if name in known},
     )
-    _judge_instants(solution)
-    if version > 1 and not file.sealed and solution.whole and file.attribute("checksum") != checksum(arrays, text, about):
+    judge_instants(solution.time, solution.settings)
+    if version > 1 and not file.sealed and solution.whole and told.about["checksum"] != checksum(arrays, told.text, told.about):
         raise ValueError("its checksum is another: it was changed after it was saved")
     return replace(solution, warnings=with_missing(solution))
 
 
 def sizes_of(file: ForeignFile) -> dict[str, int]:
     """Return the size of each dimension, the same in all arrays; nothing is read, ValueError if they do not fit."""
-    sizes: dict[str, int] = {}
     dimensions = {name: dims for name, (dims, _, _) in ARRAYS.items()}
     estimates = {"error_estimate": ERROR} if "error_estimate" in file else dict.fromkeys(_EARLIER, ("shell",))
-    for name, dims in {"time": ("time",), **estimates, **dimensions}.items():
-        if name in ("time", "normal", "tangential", *estimates) or name in file:
+    return agreed_sizes(file, {"time": ("time",), **estimates, **dimensions}, ("time", "normal", "tangential", *estimates))
+
+
+def agreed_sizes(file: ForeignFile, dimensions: Mapping[str, tuple[str, ...]], needed: tuple[str, ...]) -> dict[str, int]:
+    """Return the size of each dimension of some arrays, those *needed* and those that a file has; ValueError if they do not fit."""
+    sizes: dict[str, int] = {}
+    for name, dims in dimensions.items():
+        if name in needed or name in file:
             shape = file.shape(name)
             if len(shape) != len(dims) or any(sizes.setdefault(dim, size) != size for dim, size in zip(dims, shape, strict=True)):
                 raise ValueError(f"{name} has the shape {shape}, which does not fit the others")
@@ -117,6 +136,8 @@ def _names_a_file(data: Any) -> bool:
 
 def _agree(sizes: Mapping[str, int], system: System, settings: Settings) -> None:
     """Refuse arrays that are not those of the scenario and the settings."""
+    if settings.dimensions != 2:
+        raise ValueError("stations of three dimensions in a format of two")
     ring = system.absorbers
     absorbers = ring.count if isinstance(ring, AbsorberRing) else len(ring)
     for found, expected, what, where in (
@@ -138,21 +159,29 @@ def _estimates(file: ForeignFile, arrays: Mapping[str, Any]) -> Estimates:
         return Estimates(*np.moveaxis(arrays["error_estimate"], -1, 0))
     # Files of earlier versions: one number for the time step of all shells, nothing of the march.
     orders = np.stack([file.array(name) for name in _EARLIER], axis=1)
-    step = np.full(orders.shape, _finite(file.attribute("time_window_estimate")))
+    step = np.full(orders.shape, finite(file.attribute("time_window_estimate")))
     return Estimates(orders, step, np.full(orders.shape, np.nan))
 
 
-def _judge_instants(solution: ModalSolution) -> None:
+def judge_instants(time: FloatArray, settings: Settings) -> None:
     """Refuse instants that are no part of the run that the settings describe."""
-    time, step = solution.time, solution.settings.time_step
-    if time.size == 0 or time[0] < -1e-6 * step or time[-1] > (solution.settings.steps + 1e-6) * step or np.any(np.diff(time) <= 0.0):
+    step = settings.time_step
+    if time.size == 0 or time[0] < -1e-6 * step or time[-1] > (settings.steps + 1e-6) * step or np.any(np.diff(time) <= 0.0):
         raise ValueError("its instants are not those of its settings")
+
+
+def table(text: Any) -> dict[str, Any]:
+    """Return a table that stands in an attribute as JSON."""
+    found = _json(text)
+    if not isinstance(found, dict):
+        raise TypeError("what should be a table is none")
+    return found
 
 
 def _json(text: Any) -> Any:
     if not isinstance(text, str):
         raise TypeError("what should be a text is none")
-    return json.loads(text, parse_constant=_finite)
+    return json.loads(text, parse_constant=finite)
 
 
 def _warnings(text: Any) -> tuple[str, ...]:
@@ -163,13 +192,11 @@ def _warnings(text: Any) -> tuple[str, ...]:
 
 
 def _timings(text: Any) -> dict[str, float]:
-    found = _json(text)
-    if not isinstance(found, dict):
-        raise TypeError("timings that are not a table")
-    return {name: _finite(value) for name, value in found.items()}
+    return {name: finite(value) for name, value in table(text).items()}
 
 
-def _finite(value: Any) -> float:
+def finite(value: Any) -> float:
+    """Return a finite number."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ValueError(f"{str(value)[:20]!r} is not a finite number")
     return float(value)

@@ -16,10 +16,11 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
 from coaxshell.response.storage import load_solution
 from coaxshell.solver.cost import require_room
-from coaxshell.solver.finite import require_finite_solution
+from coaxshell.solver.finite import require_finite_solution, require_finite_stations
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.shared_parts import SharedParts, shared_parts
+from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 
@@ -177,5 +178,10 @@ def load_response(path: str | Path) -> Response:
         If there is no such file, or it is not ours, cut short, damaged (NaN or infinity in an array too), or of a newer format.
     """
     solution = load_solution(path)
-    require_finite_solution(solution, str(path), "write the file again")
-    return Response(solution)
+    if isinstance(solution, ModalSolution):
+        require_finite_solution(solution, str(path), "write the file again")
+        return Response(solution)
+    from coaxshell.response.spatial import SpatialResponse
+
+    require_finite_stations(solution, str(path), "write the file again")
+    return SpatialResponse(solution)

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.response import storage
 from coaxshell.response.response import Response
 from coaxshell.response.spatial_summary import SpatialSummary, summarise_stations
-from coaxshell.response.stations import StationMotion, chosen_stations, joined
+from coaxshell.response.stations import StationMotion, Transforms, chosen_stations, joined
+from coaxshell.response.thinning import thinned_stations
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.without_fields import WithoutFields
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.electrodes import Segment
+from coaxshell.solver.finite import require_finite_stations
 
 
 class SpatialResponse(WithoutFields, Response):
@@ -35,8 +40,10 @@ class SpatialResponse(WithoutFields, Response):
     """
 
     def __init__(self, spatial: SpatialSolution) -> None:
+        require_finite_stations(spatial)
         self.spatial = spatial
-        self.motions = [StationMotion(spatial, i) for i in range(spatial.stations.size)]
+        transforms = Transforms(spatial)
+        self.motions = [StationMotion(transforms, i) for i in range(spatial.stations.size)]
         super().__init__(self.motions[0].solution)
         self.motion = self.motions[0]
 
@@ -44,6 +51,11 @@ class SpatialResponse(WithoutFields, Response):
     def stations(self) -> FloatArray:
         """Axial positions at which the run answers, m, shape (stations,)."""
         return self.spatial.stations
+
+    def at(self, station: Any) -> SpatialResponse:
+        """Return the response at some of its stations alone: one axial position (m or text) or several."""
+        chosen, _ = chosen_stations(self.stations, station)
+        return SpatialResponse(self.spatial.some(chosen))
 
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read at each of some stations, dims (time, station, ...)."""
@@ -56,6 +68,27 @@ class SpatialResponse(WithoutFields, Response):
         See :class:`coaxshell.response.spatial_summary.SpatialSummary`.
         """
         return summarise_stations(self.spatial, self.motions, window, segment)
+
+    def without_transforms(self) -> SpatialResponse:
+        """Return the response without the transforms that a run keeps: for keeping many responses at a time.
+
+        Velocities and accelerations then take as long as the run when they are asked for, and the summary and tables leave them out.
+        """
+        return SpatialResponse(replace(self.spatial, spectra=None))
+
+    def thin(self, every: int = 1, window: Sequence[float] | None = None) -> SpatialResponse:
+        """Return the response with every so many instants of a window (start, end) in transits, for a smaller file.
+
+        See :func:`coaxshell.response.thinning.thinned`.
+        """
+        return SpatialResponse(thinned_stations(self.spatial, every, window))
+
+    def save(self, path: str | Path, *, compression: bool = False) -> Path:
+        """Write the run at all its stations to one self-describing NetCDF file, whole or not at all, and return its path.
+
+        See :func:`coaxshell.response.storage.save`.
+        """
+        return storage.save(self.spatial, path, compression=compression)
 
     def _repr_html_(self) -> str:
         return self.summary()._repr_html_()

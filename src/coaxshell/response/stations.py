@@ -12,7 +12,7 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.wall_motion import MotionSpectra, WallMotion
-from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.solve import station_spectra
 from coaxshell.solver.stations import stations_of
 
@@ -64,22 +64,49 @@ def joined(arrays: Sequence[xr.DataArray], known: FloatArray, chosen: Sequence[i
     return xr.DataArray(values, dims=dims, coords=coordinates, name=first.name, attrs=first.attrs)
 
 
+class Transforms:
+    """Transforms of the motion at all stations of a run: those that it kept, or made again once for all of them.
+
+    Parameters
+    ----------
+    spatial : SpatialSolution
+    """
+
+    def __init__(self, spatial: SpatialSolution) -> None:
+        self.spatial = spatial
+
+    @property
+    def at_hand(self) -> bool:
+        """Whether they are there without solving the run again."""
+        return self.spatial.spectra is not None or "found" in vars(self)
+
+    @cached_property
+    def found(self) -> StationSpectra:
+        """All of them; InputError if instants of the run are missing."""
+        return station_spectra(self.spatial)
+
+
 class StationMotion(WallMotion):
     """The motion of all walls at a station of a three-dimensional run.
 
     Parameters
     ----------
-    spatial : SpatialSolution
+    transforms : Transforms
+        Those of the run, shared by its stations.
     station : int
         Its number.
     """
 
-    def __init__(self, spatial: SpatialSolution, station: int) -> None:
-        super().__init__(spatial.at(station))
-        self._spatial, self._station = spatial, station
+    def __init__(self, transforms: Transforms, station: int) -> None:
+        super().__init__(transforms.spatial.at(station))
+        self._transforms, self._station = transforms, station
+
+    def has_rate(self, rate: int) -> bool:
+        """Return whether derivatives of an order are there without solving the run again, which takes as long as the run."""
+        return rate == 0 or (self.solution.whole and self._transforms.at_hand)
 
     @cached_property
     def for_rates(self) -> MotionSpectra:
         """Transforms of W and V at the station; InputError if instants of the run are missing."""
-        found = station_spectra(self._spatial)
+        found = self._transforms.found
         return MotionSpectra(found.grid, found.normal[self._station], found.tangential[self._station])

@@ -8,26 +8,32 @@ from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import SAVED_TEXT
+from coaxshell.numerics.late import Late
 from coaxshell.numerics.netcdf import write_netcdf
 from coaxshell.numerics.seal import add_seal
 from coaxshell.response import restored
-from coaxshell.response.dataset import ARRAYS, to_dataset
+from coaxshell.response.dataset import ARRAYS, SPATIAL_VERSION, to_dataset
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solution import ModalSolution
 
 if TYPE_CHECKING:
+    from coaxshell.response import station_files
     from coaxshell.response.foreign import ForeignFile
+    from coaxshell.solver.axial.solution import SpatialSolution
+else:
+    station_files = Late("coaxshell.response.station_files")  # two dimensions need nothing of it
 
 
-def save(solution: ModalSolution, path: str | Path, *, compression: bool = False) -> Path:
+def save(solution: ModalSolution | SpatialSolution, path: str | Path, *, compression: bool = False) -> Path:
     """Write a solution to a NetCDF file and return its path; an older file there is replaced only by a complete new one.
 
-    The file holds the dimensionless modal amplitudes bit by bit, the scenario as TOML (records of pressure with all their samples),
-    settings, estimates, warnings, timings and versions; a checksum over all of it, and one over the file's bytes.
+    The file holds the dimensionless modal amplitudes bit by bit (in three dimensions those of all fields at all stations), the scenario as
+    TOML (records of pressure with all their samples), settings, estimates, warnings, timings and versions; a checksum over all of it, and
+    one over the file's bytes.
 
     Parameters
     ----------
-    solution : ModalSolution
+    solution : ModalSolution or SpatialSolution
     path : str or Path
     compression : bool
         Compress without loss (smaller, slower).
@@ -37,17 +43,18 @@ def save(solution: ModalSolution, path: str | Path, *, compression: bool = False
     InputError
         If the file cannot be written there, or if the run was made with other formulas than its description stands for.
     """
-    if solution.problem != dimensionless(solution.problem.system):
+    if solution.problem != dimensionless(solution.problem.system, solution.problem.dimensions):
         raise InputError("response", "was made with other formulas than a file could repeat", "save its histories as tables instead")
-    dataset = to_dataset(solution)
+    dataset = to_dataset(solution) if isinstance(solution, ModalSolution) else station_files.to_dataset(solution)
     SAVED_TEXT.check(len(dataset["scenario"].item().encode()), "response", "resample its record, or cut it")
     packed = {"zlib": True, "complevel": 4, "shuffle": True} if compression else {}
-    encoding = {name: {"_FillValue": None, **packed} for name in ARRAYS if name in dataset and dataset[name].size}
+    arrays = [str(name) for name in dataset.data_vars if name in ARRAYS or "station" in dataset[name].dims]
+    encoding = {name: {"_FillValue": None, **packed} for name in arrays if dataset[name].size}
     write_netcdf(dataset, path, encoding, add_seal)
     return Path(path)
 
 
-def load_solution(path: str | Path) -> ModalSolution:
+def load_solution(path: str | Path) -> ModalSolution | SpatialSolution:
     """Return the solution of a file written by :func:`save`, of this version or an earlier one.
 
     A file from elsewhere opens no other file, and nothing is allocated before its sizes have been judged.
@@ -61,7 +68,8 @@ def load_solution(path: str | Path) -> ModalSolution:
 
     with opened(path) as file:
         try:
-            return restored.solution_of(file)
+            spatial = restored.judge_format(file) == SPATIAL_VERSION
+            return station_files.solution_of(file) if spatial else restored.solution_of(file)
         except InputError as error:
             if not error.where:
                 raise InputError(str(path), error.problem, error.remedy) from None
@@ -106,14 +114,17 @@ def _judge_format(file: ForeignFile, path: str | Path) -> None:
 
 
 def _described(file: ForeignFile) -> str:
-    sizes = restored.sizes_of(file)
+    spatial = restored.judge_format(file) == SPATIAL_VERSION
+    sizes = station_files.sizes_of(file) if spatial else restored.sizes_of(file)
+    known = station_files.dimensions_of(file) if spatial else {name: dims for name, (dims, _, _) in ARRAYS.items()}
     parts = {part: file.attribute(f"{part}_version") for part in ("coaxshell", "numerics", "numpy", "scipy", "python")}
     versions = ", ".join(f"{part} {version}" for part, version in parts.items() if version is not None)
     settings = ", ".join(f"{key} {value}" for key, value in restored.settings_of(file).items())
-    dimensions = {name: ", ".join(f"{dim} {sizes[dim]}" for dim in dims) for name, (dims, _, _) in ARRAYS.items() if name in file}
+    dimensions = {name: ", ".join(f"{dim} {sizes[dim]}" for dim in dims) for name, dims in known.items() if name in file}
+    stations = f"stations {sizes['station']}, " if spatial else ""
     return "\n".join(
         [
-            f"{file.attribute('title')}: shells {sizes['shell']}, orders 0 to {sizes['mode'] - 1}, instants {sizes['time']}",
+            f"{file.attribute('title')}: {stations}shells {sizes['shell']}, orders 0 to {sizes['mode'] - 1}, instants {sizes['time']}",
             f"written {file.attribute('created')} in format {file.attribute('coaxshell_format_version')} by {versions}",
             f"settings: {settings}",
             *(f"warning: {text}" for text in json.loads(str(file.attribute("warnings")))),

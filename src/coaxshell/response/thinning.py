@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.response.dataset import ARRAYS
 from coaxshell.response.voltages import time_derivative
 from coaxshell.solver.solution import ModalSolution
+
+if TYPE_CHECKING:
+    from coaxshell.solver.axial.solution import SpatialSolution
 
 
 def thinned(solution: ModalSolution, every: int, window: Sequence[float] | None) -> ModalSolution:
@@ -30,13 +34,7 @@ def thinned(solution: ModalSolution, every: int, window: Sequence[float] | None)
     InputError
         If *every* or the window is not allowed, or fewer than two instants would be left.
     """
-    every = plain(every)
-    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
-        raise InputError("every", f"{every!r} is not allowed", "give a whole number of time steps, 1 or more")
-    span = arguments.time_window(solution.time, window)
-    kept = slice(span.start, span.stop, every)
-    if solution.time[kept].size < 2:
-        raise InputError("every", f"{every} leaves fewer than two instants", f"give at most {max(1, solution.time[span].size - 1)}")
+    kept = _kept(solution.time, every, window)
     arrays: dict[str, Any] = {"normal": solution.normal, "tangential": solution.tangential, **_rates(solution)}
     for name, (dims, _, _) in ARRAYS.items():
         values = arrays.get(name, getattr(solution, name, None))
@@ -44,6 +42,37 @@ def thinned(solution: ModalSolution, every: int, window: Sequence[float] | None)
             arrays[name] = values[..., kept].copy()
     fewer = replace(solution, time=solution.time[kept].copy(), **arrays)
     return replace(fewer, warnings=with_missing(fewer))
+
+
+def thinned_stations(solution: SpatialSolution, every: int, window: Sequence[float] | None) -> SpatialSolution:
+    """Return a solution of three dimensions with every so many instants of a window; see :func:`thinned`."""
+    kept = _kept(solution.time, every, window)
+    fields = {**solution.fields, **_potential_rates(solution)}
+    fields = {name: values[..., kept].copy() for name, values in fields.items()}
+    fewer = replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None)
+    return replace(fewer, warnings=with_missing(fewer))
+
+
+def _kept(time: FloatArray, every: int, window: Sequence[float] | None) -> slice:
+    """Return which instants are kept."""
+    every = plain(every)
+    if isinstance(every, bool) or not isinstance(every, int) or every < 1:
+        raise InputError("every", f"{every!r} is not allowed", "give a whole number of time steps, 1 or more")
+    span = arguments.time_window(time, window)
+    kept = slice(span.start, span.stop, every)
+    if time[kept].size < 2:
+        raise InputError("every", f"{every} leaves fewer than two instants", f"give at most {max(1, time[span].size - 1)}")
+    return kept
+
+
+def _potential_rates(solution: SpatialSolution) -> dict[str, FloatArray]:
+    """Return the derivatives of voltages that derivative control reads, of a run that has all its instants."""
+    control = solution.problem.system.control
+    if control is None or not control.derivative or not solution.whole:
+        return {}
+    step = solution.settings.time_step
+    potentials = {name: values for name, values in solution.fields.items() if name.startswith("potential ")}
+    return {name.replace("potential", "potential_rate"): time_derivative(values, step) for name, values in potentials.items()}
 
 
 def _rates(solution: ModalSolution) -> dict[str, Any]:
@@ -55,7 +84,7 @@ def _rates(solution: ModalSolution) -> dict[str, Any]:
     return {"normal_rate": time_derivative(solution.normal, step), "tangential_rate": time_derivative(solution.tangential, step)}
 
 
-def with_missing(solution: ModalSolution) -> tuple[str, ...]:
+def with_missing(solution: ModalSolution | SpatialSolution) -> tuple[str, ...]:
     """Return the warnings of a solution with one more where instants are missing."""
     known = tuple(text for text in solution.warnings if not text.endswith(_MISSING))
     return known if solution.whole else (*known, f"{solution.time.size} of the run's {solution.settings.steps + 1} instants {_MISSING}")

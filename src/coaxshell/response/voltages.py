@@ -18,7 +18,7 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import lower_half, segment_mean
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import ControlGains, Gain
+from coaxshell.structure.shell_model import ControlGains, FieldGain, Gain
 
 _PER_WAVE = 8
 _FEWEST = 64
@@ -72,6 +72,9 @@ def sensor_rate(solution: ModalSolution, shell: int) -> FloatArray:
     """Return d/dt of the modal sensor voltage, V per transit, shape (parities, M + 1, T): by the engine's rates, else by differences."""
     gain = voltage_gain(solution, shell)
     normal, tangential = getattr(solution, "normal_rate", None), getattr(solution, "tangential_rate", None)
+    if isinstance(gain, FieldGain) and gain.layer is not None and solution.along is not None and solution.along.potential_rates:
+        kept: FloatArray = solution.along.potential_rates[gain.layer][shell]
+        return kept
     if not isinstance(gain, Gain) or normal is None or tangential is None:
         solution.need_every_instant("a voltage of derivative control")
         return time_derivative(amplitudes(solution, shell, gain), solution.settings.time_step)

@@ -26,6 +26,10 @@ class WithoutFields:
         """Refuse it; InputError."""
         _refuse("intensity")
 
+    def energy(self, *_: Any, **__: Any) -> NoReturn:
+        """Refuse it; InputError."""
+        _refuse("energy")
+
     def plot(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse it; InputError."""
         _refuse("plot")

@@ -60,11 +60,16 @@ def after(problem: Problem, estimates: Estimates, settings: Settings) -> list[st
     control = problem.system.control
     saturating = control is not None and control.saturation  # of which "auto" does not know
     step, more = settings.time_step, f"modes={min(2 * order, MAX_MODES)}" + ("" if saturating else ' or modes="auto"')
-    causes = (
+    causes = [
         (f"orders above {order} would change", estimates.orders, TRUNCATION_LIMIT, more),
         (f"the band limit of time_step = {step:g} changes", estimates.time_step, STEP_LIMIT, f"time_step = {step / 2:g}"),
         (f"steps of {step / settings.refinement:g} of the interface's march change", estimates.march, MARCH_LIMIT, _finer(settings)),
-    )
+    ]
+    if estimates.axial is not None and settings.axial_modes is not None:
+        highest = f"axial wavenumbers above {settings.axial_modes:g} (times a) would change"
+        causes.append(
+            (highest, estimates.axial, TRUNCATION_LIMIT, f'axial_modes={min(2 * settings.axial_modes, MAX_MODES):g} or modes="auto"')
+        )
     warnings = []
     for what, errors, limit, remedy in causes:
         for i, pair in enumerate(errors):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from coaxshell.numerics.finite import Array, first_bad
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
+
+if TYPE_CHECKING:
+    from coaxshell.solver.axial.solution import SpatialSolution
 
 FINER = "use a smaller time_step or fewer modes"
 
@@ -71,6 +74,17 @@ def require_finite_solution(solution: ModalSolution, where: str = "response", re
         index = None if values is None else first_bad(values)
         if values is not None and index is not None:
             raise _told(Stage(where, name, values, axes, True, remedy), index, solution.time)
+
+
+def require_finite_stations(solution: SpatialSolution, where: str = "response", remedy: str = FINER) -> None:
+    """Refuse a solution of three dimensions with NaN or infinity in any of its fields; see :func:`require_finite_solution`."""
+    axes = ("station", "shell", "half", "order")
+    found: list[Stage] = [Stage(where, "time", solution.time, (), True, remedy)]
+    found += [Stage(where, f"the field {name}", values, axes, True, remedy) for name, values in solution.fields.items()]
+    for stage in found:
+        index = first_bad(stage.values)
+        if index is not None:
+            raise _told(stage, index, solution.time)
 
 
 def require_finite_stages(solved: SolvedSpectra) -> None:

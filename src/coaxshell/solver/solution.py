@@ -80,6 +80,12 @@ class Estimates:
         return float((self.time_step + self.march)[:, 0].max(initial=0.0))
 
 
+def is_whole(time: FloatArray, settings: Settings) -> bool:
+    """Return whether some instants are all those of the run that some settings describe."""
+    step, steps = settings.time_step, settings.steps
+    return time.size == steps + 1 and bool(np.all(np.abs(time - step * np.arange(steps + 1)) <= 1e-6 * step))
+
+
 class AxialMotion(NamedTuple):
     """What the walls of a three-dimensional run do along the axis at a station, each (shells, parities, M + 1, T).
 
@@ -91,6 +97,8 @@ class AxialMotion(NamedTuple):
         Derivatives along z of W, V and u.
     potentials : tuple of ndarray
         Open-circuit voltages of the walls' piezoelectric layers, V, by their number from the inside out; 0 of walls with fewer.
+    potential_rates : tuple of ndarray
+        Their derivatives by time, V per transit, where instants are missing that they would be taken from; else none.
     """
 
     u: FloatArray
@@ -99,6 +107,7 @@ class AxialMotion(NamedTuple):
     v_z: FloatArray
     u_z: FloatArray
     potentials: tuple[FloatArray, ...]
+    potential_rates: tuple[FloatArray, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -175,8 +184,7 @@ class ModalSolution:
     @property
     def whole(self) -> bool:
         """Whether the history has every instant of the run: a saved one may have been thinned, cut or interpolated since."""
-        step, steps = self.settings.time_step, self.settings.steps
-        return self.time.size == steps + 1 and bool(np.all(np.abs(self.time - step * np.arange(steps + 1)) <= 1e-6 * step))
+        return is_whole(self.time, self.settings)
 
     def need_every_instant(self, what: str) -> None:
         """Refuse *what* is asked for where instants are missing; InputError."""

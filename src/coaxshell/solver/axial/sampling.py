@@ -28,6 +28,9 @@ from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.laminate import require_axial_constants
 
+MOST_WAVES = 100_000
+"""The most axial wavenumbers of a run."""
+
 
 @dataclass(frozen=True, eq=False)
 class AxialSampling:
@@ -119,7 +122,14 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
         )
     if not fronts:
         return AxialSampling(math.pi / highest, settings.modes, highest)  # the next wavenumber would be 2 k_max
-    return AxialSampling(given or needed, settings.modes, highest)
+    period = given or needed
+    waves = period * highest / (2.0 * math.pi)
+    if waves > MOST_WAVES:
+        found = f"an axial period of {period * length:.3g} m asks for {waves:.2g} axial wavenumbers, at most {MOST_WAVES:,} are solved"
+        if given is not None:
+            raise InputError("axial_period", found, "use a shorter one")
+        raise InputError("stations", found, "use nearer stations, a shorter run, or fewer axial_modes")
+    return AxialSampling(period, settings.modes, highest)
 
 
 def fastest_wave(problem: Problem, highest: float) -> float:

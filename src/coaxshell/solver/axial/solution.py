@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution
+from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution, is_whole
 from coaxshell.structure.shell_model import FIELDS
 
 
@@ -38,13 +39,14 @@ class SpatialSolution:
         The axial wavenumbers that were added up.
     fields : dict of str to ndarray, shape (stations, shells, parities, M + 1, T)
         Of :data:`coaxshell.structure.shell_model.FIELDS` and, "potential 0", ..., of the piezoelectric layers' open-circuit voltages; those
-        that are not there are zero, as u at stations in the source's plane.
+        that are not there are zero, as u at stations in the source's plane. Where instants are missing, "potential_rate 0", ... are the
+        derivatives of these voltages by time.
     estimates : Estimates
         Relative to the answer in the norm over the surface of all of an axial period.
     warnings : tuple of str
     timings : dict
     spectra : StationSpectra or None
-        Transforms of the motion at the stations, as long as the run is in this process; not saved.
+        Transforms of the motion at the stations, where they are no more than half a gigabyte.
     """
 
     problem: Problem
@@ -62,14 +64,32 @@ class SpatialSolution:
         """z of the stations, m, shape (stations,)."""
         return np.array(self.settings.stations)
 
+    @property
+    def whole(self) -> bool:
+        """Whether the histories have every instant of the run."""
+        return is_whole(self.time, self.settings)
+
+    def some(self, stations: Sequence[int]) -> SpatialSolution:
+        """Return the solution of the run with some of its stations alone, by number."""
+        chosen = list(stations)
+        settings = replace(self.settings, stations=tuple(self.settings.stations[i] for i in chosen))
+        spectra = self.spectra
+        if spectra is not None:
+            spectra = StationSpectra(spectra.grid, spectra.normal[chosen], spectra.tangential[chosen])
+        fields = {name: values[chosen] for name, values in self.fields.items()}
+        return replace(self, settings=settings, fields=fields, spectra=spectra)
+
     def at(self, station: int) -> ModalSolution:
         """Return what a station by its number does as if it were a run of its own."""
         found = self.fields
         zero = np.zeros(found["w"].shape[1:])
         of = {name: found[name][station] if name in found else zero for name in FIELDS}
-        layers = sum(name.startswith("potential") for name in found)
-        potentials = tuple(found[f"potential {number}"][station] for number in range(layers))
-        motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials)
+        layers = range(sum(name.startswith("potential ") for name in found))
+        potentials, rates = (
+            tuple(found[f"{name} {number}"][station] for number in layers if f"{name} {number}" in found)
+            for name in ("potential", "potential_rate")
+        )
+        motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates)
         return ModalSolution(
             self.problem, self.settings, self.time, of["w"], of["v"], self.estimates, self.warnings, self.timings, along=motion
         )
