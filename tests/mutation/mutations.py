@@ -76,6 +76,22 @@ MUTATIONS = (
         "numerics/test_bessel_ratios.py",
     ),
     Mutation(
+        "bessel-sample-exponent",
+        "numerics/bessel_samples.py",
+        "exponent += np.log(size)",
+        "exponent -= np.log(size)",
+        "what is taken out of Bessel functions at samples of orders",
+        "numerics/test_bessel_samples.py",
+    ),
+    Mutation(
+        "band-limit-steep",
+        "solver/step_error.py",
+        "change = np.minimum(change, _NARROW_SHARE * top)",
+        "change = np.maximum(change, _NARROW_SHARE * top)",
+        "printed error of the step under spectra that fall off steeply",
+        "solver/test_estimates.py",
+    ),
+    Mutation(
         "annulus-coupling",
         "acoustics/operators.py",
         "ab=eps_i * (inner.disc - inner.exterior)",
