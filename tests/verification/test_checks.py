@@ -8,6 +8,7 @@ import pytest
 from coaxshell.acoustics import operators
 from coaxshell.apps.verification import checks, chosen, run
 from coaxshell.apps.verification.bench import Bench, bare_double_shell, tables
+from coaxshell.numerics.modes import Modes
 from coaxshell.structure.thin_wall import ThinWall
 
 
@@ -52,6 +53,13 @@ def test_a_wrong_wall_is_seen(monkeypatch):
         "independent",
         "form-function",
     }
+
+
+def test_a_wrong_wavenumber_is_seen(monkeypatch):
+    right = Modes.kappa
+    monkeypatch.setattr(Modes, "kappa", lambda modes, slowness, s: right(Modes(modes.orders, 1.001 * modes.wavenumber), slowness, s))
+    names = {"axial-limits", "axial-wavenumbers", "independent-stations", "spherical-histories"}
+    assert failing(*names) == names
 
 
 def test_the_package_carries_its_references():

@@ -21,7 +21,7 @@ from coaxshell.numerics.arrays import FloatArray
 
 ANGLES = (0.0, 60.0, 180.0)
 START = SMOOTH_SPHERE.distance - 1.0
-THEORY = 'theory, "Axial wavenumber"'
+THEORY = "theory 4"
 FAR = "plane wave in two dimensions; the rest falls as 1/R0"
 EARLY = "Fermat's principle: front, or membrane wave from where it passed"
 
