@@ -74,6 +74,8 @@ def export_paraview(
         An argument is not allowed, the folder exists, or it cannot be written.
     """
     check_grid(half_width, points, displaced)
+    if response.stations is not None:
+        raise InputError("response", "is of three dimensions: ParaView is given runs in two", "export its histories as CSV or for MATLAB")
     index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
     seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
     shown, kept = 3.0 * response.time.size, 1.0 * len(_arrays(response)) * len(response.system.shells) * len(index)

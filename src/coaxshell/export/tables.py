@@ -17,7 +17,7 @@ from coaxshell.numerics.files import replacing
 from coaxshell.numerics.memory import words_of
 from coaxshell.plotting.saving import known_suffix
 from coaxshell.response import tables
-from coaxshell.response.quantities import columns
+from coaxshell.response.quantities import Quantity, columns
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
@@ -30,7 +30,7 @@ _HELD = 5.0
 
 def history_table(response: Response) -> dict[str, npt.NDArray[np.float64]]:
     """Return all histories at head and tail as columns by names with units; see :func:`coaxshell.response.tables.history_table`."""
-    return tables.history_table(response.motion)
+    return response.history_table()
 
 
 def export_csv(response: Response, path: str | Path) -> Path:
@@ -58,6 +58,7 @@ def export_mat(response: Response, path: str | Path) -> Path:
     Variables: ``time`` (a/c), ``time_seconds``, ``head_angle`` (degrees), ``scenario`` (TOML), ``version``, ``shells``: a struct array
     with radius (m), the quantities that tables hold (stress, displacement, voltages, ...; SI) at [head, tail] (T x 2), and
     ``modal_normal``, ``modal_tangential`` (m, parities x orders x T); ``absorber_displacement`` (m, absorbers x T) where there are any.
+    In three dimensions ``stations`` (z, m) and, in the shells, a last dimension of stations and ``modal_axial``.
 
     Raises
     ------
@@ -77,6 +78,8 @@ def export_mat(response: Response, path: str | Path) -> Path:
         "version": f"coaxshell {__version__}",
         "shells": _shell_structs(response),
     }
+    if response.stations is not None:
+        content["stations"] = response.stations
     if response.system.absorber_list:
         content["absorber_displacement"] = np.asarray(response.absorber_displacement())
     with replacing(target) as partial, partial.open("wb") as file:
@@ -86,8 +89,9 @@ def export_mat(response: Response, path: str | Path) -> Path:
 
 def _require_room(response: Response) -> None:
     """Raise InputError if the modal amplitudes of a run do not fit into a MATLAB file, or into memory while it is written."""
-    modal = 2.0 * response.solution.normal.nbytes
-    what = f"{response.time.size:,} instants and orders 0 to {response.modes:,}"
+    stations = 1 if response.stations is None else response.stations.size
+    modal = (2.0 if response.stations is None else 3.0) * response.solution.normal.nbytes * stations
+    what = f"{response.time.size:,} instants and orders 0 to {response.modes:,}" + (f", {stations} stations" if stations > 1 else "")
     if modal > _LARGEST:
         problem = f"modal amplitudes of {what}, {words_of(modal)}, do not fit a .mat file"
         raise InputError("path", problem, f"at most {words_of(_LARGEST)}: use a coarser time step, or Response.thin")
@@ -95,14 +99,16 @@ def _require_room(response: Response) -> None:
 
 
 def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
-    structs = []
+    structs, spatial = [], response.stations is not None
     for shell, described in enumerate(response.system.shells):
         struct: dict[str, Any] = {"radius": described.radius, "rigid": isinstance(described, RigidShell)}
         given = [] if struct["rigid"] else tables.quantities_of(response.motion, shell)
-        for quantity in columns():
-            struct[quantity.name] = tables.at_ends(response.motion, quantity, shell) if quantity in given else np.empty((0, 2))
+        for quantity in columns(3 if spatial else 2):
+            struct[quantity.name] = _at_ends(response, quantity, shell) if quantity in given else np.empty((0, 2))
         struct["modal_normal"] = np.asarray(response.modal(shell, "displacement"))
         struct["modal_tangential"] = np.asarray(response.modal(shell, "tangential"))
+        if spatial:
+            struct["modal_axial"] = np.asarray(response.modal(shell, "axial_displacement"))
         structs.append(struct)
     # Equal fields in one object array become a MATLAB struct array.
     names = [(name, object) for name in structs[0]]
@@ -111,3 +117,10 @@ def _shell_structs(response: Response) -> npt.NDArray[np.object_]:
         for name, value in struct.items():
             table[name][0, number] = value
     return table
+
+
+def _at_ends(response: Response, quantity: Quantity, shell: int) -> npt.NDArray[np.float64]:
+    """Return a quantity at head and tail, (T, 2), in three dimensions with a last dimension of stations."""
+    if response.stations is None:
+        return tables.at_ends(response.motion, quantity, shell)
+    return np.stack([tables.at_ends(motion, quantity, shell) for motion in response.motions], axis=-1)

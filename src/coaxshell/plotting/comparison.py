@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
 from coaxshell.model.prefixes import against
-from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
+from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, at_station, history, mark_peak
 from coaxshell.plotting.names import literal
 from coaxshell.plotting.scales import common_scales
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
@@ -24,7 +24,7 @@ _LOOKS = (("blue", "solid"), ("orange", (0, (5.0, 1.6))), ("green", (0, (1.5, 1.
 Curves = dict[str, History]
 
 
-def figure_comparison(responses: Mapping[str, Response], quantity: str = "stress") -> Figure:
+def figure_comparison(responses: Mapping[str, Response], quantity: str = "stress", station: float | str | None = None) -> Figure:
     """Draw one quantity at head and tail of the innermost and outermost shell for several systems.
 
     All panels share one scale. The circles mark the largest magnitudes; above each panel stands what the first system's is of the
@@ -36,6 +36,8 @@ def figure_comparison(responses: Mapping[str, Response], quantity: str = "stress
         By the name in the legend, at most five; the last one is what the others are compared with.
     quantity : str
         One of :data:`QUANTITIES`.
+    station : float or str, optional
+        Axial position of runs in three dimensions, m; the first of each unless given. Runs in two may stand beside them.
 
     Returns
     -------
@@ -49,7 +51,8 @@ def figure_comparison(responses: Mapping[str, Response], quantity: str = "stress
     if not 1 <= len(responses) <= len(_LOOKS):
         raise InputError("responses", f"{len(responses)} systems cannot be drawn", f"give 1 to {len(_LOOKS)}")
     ends = _common_ends(responses)
-    panels = {(end, point): _curves(responses, quantity, end, turn) for end in ends for point, turn in _POINTS}
+    places = {name: at_station(response, station if response.stations is not None else None) for name, response in responses.items()}
+    panels = {(end, point): _curves(responses, places, quantity, end, turn) for end in ends for point, turn in _POINTS}
     values = [curve.values for curves in panels.values() for curve in curves.values()]
     (scale,) = common_scales([(float(min(v.min() for v in values)), float(max(v.max() for v in values)))])
     in_transits = len({round(curve.milliseconds, 9) for curve in next(iter(panels.values())).values()}) == 1
@@ -68,8 +71,9 @@ def figure_comparison(responses: Mapping[str, Response], quantity: str = "stress
                     ax.set_ylabel(QUANTITIES[quantity].label)
                 if row == len(ends) - 1:
                     ax.set_xlabel(TIME_LABEL if in_transits else "time (ms)")
-        figure.suptitle(_title(list(responses), quantity), fontsize=10)
-        figure.legend(handles=_legend(list(responses)), loc="outside lower center", ncols=len(responses) + 1)
+        names = [name if (z := places[name]) is None else f"{name}, z = {z:g} m" for name in responses]
+        figure.suptitle(_title(names, quantity), fontsize=10)
+        figure.legend(handles=_legend(names), loc="outside lower center", ncols=len(responses) + 1)
     return figure
 
 
@@ -103,8 +107,8 @@ def plot_comparison(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Ax
     return ax
 
 
-def _curves(responses: Mapping[str, Response], quantity: str, end: str, turn: float) -> Curves:
-    return {name: history(r, quantity, end, r.system.sources[0].angle + turn) for name, r in responses.items()}
+def _curves(responses: Mapping[str, Response], places: Mapping[str, float | None], quantity: str, end: str, turn: float) -> Curves:
+    return {name: history(r, quantity, end, r.system.sources[0].angle + turn, places[name]) for name, r in responses.items()}
 
 
 def _common_ends(responses: Mapping[str, Response]) -> list[str]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model import Shell
 from coaxshell.model.places import shell_phrase
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 
@@ -29,19 +30,23 @@ def figure_curves(
     quantity: str = "stress",
     shells: Sequence[int | str] | int | str | None = None,
     angle: Sequence[float] | float = (0.0, 180.0),
+    station: Any = None,
 ) -> Figure:
     """Draw one quantity of one run or several at some angles of some shells.
 
     Parameters
     ----------
     responses : Response, or mapping of name to Response
-        At most four; each has its own kind of line.
+        At most four; each has its own kind of line. So has each station of a run in three dimensions.
     quantity : str
         One of :data:`QUANTITIES`.
     shells : list of int or str, optional
         Shells by name or number; all that are elastic unless given. Runs that lack one of them leave its panel.
     angle : list of float
         Degrees from the direction theta = 0, at most five; each has its own colour.
+    station : float, str, or list of them, optional
+        Axial positions of runs in three dimensions, m. Of more than can be told apart, unless they are named, those that are drawn are
+        spread over all of them.
 
     Returns
     -------
@@ -54,10 +59,14 @@ def figure_curves(
     """
     runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
     angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
-    for where, count, most in (("responses", len(runs), len(_DASHES)), ("angle", len(angles), len(_COLOURS))):
+    sections = _sections(runs, station)
+    for where, count, most in (
+        ("station" if len(sections) > len(runs) else "responses", len(sections), len(_DASHES)),
+        ("angle", len(angles), len(_COLOURS)),
+    ):
         if not 1 <= count <= most:
             raise InputError(where, f"{count} cannot be drawn", f"give 1 to {most}, so that they can be told apart")
-    panels = {title: curves for title, curves in _panels(runs, quantity, shells, angles).items() if curves}
+    panels = {title: curves for title, curves in _panels(sections, quantity, shells, angles).items() if curves}
     if not panels:
         raise InputError("shells", f"no run has the {quantity.replace('_', ' ')} of these shells", "choose others, or another quantity")
     in_transits = len({round(curve.milliseconds, 9) for curves in panels.values() for curve in curves.values()}) == 1
@@ -69,7 +78,7 @@ def figure_curves(
             ax.set_title(title, loc="left", fontweight="bold")
             ax.set_ylabel(QUANTITIES[quantity].label)
         axes[-1].set_xlabel(TIME_LABEL if in_transits else "time (ms)")
-        handles = _legend([name for name in runs if name], angles)
+        handles = _legend([name for name in sections if name], angles)
         figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 6))
     return figure
 
@@ -94,12 +103,46 @@ def plot_curves(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Axes:
     return ax
 
 
+class _Section(NamedTuple):
+    """What one kind of line shows: a run, and its station in three dimensions."""
+
+    response: Response
+    station: float | None
+
+
+def _sections(runs: Mapping[str, Response], station: Any) -> dict[str, _Section]:
+    """Return the runs, one in three dimensions once for each of its stations, by the names of the legend."""
+    found: dict[str, _Section] = {}
+    for name, response in runs.items():
+        if response.stations is None:
+            found[name] = _Section(response, None)
+            continue
+        chosen = _spread(response.stations, max(1, len(_DASHES) // len(runs)))
+        if station is not None:
+            from coaxshell.response.stations import chosen_stations
+
+            chosen = [response.stations[i] for i in chosen_stations(response.stations, station)[0]]
+        for z in chosen:
+            found[f"{name}, z = {z:g} m" if name and len(runs) > 1 else f"z = {z:g} m"] = _Section(response, float(z))
+    return found
+
+
+def _spread(stations: FloatArray, most: int) -> list[float]:
+    """Return at most so many stations, the first and the last along the axis among them."""
+    if stations.size <= most:
+        return list(stations)
+    if most == 1:
+        return [float(stations[0])]
+    ordered = np.sort(stations)
+    return [float(ordered[round(i)]) for i in np.linspace(0, stations.size - 1, most)]
+
+
 def _panels(
-    runs: Mapping[str, Response], quantity: str, shells: Sequence[int | str] | int | str | None, angles: Sequence[float]
+    runs: Mapping[str, _Section], quantity: str, shells: Sequence[int | str] | int | str | None, angles: Sequence[float]
 ) -> dict[str, Curves]:
     """Return the curves of each shell by its name within a sentence."""
     panels: dict[str, Curves] = {}
-    for run, response in runs.items():
+    for run, (response, station) in runs.items():
         walls = response.system.shells
         wanted = range(len(walls)) if shells is None else [shells] if isinstance(shells, int | str) else shells
         for index in (response.system.shell_index(shell) for shell in wanted):
@@ -109,7 +152,7 @@ def _panels(
             panel = panels.setdefault(title[:1].upper() + title[1:], {})
             for angle in angles:
                 try:
-                    panel[run, angle] = history(response, quantity, index, angle)
+                    panel[run, angle] = history(response, quantity, index, angle, station)
                 except InputError:
                     if (len(runs) == 1 and shells is not None) or quantity not in QUANTITIES:
                         raise

@@ -92,14 +92,35 @@ class History:
         return bool(len(self.values) > 1 and np.argmax(np.abs(self.values)) == len(self.values) - 1)
 
 
-def history(response: Response, quantity: str, shell: int | str, angle: float) -> History:
-    """Return one curve of a response in drawn units; InputError for an unknown quantity."""
+def history(response: Response, quantity: str, shell: int | str, angle: float, station: float | None = None) -> History:
+    """Return one curve of a response in drawn units, of a station of three dimensions; InputError for an unknown quantity."""
     drawn = _quantity(quantity)
-    array: Any = getattr(response, drawn.method)(shell, angle=[angle], **drawn.options).isel(angle=0)
+    place = {} if station is None else {"station": station}
+    array: Any = getattr(response, drawn.method)(shell, angle=[angle], **drawn.options, **place).isel(angle=0)
     time = np.asarray(array["time"], dtype=np.float64)
     seconds = np.asarray(array["time_seconds"], dtype=np.float64)
     milliseconds = 1e3 * float(seconds[-1] / time[-1]) if time[-1] > 0 else 1.0
     return History(time, drawn.per_si * np.asarray(array, dtype=np.float64), milliseconds)
+
+
+def at_station(response: Response, station: float | str | None) -> float | None:
+    """Return an axial position of a run in three dimensions (m), its first unless one is given; None in two.
+
+    Raises
+    ------
+    InputError
+        The run has no such station, or none at all.
+    """
+    if response.stations is None:
+        if station is not None:
+            raise InputError("station", f"{station} belongs to three dimensions", "leave it out for runs in two")
+        return None
+    if station is None:
+        return float(response.stations[0])
+    from coaxshell.response.stations import chosen_stations
+
+    chosen, _ = chosen_stations(response.stations, station)
+    return float(response.stations[chosen[0]])
 
 
 def plot_history(
@@ -108,6 +129,8 @@ def plot_history(
     shell: int | str = "outer",
     angle: float = 0.0,
     ax: Axes | None = None,
+    *,
+    station: float | None = None,
     **line: Any,
 ) -> Axes:
     """Draw one quantity at one point of one shell against time.
@@ -123,6 +146,8 @@ def plot_history(
         Degrees from the source direction: 0 is the head, 180 the tail.
     ax : Axes, optional
         Where to draw; a new figure when left out.
+    station : float, optional
+        Of a run in three dimensions, m; its first unless given.
     **line
         Passed to ``ax.plot``.
 
@@ -131,7 +156,7 @@ def plot_history(
     Axes
     """
     drawn = _quantity(quantity)
-    curve = history(response, quantity, shell, angle)
+    curve = history(response, quantity, shell, angle, at_station(response, station))
     with style():
         if ax is None:
             ax = new_figure(COLUMN_WIDTH, 2.4).add_subplot()

@@ -90,6 +90,16 @@ class Response:
         return len(self.solution.problem.shells)
 
     @property
+    def stations(self) -> FloatArray | None:
+        """Axial positions at which a run in three dimensions answers, m, shape (stations,); None in two."""
+        return None
+
+    @property
+    def motions(self) -> Sequence[WallMotion]:
+        """What quantities of shells are read from, one a station in three dimensions."""
+        return [self.motion]
+
+    @property
     def time(self) -> FloatArray:
         """Instants in transits a/c_e, shape (T,)."""
         return self.solution.time
@@ -322,10 +332,14 @@ class Response:
 
         Columns carry their units; they are those of :func:`coaxshell.export.export_csv`.
         """
-        columns = history_table(self.motion)
+        columns = self.history_table()
         time = columns.pop("time (a/c)")
         rows = xr.Dataset({name: ("time (a/c)", values) for name, values in columns.items()}, coords={"time (a/c)": time})
         return rows.to_dataframe()
+
+    def history_table(self) -> dict[str, FloatArray]:
+        """Return all histories at head and tail as columns by names with units; see :func:`coaxshell.response.tables.history_table`."""
+        return history_table([self.motion])
 
     def save(self, path: str | Path, *, compression: bool = False) -> Path:
         """Write everything to one self-describing NetCDF file, whole or not at all, and return its path.

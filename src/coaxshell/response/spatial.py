@@ -7,12 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy.typing as npt
+
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import supplied
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.response import storage
-from coaxshell.response.response import Response
-from coaxshell.response.spatial_summary import SpatialSummary, summarise_stations
+from coaxshell.response import arguments, storage
+from coaxshell.response.response import HEAD_AND_TAIL, Response
+from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
 from coaxshell.response.stations import StationMotion, Transforms, chosen_stations, joined
+from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned_stations
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.without_fields import WithoutFields
@@ -35,22 +39,25 @@ class SpatialResponse(WithoutFields, Response):
     Attributes
     ----------
     spatial : SpatialSolution
-    motions : list of StationMotion
-        What quantities of shells are read from, one a station.
     """
 
     def __init__(self, spatial: SpatialSolution) -> None:
         require_finite_stations(spatial)
         self.spatial = spatial
         transforms = Transforms(spatial)
-        self.motions = [StationMotion(transforms, i) for i in range(spatial.stations.size)]
-        super().__init__(self.motions[0].solution)
-        self.motion = self.motions[0]
+        self._motions = [StationMotion(transforms, i) for i in range(spatial.stations.size)]
+        super().__init__(self._motions[0].solution)
+        self.motion = self._motions[0]
 
     @property
     def stations(self) -> FloatArray:
         """Axial positions at which the run answers, m, shape (stations,)."""
         return self.spatial.stations
+
+    @property
+    def motions(self) -> list[StationMotion]:
+        """What quantities of shells are read from, one a station."""
+        return self._motions
 
     def at(self, station: Any) -> SpatialResponse:
         """Return the response at some of its stations alone: one axial position (m or text) or several."""
@@ -90,8 +97,26 @@ class SpatialResponse(WithoutFields, Response):
         """
         return storage.save(self.spatial, path, compression=compression)
 
+    def history_table(self) -> dict[str, FloatArray]:
+        """Return all histories at head and tail of all stations as columns by names with z and units."""
+        return history_table(self.motions, self.stations)
+
+    def plot(
+        self,
+        quantity: str = "stress",
+        shell: int | str | Sequence[int | str] | None = None,
+        angle: npt.ArrayLike = HEAD_AND_TAIL,
+        *,
+        station: Any = None,
+    ) -> Any:
+        """Return a figure of a quantity against time at some stations, at most four; see :meth:`Response.plot`.
+
+        Of more than four, unless they are named, those that are drawn are spread over all of them.
+        """
+        return supplied("figure_curves")(self, quantity, shell, arguments.angles(angle), station)
+
     def _repr_html_(self) -> str:
-        return self.summary()._repr_html_()
+        return station_card(self.summary(), self.system)
 
     def __repr__(self) -> str:
         plain = super().__repr__().removesuffix(">").replace("<Response", "<SpatialResponse")

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import Any
 
+from coaxshell.model.display.card import card
 from coaxshell.model.prefixes import engineering
+from coaxshell.model.system import System
 from coaxshell.response.quantities import summary_rows
 from coaxshell.response.stations import StationMotion
 from coaxshell.response.summary import Summary, summarise
@@ -18,6 +20,8 @@ from coaxshell.solver.electrodes import Segment
 _HEADING = ("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]", "z [m]")
 _PER_STATION = ("stress", "von_mises_stress", "relative_displacement")
 """Largest magnitudes that are told of each station."""
+_ACROSS = 6
+"""Stations that stand side by side in a table; more of them below each other."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +77,28 @@ class SpatialSummary:
     def __str__(self) -> str:
         plain = self.each[0].to_dict()
         warnings = (f"warning: {text}" for text in plain["warnings"])
-        along = ["", *aligned(self._station_rows(), left=2)] if len(self.stations) > 1 else []
-        return "\n".join([*title_lines(plain), "", *aligned([_HEADING, *self._rows()], left=2), *along, "", *notes(plain), *warnings])
+        along = ["", *self._along()] if len(self.stations) > 1 else []
+        return "\n".join(
+            [*title_lines(plain), self.waves, "", *aligned([_HEADING, *self.rows()], left=2), *along, "", *self.notes(), *warnings]
+        )
 
-    def _rows(self) -> list[tuple[str, ...]]:
+    @property
+    def waves(self) -> str:
+        """The line that says which axial wavenumbers were added up."""
+        settings = self.each[0].settings
+        period = engineering(settings["axial_period"], "m")
+        return f"three dimensions: axial wavenumbers up to {settings['axial_modes']:g} (times a), period {period}"
+
+    def notes(self) -> list[str]:
+        """Return the lines below the table: what the largest voltages are, estimated errors of the whole, what is left out."""
+        plain = self.each[0].to_dict()
+        shells = [{**shell, **largest} for shell, largest in zip(plain["shells"], self.largest, strict=True)]
+        rates = any("shell_velocity" in largest for largest in self.largest)
+        left_out = "velocity and acceleration of shells are read by name: their transforms are not at hand, which takes as long as the run"
+        return [*notes({**plain, "shells": shells}), *([] if rates or not shells else [left_out])]
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Return the rows of the table: shell, what, largest value, time, angle and z, as text."""
         rows: list[tuple[str, ...]] = []
         labels = {key: (label, unit) for key, label, unit in summary_rows(3)}
         for shell in self.largest:
@@ -87,8 +109,8 @@ class SpatialSummary:
                     rows.append((shell["name"], label, engineering(peak["value"], unit), *place, f"{peak['station']:g}"))
         return rows
 
-    def _station_rows(self) -> list[tuple[str, ...]]:
-        """Return the table of what is largest at each station, one column a station."""
+    def _along(self) -> list[str]:
+        """Return the table of what is largest at each station: a column a station, or a row of many."""
         rows: list[tuple[str, ...]] = [("shell", "largest anywhere at z =", *(f"{z:g} m" for z in self.stations))]
         labels = {key: (label, unit) for key, label, unit in summary_rows(3) if key in _PER_STATION}
         plain = [summary.to_dict()["shells"] for summary in self.each]
@@ -97,7 +119,10 @@ class SpatialSummary:
                 if shell.get(key) is not None:
                     values = (engineering(one[i][key]["value"], unit) for one in plain)
                     rows.append((shell["name"], label.removesuffix(" anywhere"), *values))
-        return rows
+        if len(self.stations) <= _ACROSS:
+            return aligned(rows, left=2)
+        heading = ("z", *(f"{shell} {label}" for shell, label, *_ in rows[1:]))
+        return aligned([heading, *zip(*(row[2:] for row in rows), strict=True)], left=0)
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"
@@ -106,6 +131,21 @@ class SpatialSummary:
 def _peak(value: Any) -> dict[str, Any] | None:
     """Return a peak, or a bare number as one without time and place."""
     return value if value is None or isinstance(value, dict) else {"value": value}
+
+
+def station_card(found: SpatialSummary, system: System) -> str:
+    """Return the drawing of the system that was solved beside its peaks over all stations, error estimates and warnings, as HTML."""
+    columns = {"stress": "Pa", "axial_stress": "Pa", "von_mises_stress": "Pa", "relative_displacement": "m"}
+    rows = [("", *("hoop stress: anywhere", "at z", "axial stress", "at z", "von Mises stress", "at z", "relative displacement", "at z"))]
+    for shell in found.largest:
+        pairs = ((engineering(shell[key]["value"], unit), f"{shell[key]['station']:g} m") for key, unit in columns.items())
+        rows.append((shell["name"], *(cell for pair in pairs for cell in pair)))
+    plain = found.each[0].to_dict()
+    stations = ", ".join(f"{z:g}" for z in found.stations)
+    combined = [(shell["name"], shell["errors"]["stress"]["combined"]) for shell in plain["shells"]]
+    told = ", ".join(f"{name} {error:.1e}" for name, error in combined if error is not None)
+    lines = [title_lines(plain)[1], f"{found.waves}; stations at z = {stations} m", f"estimated relative error of the stress: {told}"]
+    return card(system, found.each[0].title or "unnamed system", rows, [*lines, *(f"warning: {text}" for text in found.warnings)])
 
 
 def summarise_stations(

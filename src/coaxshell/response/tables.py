@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from coaxshell.model import RigidShell
@@ -16,18 +18,39 @@ from coaxshell.response.wall_motion import WallMotion
 _POINTS = (("head", 0.0), ("tail", 180.0))
 
 
-def history_table(motion: WallMotion) -> dict[str, FloatArray]:
+def history_table(motions: Sequence[WallMotion], stations: FloatArray | None = None) -> dict[str, FloatArray]:
     """Return all histories of a run at head and tail as columns: names with units, each of shape (T,).
 
     Time in transits and in seconds; for each elastic shell the quantities of the table that have columns (stress, displacement, ...) and,
     where it has them, sensor and actuator voltage, at the head (the first source's direction) and at the tail; displacement of each
-    absorber.
+    absorber. In three dimensions those of all stations, with z in their names.
+
+    Parameters
+    ----------
+    motions : sequence of WallMotion
+        One, or one a station.
+    stations : ndarray, shape (stations,), or None
+        z, m, in three dimensions.
     """
-    solution = motion.solution
+    solution = motions[0].solution
     system, time = solution.problem.system, solution.time
-    width = 2 + 2 * len(list(columns())) * len(system.shells) + len(system.absorber_list)
-    Cost(48.0 * width * time.size).require(f"a table of {width} columns and {time.size:,} rows", "run a coarser step or fewer absorbers")
+    many, dimensions = len(motions), 2 if stations is None else 3
+    width = 2 + 2 * many * len(list(columns(dimensions))) * len(system.shells) + len(system.absorber_list)
+    fewer = "run a coarser step or fewer absorbers" if stations is None else "run a coarser step, or name fewer stations"
+    Cost(48.0 * width * time.size).require(f"a table of {width} columns and {time.size:,} rows", fewer)
     found = {"time (a/c)": np.asarray(time, dtype=np.float64), "time (s)": np.asarray(time * solution.problem.scales.time)}
+    for number, motion in enumerate(motions):
+        at = "" if stations is None else f" z = {shortest(stations[number])} m"
+        found |= _at_station(motion, at)
+    if system.absorber_list:
+        for number, row in enumerate(np.asarray(absorber_displacement(solution), dtype=np.float64)):
+            found[f"absorber {number} displacement (m)"] = row
+    return found
+
+
+def _at_station(motion: WallMotion, at: str) -> dict[str, FloatArray]:
+    """Return the columns of one section, whose place stands in their names."""
+    system, found = motion.solution.problem.system, {}
     for shell, described in enumerate(system.shells):
         if isinstance(described, RigidShell):
             continue
@@ -35,11 +58,13 @@ def history_table(motion: WallMotion) -> dict[str, FloatArray]:
         for quantity in quantities_of(motion, shell):
             values = at_ends(motion, quantity, shell)
             for column, (point, _) in enumerate(_POINTS):
-                found[f"{label} {quantity.words} {point} ({quantity.unit})"] = values[:, column]
-    if system.absorber_list:
-        for number, row in enumerate(np.asarray(absorber_displacement(solution), dtype=np.float64)):
-            found[f"absorber {number} displacement (m)"] = row
+                found[f"{label} {quantity.words} {point}{at} ({quantity.unit})"] = values[:, column]
     return found
+
+
+def shortest(z: float) -> str:
+    """Return an axial position with all its digits and no more."""
+    return repr(float(z)).removesuffix(".0")
 
 
 def quantities_of(motion: WallMotion, shell: int) -> list[Quantity]:

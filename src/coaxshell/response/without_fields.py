@@ -8,7 +8,7 @@ from coaxshell.errors import InputError
 
 
 class WithoutFields:
-    """Refuse the fields of the fluids, and pictures, of a run in three dimensions."""
+    """Refuse the fields of the fluids, and the energy, of a run in three dimensions."""
 
     def pressure(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse it; InputError."""
@@ -29,10 +29,6 @@ class WithoutFields:
     def energy(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse it; InputError."""
         _refuse("energy")
-
-    def plot(self, *_: Any, **__: Any) -> NoReturn:
-        """Refuse it; InputError."""
-        _refuse("plot")
 
 
 def _refuse(name: str) -> NoReturn:
