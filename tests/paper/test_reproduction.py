@@ -19,8 +19,7 @@ from coaxshell.apps.paper.reproduction import VARIANTS, reproduce, write
 from coaxshell.apps.paper.reproduction import results as reading
 from coaxshell.apps.paper.reproduction import run as running
 from coaxshell.apps.paper.reproduction import work as working
-from coaxshell.apps.paper.reproduction.cost import part_cost
-from coaxshell.apps.paper.reproduction.plan import Part, groups, parts
+from coaxshell.apps.paper.reproduction.plan import Part, groups, part_cost, parts
 from coaxshell.apps.paper.slips import SLIPS
 from coaxshell.errors import InputError
 from coaxshell.numerics import memory

@@ -12,8 +12,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.plotting import FieldView, figure_comparison, save_figure
 from coaxshell.plotting.film import save_film
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import new_figure, style
+from coaxshell.plotting.style import literal, new_figure, style
 
 NAMES = ["$x_$", "a $ b", "$$", r"\frac{", "$\\undefined$", "tab\there", "\x1b[31m", "x^{", "_hidden", "#%&~{}", "$\ud800$"]
 

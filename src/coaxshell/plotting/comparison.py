@@ -9,9 +9,8 @@ from coaxshell.errors import InputError
 from coaxshell.model import Shell
 from coaxshell.model.prefixes import against
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, at_station, history, mark_peak
-from coaxshell.plotting.names import literal
 from coaxshell.plotting.scales import common_scales
-from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, literal, new_figure, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -20,8 +20,7 @@ from coaxshell.plotting.field_scales import (
     stress_unit,
 )
 from coaxshell.plotting.frames import FieldView, Frames
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import style
+from coaxshell.plotting.style import literal, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, literal, new_figure, style
 from coaxshell.plotting.units import pretty, scale
 
 if TYPE_CHECKING:

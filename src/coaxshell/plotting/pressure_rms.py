@@ -9,9 +9,8 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.plotting.histories import TIME_LABEL
-from coaxshell.plotting.names import literal
 from coaxshell.plotting.snapshots import headings
-from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, literal, new_figure, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,7 @@ import numpy as np
 
 from coaxshell.model.prefixes import PREFIXES, exponent_of
 from coaxshell.model.records.measures import Measures
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, literal, new_figure, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

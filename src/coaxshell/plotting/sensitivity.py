@@ -12,8 +12,7 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.model.naming import suggestion
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
+from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, literal, new_figure, style
 from coaxshell.plotting.units import scale
 
 if TYPE_CHECKING:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import new_figure
+from coaxshell.plotting.style import literal, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

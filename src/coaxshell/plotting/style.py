@@ -1,4 +1,4 @@
-"""Sizes and colours of all figures, applied in a context and never globally."""
+"""Sizes and colours of all figures, applied in a context and never globally; names as they are drawn."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+from coaxshell.numerics.texts import visible
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,3 +77,8 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 4.6) -> Figure:
     figure = NotebookFigure(style, figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def literal(name: str) -> str:
+    r"""Return a name as matplotlib draws it as it stands: ``$`` as ``\$``, what cannot be seen as �."""
+    return visible(name).replace("$", r"\$")

@@ -6,8 +6,7 @@ import io
 from typing import TYPE_CHECKING
 
 from coaxshell.apps.verification.rows import Curve, Panel, Sheet
-from coaxshell.plotting.names import literal
-from coaxshell.plotting.style import COLOURS, new_figure, style
+from coaxshell.plotting.style import COLOURS, literal, new_figure, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

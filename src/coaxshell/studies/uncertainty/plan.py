@@ -15,7 +15,7 @@ from coaxshell.solver.settings import Settings
 from coaxshell.studies.design import Design
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.uncertainty.distributions import Uncertain, coordinates_of, unit_points
-from coaxshell.studies.uncertainty.indices import blocks
+from coaxshell.studies.uncertainty.statistics import blocks
 
 FEWEST = 8
 MOST_RUNS = 1_000_000

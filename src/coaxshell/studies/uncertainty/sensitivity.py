@@ -20,9 +20,8 @@ from coaxshell.studies.execution import Execution, StudyKeywords, asked
 from coaxshell.studies.labelled import CASE, failures_text, labelled
 from coaxshell.studies.metrics import Metrics, metrics_of
 from coaxshell.studies.running import run_study
-from coaxshell.studies.uncertainty.indices import indices_with_intervals
 from coaxshell.studies.uncertainty.plan import Plan, plan_of
-from coaxshell.studies.uncertainty.statistics import STATISTICS, statistics_with_intervals
+from coaxshell.studies.uncertainty.statistics import STATISTICS, indices_with_intervals, statistics_with_intervals
 
 RUNS = "runs."
 """Before the name of a metric: its value in every run."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from coaxshell.apps.paper.claims.claim import Claim, Finding, Judged, Verdict, judge
-from coaxshell.apps.paper.claims.registry import claims
+from coaxshell.apps.paper.claims.claim import Claim, Finding, Judged, Verdict, claims, judge
 
 __all__ = ["Claim", "Finding", "Judged", "Verdict", "claims", "judge"]

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from coaxshell.apps.paper.claims import systems
-from coaxshell.apps.paper.claims.claim import Finding, graded
+from coaxshell.apps.paper.claims.claim import Finding, claim, graded
 from coaxshell.apps.paper.claims.measures import POINTS, extremum_near, named, onset, peak, rms, sentence, sentence_case, variation
-from coaxshell.apps.paper.claims.registry import claim
 from coaxshell.apps.paper.known_runs import Runs
 
 PEAK_INSTANTS = (1.2, 1.7, 3.1, 3.6)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from coaxshell.apps.paper import cases
 from coaxshell.apps.paper.claims import systems
-from coaxshell.apps.paper.claims.claim import Finding, graded
+from coaxshell.apps.paper.claims.claim import Finding, claim, graded
 from coaxshell.apps.paper.claims.measures import named, reduction, sentence, stress_changes
-from coaxshell.apps.paper.claims.registry import claim
 from coaxshell.apps.paper.known_runs import Runs
 from coaxshell.apps.paper.observed import Observed
 

@@ -6,9 +6,8 @@ import numpy as np
 
 from coaxshell.apps.paper.claims import systems
 from coaxshell.apps.paper.claims.active import falls_of
-from coaxshell.apps.paper.claims.claim import Finding, graded
+from coaxshell.apps.paper.claims.claim import Finding, claim, graded
 from coaxshell.apps.paper.claims.measures import named, onset, reduction, rms, sentence, sentence_case
-from coaxshell.apps.paper.claims.registry import claim
 from coaxshell.apps.paper.known_runs import Runs
 
 SHELLS = ("inner", "outer")

@@ -7,9 +7,8 @@ import numpy as np
 from coaxshell.apps.paper import cases
 from coaxshell.apps.paper.absorbers import SHOWN
 from coaxshell.apps.paper.claims import systems
-from coaxshell.apps.paper.claims.claim import Finding, graded
+from coaxshell.apps.paper.claims.claim import Finding, claim, graded
 from coaxshell.apps.paper.claims.measures import named, sentence, sentence_case
-from coaxshell.apps.paper.claims.registry import claim
 from coaxshell.apps.paper.claims.stiffness import displacement_change
 from coaxshell.apps.paper.known_runs import Runs
 from coaxshell.apps.paper.observed import Observed

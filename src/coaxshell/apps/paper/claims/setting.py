@@ -6,9 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from coaxshell.apps.paper.claims import systems
-from coaxshell.apps.paper.claims.claim import Finding, graded
+from coaxshell.apps.paper.claims.claim import Finding, claim, graded
 from coaxshell.apps.paper.claims.measures import change, named, sentence, stress_changes
-from coaxshell.apps.paper.claims.registry import claim
 from coaxshell.apps.paper.known_runs import Runs
 
 if TYPE_CHECKING:

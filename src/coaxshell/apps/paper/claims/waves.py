@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.apps.paper.claims import systems
-from coaxshell.apps.paper.claims.claim import Finding, graded
+from coaxshell.apps.paper.claims.claim import Finding, claim, graded
 from coaxshell.apps.paper.claims.measures import change, sentence_case
-from coaxshell.apps.paper.claims.registry import claim
 from coaxshell.apps.paper.fields import Fields
 from coaxshell.apps.paper.known_runs import Runs
 from coaxshell.numerics.arrays import FloatArray

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from coaxshell.apps.paper.reproduction.cost import require_room
-from coaxshell.apps.paper.reproduction.plan import Part, parts
+from coaxshell.apps.paper.reproduction.plan import Part, parts, require_room
 from coaxshell.apps.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims
 from coaxshell.apps.paper.reproduction.work import Job, carry_out
 from coaxshell.numerics.cost import Cost
