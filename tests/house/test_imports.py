@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -71,6 +72,11 @@ def test_the_check_sees_an_arrow_that_runs_the_wrong_way():
     assert {room_of(name) for name, _ in imported(source)} >= {"apps.cli", "response", "plotting"}
 
 
+def texts(path: Path) -> set[str]:
+    """Return the texts in a file: what a module's name may be made of."""
+    return {node.value for node in ast.walk(tree(path)) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+
+
 def arrows_between_files() -> dict[str, set[str]]:
     """Return which files each file imports: at its top, in functions, for types alone, or by a name given to the import system.
 
@@ -89,6 +95,8 @@ def arrows_between_files() -> dict[str, set[str]]:
                 found[name] |= whole & files.keys() | ({node.module} if whole - files.keys() else set())
             elif isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("import_module", "__import__", "Late"):
                 found[name] |= {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
+                begins = [argument.values[0].value for argument in node.args if isinstance(argument, ast.JoinedStr)]
+                found[name] |= {f"{begin}{end}" for begin in begins for end in texts(path)}
     return {name: wanted & files.keys() - {name} for name, wanted in found.items()}
 
 
@@ -118,6 +126,7 @@ def test_the_search_for_circles_finds_them():
     arrows = arrows_between_files()
     assert len(arrows) > 100
     assert "coaxshell.response.fields" in arrows["coaxshell.response.response"]  # a late one
+    assert "coaxshell.apps.cli.run" in arrows["coaxshell.apps.cli.app"]  # by a name that is made
     assert circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == [["b", "c"]]
 
 

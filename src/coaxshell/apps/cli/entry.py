@@ -15,10 +15,10 @@ import threading
 import traceback
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from coaxshell.apps.cli.output import give_up_stdout, plain_physics_warnings, prepare_streams, printable
+from coaxshell.apps.cli.progress import Interrupted
 from coaxshell.errors import InputError
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED, NOBODY_READS, TERMINATED = 0, 1, 2, 130, 141, 143
@@ -158,17 +158,3 @@ def termination() -> Iterator[Termination]:
         yield told
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-class Interrupted(Exception):  # noqa: N818 - not an error: the user pressed Ctrl-C
-    """Raised in place of KeyboardInterrupt by a command whose work so far is kept; its text says where and how to go on."""
-
-
-@contextmanager
-def kept(folder: Path, cases: int) -> Iterator[None]:
-    """Turn Ctrl-C into a sentence that says how many of the cases of a study a store holds."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        done = sum(1 for path in folder.glob("*.json") if path.name != "study.json")
-        raise Interrupted(f"interrupted; {done} of {cases} cases are kept in {str(folder)!r}: go on with --resume") from None

@@ -1,4 +1,4 @@
-"""Progress of a computation: a bar on a terminal, lines of per cent elsewhere, always on stderr."""
+"""Progress of a computation: a bar on a terminal, lines of per cent elsewhere, always on stderr; and its interruption, told."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coaxshell.numerics.progress import Progress
@@ -83,3 +84,17 @@ def _time_left(begun: float, done_then: float, done: float) -> str:
     seconds = round((time.monotonic() - begun) / (done - done_then) * (1.0 - done))
     hours, minutes = seconds // 3600, seconds % 3600 // 60
     return f"{hours} h {minutes} min" if hours else f"{minutes} min {seconds % 60} s" if minutes else f"{seconds} s"
+
+
+class Interrupted(Exception):  # noqa: N818 - not an error: the user pressed Ctrl-C
+    """Raised in place of KeyboardInterrupt by a command whose work so far is kept; its text says where and how to go on."""
+
+
+@contextmanager
+def kept(folder: Path, cases: int) -> Iterator[None]:
+    """Turn Ctrl-C into a sentence that says how many of the cases of a study a store holds."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        done = sum(1 for path in folder.glob("*.json") if path.name != "study.json")
+        raise Interrupted(f"interrupted; {done} of {cases} cases are kept in {str(folder)!r}: go on with --resume") from None

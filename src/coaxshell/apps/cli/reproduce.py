@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.apps.cli import options
-from coaxshell.apps.cli.entry import Interrupted
 from coaxshell.apps.cli.output import echo
-from coaxshell.apps.cli.progress import progress, tell_time
+from coaxshell.apps.cli.progress import Interrupted, progress, tell_time
 from coaxshell.apps.cli.running import settings_of
 from coaxshell.errors import InputError
 

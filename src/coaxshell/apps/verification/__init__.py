@@ -1,7 +1,8 @@
 """The conformance suite: checks of the package against theory, reference values and independent methods, and other codes against it."""
 
+from coaxshell.apps.verification.checks import checks, chosen
 from coaxshell.apps.verification.files import write_report
-from coaxshell.apps.verification.registry import Check, check, checks, chosen
+from coaxshell.apps.verification.registry import Check, check
 from coaxshell.apps.verification.rows import Curve, Panel, Row, Sheet
 from coaxshell.apps.verification.suite import Report, Result, run
 

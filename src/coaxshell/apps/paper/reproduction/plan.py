@@ -1,4 +1,4 @@
-"""The parts of the reproduction, each independent of the others, and what they cost: their runs, and what fields, pictures and films add."""
+"""The parts of the reproduction, each independent of the others, and what they cost: runs, and what fields, pictures and films add."""
 
 from __future__ import annotations
 
