@@ -17,6 +17,7 @@ ORDER = (
     "spherical_reference",
     "independent_stations",
     "stations",
+    "inclined_waves",
     "engines",
     "energy",
     "time_step",
