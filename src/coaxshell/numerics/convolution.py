@@ -16,6 +16,8 @@ from coaxshell.numerics.laplace_grid import WORKERS
 
 _BY_MATRIX = 16
 """Steps up to which a product with the Toeplitz matrix is faster than FFTs."""
+_ALONE = 2**16
+"""Numbers up to which one thread transforms them faster than several."""
 
 
 class KernelTable:
@@ -81,9 +83,9 @@ class History:
     step : int
         n, of the next step.
     inputs : tuple of ndarray, each of shape (inputs, parities, M + 1, count)
-        x_0 to x_{n-1} as they were pushed, block by block.
+        x_0 to x_{n-1}: blocks as they were pushed, joined to as many as the binary digits of their number say.
     pending : tuple of (int, ndarray of shape (outputs, parities, M + 1, length))
-        First step and sum of every contribution that reaches beyond n, in the order in which they were made.
+        Spans of steps that reach beyond n, each within the one before it: first step, and sum of all that has been given to its steps.
     """
 
     step: int = 0
@@ -109,12 +111,11 @@ class HistorySum:
 
         ``count`` is at most the length of the blocks pushed.
         """
-        outputs, _, modes = self._table.shape
-        total = np.zeros((outputs, self._parities, modes, count))
-        for start, values in history.pending:
-            part = values[..., history.step - start : history.step - start + count]
-            total[..., : part.shape[-1]] += part
-        return total
+        if not history.pending:
+            outputs, _, modes = self._table.shape
+            return np.zeros((outputs, self._parities, modes, count))
+        start, given = history.pending[-1]
+        return given[..., history.step - start : history.step - start + count]
 
     def push(self, history: History, values: FloatArray) -> tuple[History, FloatArray]:
         """Append the inputs of a block of steps and advance.
@@ -133,24 +134,36 @@ class HistorySum:
             What these inputs give to their own steps, k_0 included.
         """
         count = values.shape[-1]
-        step, inputs = history.step + count, (*history.inputs, values)
-        pending = tuple((start, made) for start, made in history.pending if start + made.shape[-1] > step)
+        step, earlier, recent = history.step + count, history.inputs, values
+        pending = history.pending
+        while pending and pending[-1][0] + pending[-1][1].shape[-1] <= step:
+            pending = pending[:-1]
+        while earlier and earlier[-1].shape[-1] == recent.shape[-1]:
+            earlier, recent = earlier[:-1], np.concatenate([earlier[-1], recent], axis=-1)
         if step < self._table.steps:
-            blocks = step // count
-            pending = (*pending, (step, self._contribution(inputs[-(blocks & -blocks) :])))
-        return History(step, inputs, pending), self._by_matrix(values, 0)
+            pending = (*pending, (step, self._given(recent, step, pending)))
+        return History(step, (*earlier, recent), pending), self._by_matrix(values, 0)
+
+    def _given(self, recent: FloatArray, step: int, pending: tuple[tuple[int, FloatArray], ...]) -> FloatArray:
+        """Return the sum of what the last inputs and all before them give to as many steps after them."""
+        made = self._contribution(recent)
+        if not pending:
+            return np.add(made, 0.0, order="C")  # no zero has a sign, as of any sum
+        start, around = pending[-1]
+        known = around[..., step - start : step - start + made.shape[-1]]
+        return np.add(known, made[..., : known.shape[-1]], order="C")  # shorter only after the last block, whose length is its own
 
     def _by_matrix(self, values: FloatArray, offset: int) -> FloatArray:
         inputs, parities, modes, length = values.shape
         stacked = values.transpose(2, 0, 3, 1).reshape(modes, inputs * length, parities)
         return np.asarray((self._table.matrix(length, offset) @ stacked).transpose(0, 3, 1, 2))
 
-    def _contribution(self, blocks: tuple[FloatArray, ...]) -> FloatArray:
-        """Return what the last blocks of inputs give to as many steps after them."""
-        recent = blocks[0] if len(blocks) == 1 else np.concatenate(blocks, axis=-1)
+    def _contribution(self, recent: FloatArray) -> FloatArray:
+        """Return what the last inputs give to as many steps after them."""
         length = recent.shape[-1]
         if length <= _BY_MATRIX:
             return self._by_matrix(recent, length)
-        spectrum = fft.rfft(recent, 2 * length, axis=-1, workers=WORKERS)
+        workers = 1 if recent.size <= _ALONE else WORKERS
+        spectrum = fft.rfft(recent, 2 * length, axis=-1, workers=workers)
         total = np.einsum("ijmk,jhmk->ihmk", self._table.transform(length), spectrum)
-        return np.asarray(fft.irfft(total, 2 * length, axis=-1, workers=WORKERS)[..., length:])
+        return np.asarray(fft.irfft(total, 2 * length, axis=-1, workers=workers)[..., length:])

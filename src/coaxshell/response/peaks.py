@@ -40,6 +40,12 @@ class Peak:
     lower_half: float | None = None
 
 
+def made_once(amplitudes: Amplitudes, span: slice) -> Amplitudes:
+    """Return the amplitudes of windows within a span of time that have been made for all of it: for several looks at them."""
+    modal = amplitudes(span)
+    return lambda window: modal[..., window.start - span.start : window.stop - span.start]
+
+
 def folded(angle: float) -> float:
     """Return an angle in degrees as one above -180 up to 180."""
     return 180.0 - (180.0 - angle) % 360.0

@@ -12,7 +12,7 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import arguments
 from coaxshell.response.errors import error_table
-from coaxshell.response.peaks import Peak, peak_anywhere, peak_at, root_mean_square
+from coaxshell.response.peaks import Peak, made_once, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.quantities import QUANTITIES, Quantity, Where
 from coaxshell.response.summary_text import summary_html, summary_text
 from coaxshell.response.translation import still_grows
@@ -204,7 +204,7 @@ def _largest(quantity: Quantity, motion: WallMotion, shell: int, span: slice, le
         return {quantity.name: quantity.largest(solution, shell, span, length)}
     head, time = solution.problem.system.sources[0].angle, solution.time
     width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
-    amplitudes = quantity.amplitudes(motion, shell)
+    amplitudes = made_once(quantity.amplitudes(motion, shell), span)
     found: dict[Where, Peak | float | None] = {}
     if "head" in wanted:
         found["head"], found["tail"] = peaks = peak_at(amplitudes, time, span, [head, head + 180.0])

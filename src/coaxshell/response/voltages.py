@@ -13,7 +13,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.numerics.renamed import renamed
 from coaxshell.response.modal import amplitudes, elastic_wall, orders, scaled, voltage_gain
-from coaxshell.response.peaks import Amplitudes, Peak, peak_anywhere
+from coaxshell.response.peaks import Amplitudes, Peak, made_once, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import lower_half, segment_mean
 from coaxshell.solver.interface.saturation import voltage_limit
@@ -145,7 +145,7 @@ def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice,
 def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice) -> Peak:
     """Return the largest magnitude of a quantity, and beside it what the lower half of the orders gives."""
     parities, all_of_them = solution.normal.shape[1:3]
-    few = lower_half(all_of_them)
+    few, quantity = lower_half(all_of_them), made_once(quantity, window)
     largest = peak_anywhere(quantity, solution.time, window, len(circle_angles(all_of_them, parities)))
     fewer = peak_anywhere(lambda block: quantity(block)[:, :few], solution.time, window, len(circle_angles(few, parities)))
     return replace(largest, lower_half=fewer.value)

@@ -65,6 +65,8 @@ def _structure(solution: ModalSolution) -> StructureSpectra:
 
 
 def _links(solution: ModalSolution) -> AbsorberSet:
+    if solution.spectra is not None:
+        return solution.spectra.absorbers
     system = solution.problem.system
     return absorber_set(solution.problem, system.absorber_list, source_parities(system.sources))
 

@@ -261,7 +261,10 @@ class StructureSpectra:
         sources, forced = slice(0, self.normal.shape[1]), slice(0, pressure.shape[1])
         normal[:, sources], tangential[:, sources] = self.normal, self.tangential
         for i in range(shape[0]):
-            moved = sum(self.compliance[i, j] * pressure[j] for j in range(shape[0]))
+            moved = self.compliance[i, 0] * pressure[0]
+            moved += 0.0  # no zero has a sign, as of any sum
+            for j in range(1, shape[0]):
+                moved += self.compliance[i, j] * pressure[j]
             normal[i, forced] += moved
-            tangential[i, forced] += self.tangential_ratio[i] * moved
+            tangential[i, forced] += np.multiply(self.tangential_ratio[i], moved, out=moved)
         return normal, tangential

@@ -91,8 +91,15 @@ class AbsorberSet:
 
     def shapes(self, modes: Modes) -> FloatArray:
         """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
-        rows = [modes.projection(float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
-        return np.array(rows).reshape(self.parities, self.count, modes.count)
+        if modes.key not in self._shapes:
+            rows = [modes.projection(float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
+            self._shapes[modes.key] = np.array(rows).reshape(self.parities, self.count, modes.count)
+        return self._shapes[modes.key]
+
+    @cached_property
+    def _shapes(self) -> dict[tuple[bytes, bytes], FloatArray]:
+        """Those made so far, by the modes they are of."""
+        return {}
 
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:
@@ -156,6 +163,7 @@ class InterfacePoints:
     def __init__(self, problem: Problem, absorbers: AbsorberSet, modes: Modes) -> None:
         self.shell = np.concatenate([absorbers.inner_shell, absorbers.inner_shell + 1])
         self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
+        self._rows = [_span(points) for _, points in self._groups]
         shapes = absorbers.shapes(modes)
         self._evaluate = [np.ascontiguousarray(shapes[:, points % max(absorbers.count, 1)]) for _, points in self._groups]
         shares = problem.point_force_shares(absorbers, modes)
@@ -168,8 +176,12 @@ class InterfacePoints:
     def evaluate(self, modal: Array) -> Array:
         """Return the value at every point of modal amplitudes (shells, parities, M + 1[, T]): shape (points[, T])."""
         values = np.empty((self.count, *modal.shape[3:]), modal.dtype)
-        for (i, points), shape in zip(self._groups, self._evaluate, strict=True):
-            values[points] = sum(shape[h] @ modal[i, h] for h in range(min(self.parities, modal.shape[1])))
+        for (i, _), rows, shape in zip(self._groups, self._rows, self._evaluate, strict=True):
+            total = shape[0] @ modal[i, 0]
+            total += 0.0  # no zero has a sign, as of any sum
+            if min(self.parities, modal.shape[1]) == 2:
+                total += shape[1] @ modal[i, 1]
+            values[rows] = total
         return values
 
     def project(self, forces: Array, orders: npt.NDArray[np.int64] | None = None) -> Array:
@@ -223,6 +235,12 @@ class InterfacePoints:
                     shapes = zip(self._evaluate[i], self._project[j], strict=True)
                     matrix[:, rows[:, None], columns] = sum((e * spectra[:, None, :]) @ p.T for e, p in shapes)
         return matrix
+
+
+def _span(numbers: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:
+    """Return ascending numbers as a slice where none is missing between them: arrays are read and written faster by it."""
+    whole = numbers.size > 0 and int(numbers[-1] - numbers[0]) == numbers.size - 1
+    return slice(int(numbers[0]), int(numbers[-1]) + 1) if whole else numbers
 
 
 class PointsAlone:

@@ -159,7 +159,9 @@ def march_plan(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate:
     of_forces = np.stack([points.immediate(kernels[..., lag]) for lag in range(length)])
     links = LinkConstants.of(absorbers, np.diag(of_forces[0]), structure.grid.time_step)
     actuation = actuators.pressure(np.eye(actuators.amplitudes))
-    moved = np.stack([points.evaluate(_answer(kernels[..., lag], actuation)) for lag in range(length)])
+    moved = np.zeros((length, points.count, actuators.amplitudes))
+    for lag in range(length if actuators.controlled else 0):
+        moved[lag] = points.evaluate(_answer(kernels[..., lag], actuation))
     response = block_response(links, of_forces, moved)
     unknowns = np.concatenate([response.stretch, _voltages(points, actuators, table, response.force, actuation)], axis=1)
     rows, size = block_toeplitz(unknowns), unknowns.shape[1]
