@@ -9,7 +9,7 @@ and a line force f at radius R is the modal pressure f cos(m theta_n)/(beta pi R
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -97,7 +97,7 @@ class AbsorberSet:
         return self._shapes[modes.key]
 
     @cached_property
-    def _shapes(self) -> dict[tuple[bytes, bytes], FloatArray]:
+    def _shapes(self) -> dict[Hashable, FloatArray]:
         """Those made so far, by the modes they are of."""
         return {}
 
