@@ -98,7 +98,7 @@ class AbsorberSet:
 
     @cached_property
     def _shapes(self) -> dict[Hashable, FloatArray]:
-        """Those made so far, by the modes they are of."""
+        """Shapes made so far, by what tells their modes apart."""
         return {}
 
 
