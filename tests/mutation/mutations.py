@@ -301,8 +301,8 @@ MUTATIONS = (
     Mutation(
         "history-blocks",
         "numerics/convolution.py",
-        "inputs[-(blocks & -blocks) :]",
-        "inputs[-1:]",
+        "self._given(recent, step, pending)",
+        "self._given(values, step, pending)",
         "history sum: dyadic blocks of the past",
         "numerics/test_convolution.py",
     ),
