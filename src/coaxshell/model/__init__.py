@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from coaxshell.model import fluids, materials, presets
-from coaxshell.model.absorbers import Absorber, AbsorberRing, absorber_ring
+from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber, absorber_ring
 from coaxshell.model.base import Described
 from coaxshell.model.control import PDControl
 from coaxshell.model.elastic import Elastic
@@ -44,6 +44,7 @@ __all__ = [
     "Piezoelectric",
     "PlaneShock",
     "PlaneWave",
+    "PointAbsorber",
     "Pulse",
     "RigidShell",
     "Sampled",

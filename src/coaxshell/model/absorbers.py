@@ -1,21 +1,30 @@
-"""Vibration absorbers between neighbouring shells (paper's Eqs. 6 and 7), one by one or as a ring of equal ones."""
+"""Vibration absorbers between neighbouring shells (paper's Eqs. 6 and 7), one by one or as a ring of equal ones.
+
+Those of two dimensions are lines along the axis, with their properties per metre of length; those of three are points of it.
+"""
 
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, overload
 
 from pydantic import model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RING
 from coaxshell.model.base import Described
-from coaxshell.model.units import Angle, Count, quantity
+from coaxshell.model.units import Angle, Count, Length, Position, quantity
 
 LineMass = Annotated[float, quantity("line mass", least=0)]
 LineDamping = Annotated[float, quantity("line damping", least=0)]
 LineStiffness = Annotated[float, quantity("line stiffness", least=0)]
 LineCubicStiffness = Annotated[float, quantity("line cubic stiffness", least=0)]
+
+
+PointMass = Annotated[float, quantity("mass", least=0)]
+PointDamping = Annotated[float, quantity("damping", least=0)]
+PointStiffness = Annotated[float, quantity("stiffness", least=0)]
+PointCubicStiffness = Annotated[float, quantity("cubic stiffness", least=0)]
 
 
 class _Link(Described):
@@ -48,6 +57,40 @@ class Absorber(_Link):
 
     angle: Angle = 0.0
     """Where it sits, from the direction theta = 0 (degrees)."""
+
+
+class PointAbsorber(Described):
+    """Describe one absorber at a point of the axis and an angle, for runs in three dimensions: each link exerts c dD/dt + k_l D + k_nl D^3.
+
+    It holds each wall over a small square patch, since a force at a point without extent meets no finite velocity of a wall.
+    """
+
+    mass: PointMass
+    """Moving mass (kg); 0 leaves two links in series."""
+    damping: PointDamping = 0.0
+    """Viscous damping c of each link (N s/m)."""
+    linear_stiffness: PointStiffness = 0.0
+    """Linear stiffness k_l of each link (N/m)."""
+    cubic_stiffness: PointCubicStiffness = 0.0
+    """Cubic stiffness k_nl of each link (N/m^3)."""
+    inner_shell: Count = 0
+    """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
+    angle: Angle = 0.0
+    """Where it sits, from the direction theta = 0 (degrees)."""
+    z: Position
+    """Where it sits along the axis (m)."""
+    footprint: Length | None = None
+    """Side of the patch of each wall that it holds (m); the wall's thickness unless given."""
+
+    @model_validator(mode="after")
+    def _determined(self) -> Self:
+        if self.mass == 0 and not (self.damping or self.linear_stiffness or self.cubic_stiffness):
+            raise InputError(
+                "mass",
+                "0.0 kg with neither damping nor stiffness leaves the absorber undetermined",
+                "must be greater than 0, or give it a stiffness",
+            )
+        return self
 
 
 class AbsorberRing(_Link):
@@ -88,6 +131,29 @@ def _written_out(ring: AbsorberRing) -> tuple[Absorber, ...]:
     return tuple(Absorber(angle=angle, **shared) for angle in ring.angles)
 
 
-def absorber_ring(count: int, **properties: Any) -> AbsorberRing:
-    """Return a ring of *count* equal absorbers; properties as those of :class:`AbsorberRing`."""
-    return AbsorberRing(count=count, **properties)
+@overload
+def absorber_ring(count: int, *, z: None = None, **properties: Any) -> AbsorberRing: ...
+@overload
+def absorber_ring(count: int, *, z: Any, offset: Any = 0.0, **properties: Any) -> tuple[PointAbsorber, ...]: ...
+def absorber_ring(count: int, *, z: Any = None, **properties: Any) -> AbsorberRing | tuple[PointAbsorber, ...]:
+    """Return a ring of *count* equal absorbers, or rings of point absorbers at one or several axial positions.
+
+    Parameters
+    ----------
+    count : int
+    z : length or list of lengths, optional
+        Axial positions of the rings (m), in three dimensions; without it absorbers are lines.
+    **properties
+        As those of :class:`AbsorberRing`, with *z* as those of :class:`PointAbsorber` and *offset*, the angle of the first (degrees).
+
+    Raises
+    ------
+    InputError
+        If a property is not allowed.
+    """
+    if z is None:
+        return AbsorberRing(count=count, **properties)
+    ring = AbsorberRing(count=count, offset=properties.pop("offset", 0.0), mass=1.0)
+    places = z if isinstance(z, list | tuple) or hasattr(z, "tolist") else [z]
+    RING.check(ring.count * len(places), "count")
+    return tuple(PointAbsorber(angle=angle, z=place, **properties) for place in places for angle in ring.angles)

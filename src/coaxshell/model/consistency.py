@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.parts import SystemParts
 from coaxshell.model.shells import RigidShell
@@ -68,7 +68,9 @@ def _sources(system: SystemParts) -> None:
 
 def _absorbers(system: SystemParts) -> None:
     single = isinstance(system.absorbers, tuple)
-    listed: tuple[Absorber | AbsorberRing, ...] = system.absorbers if isinstance(system.absorbers, tuple) else (system.absorbers,)
+    listed: tuple[Absorber | AbsorberRing | PointAbsorber, ...] = (
+        system.absorbers if isinstance(system.absorbers, tuple) else (system.absorbers,)
+    )
     if len(system.shells) < 2 and len(system.absorbers) == 0:
         return  # an empty ring fits any system
     for number, absorber in enumerate(listed):

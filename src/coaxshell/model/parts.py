@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.base import UNSTATED, Described, shown, stated
 from coaxshell.model.control import PDControl
 from coaxshell.model.fluids import AnyFluid, Fluid, Vacuum
@@ -34,9 +34,11 @@ def _as_sources(value: Any) -> Any:
     return _several(value, as_source) if isinstance(value, list | tuple) else as_source(value)
 
 
-def _as_absorber(value: Any) -> Absorber | AbsorberRing:
-    if isinstance(value, Absorber | AbsorberRing):
+def _as_absorber(value: Any) -> Absorber | AbsorberRing | PointAbsorber:
+    if isinstance(value, Absorber | AbsorberRing | PointAbsorber):
         return value
+    if isinstance(value, Mapping) and not {"z", "footprint"}.isdisjoint(value):
+        return PointAbsorber.model_validate(dict(value))
     if isinstance(value, Mapping) and not {"count", "offset"}.isdisjoint(value):
         if "angle" in value:
             raise InputError(
@@ -57,7 +59,7 @@ def _as_absorbers(value: Any) -> Any:
         single = _as_absorber(value)
         return single if isinstance(single, AbsorberRing) else (single,)
     # Several rings, for instance one in each gap, are written out.
-    items: tuple[Absorber | AbsorberRing, ...] = _several(value, _as_absorber)
+    items: tuple[Absorber | AbsorberRing | PointAbsorber, ...] = _several(value, _as_absorber)
     return tuple(one for item in items for one in (item.absorbers if isinstance(item, AbsorberRing) else (item,)))
 
 
@@ -76,8 +78,8 @@ class SystemParts(Described):
     """The fluids, innermost first: one more than shells."""
     source: Annotated[Source | tuple[Source, ...], BeforeValidator(_as_sources)]
     """The source, or several."""
-    absorbers: Annotated[AbsorberRing | tuple[Absorber, ...], BeforeValidator(_as_absorbers)] = ()
-    """A ring of equal absorbers, or single ones."""
+    absorbers: Annotated[AbsorberRing | tuple[Absorber | PointAbsorber, ...], BeforeValidator(_as_absorbers)] = ()
+    """A ring of equal absorbers, or single ones; point absorbers in three dimensions."""
     control: Annotated[PDControl | None, BeforeValidator(_as_control)] = None
     """The controller, if there is one."""
 
@@ -87,7 +89,7 @@ class SystemParts(Described):
         shells: Sequence[Shell | RigidShell | Mapping[str, Any]] = UNSTATED,
         fluids: Sequence[Fluid | Vacuum | str | Mapping[str, Any]] = UNSTATED,
         source: Source | Sequence[Source] | Mapping[str, Any] = UNSTATED,
-        absorbers: AbsorberRing | Absorber | Sequence[Absorber] | Mapping[str, Any] | None = (),
+        absorbers: AbsorberRing | Absorber | PointAbsorber | Sequence[Absorber | PointAbsorber] | Mapping[str, Any] | None = (),
         control: PDControl | Mapping[str, Any] | None = None,
         name: str = "",
         **unknown: Any,
@@ -102,8 +104,15 @@ class SystemParts(Described):
 
     @property
     def absorber_list(self) -> tuple[Absorber, ...]:
-        """The single absorbers, those of a ring written out."""
-        return self.absorbers.absorbers if isinstance(self.absorbers, AbsorberRing) else self.absorbers
+        """The single absorbers of two dimensions, those of a ring written out."""
+        if isinstance(self.absorbers, AbsorberRing):
+            return self.absorbers.absorbers
+        return tuple(one for one in self.absorbers if isinstance(one, Absorber))
+
+    @property
+    def point_absorbers(self) -> tuple[PointAbsorber, ...]:
+        """The absorbers of three dimensions."""
+        return () if isinstance(self.absorbers, AbsorberRing) else tuple(one for one in self.absorbers if isinstance(one, PointAbsorber))
 
     @property
     def reference_radius(self) -> float:

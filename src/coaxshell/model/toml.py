@@ -94,7 +94,7 @@ def canonical(system: SystemParts) -> dict[str, Any]:
     """Return the physics of a system as plain data: no names, no references, a ring written out as its absorbers."""
     data = _plain(system)
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
-    data["absorbers"] = [_plain(absorber) for absorber in system.absorber_list]
+    data["absorbers"] = [_plain(absorber) for absorber in (*system.absorber_list, *system.point_absorbers)]
     if system.control is not None:
         data["control"]["shells"] = list(system.controlled_shells)
     return _nameless(data)  # type: ignore[no-any-return]

@@ -73,6 +73,9 @@ DIMENSIONS: dict[str, Dimension] = {
     "line damping": Dimension("a damping per metre of length", "N*s/m^2", "1e6 N*s/m^2", ("N*s/m",)),
     "line stiffness": Dimension("a stiffness per metre of length", "N/m^2", "1 GN/m^2", ("N/m",)),
     "line cubic stiffness": Dimension("a cubic stiffness per metre of length", "N/m^4", "1e20 N/m^4", ("N/m^3",)),
+    "damping": Dimension("a damping", "N*s/m", "1e5 N*s/m"),
+    "stiffness": Dimension("a stiffness", "N/m", "1 MN/m"),
+    "cubic stiffness": Dimension("a cubic stiffness", "N/m^3", "1e18 N/m^3"),
     "number": Dimension("a plain number", "", "0.3"),
 }
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Unpack
 
 from coaxshell import solver
-from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
 from coaxshell.numerics.keywords import showing
@@ -101,7 +101,7 @@ class PreparedSystem:
 
     def simulate(
         self,
-        absorbers: Iterable[Absorber] | AbsorberRing | None = None,
+        absorbers: Iterable[Absorber | PointAbsorber] | AbsorberRing | None = None,
         *,
         progress: Progress | None = None,
     ) -> Response:

@@ -13,6 +13,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments, storage
+from coaxshell.response.point_absorbers import point_absorber_displacement, point_absorber_force
 from coaxshell.response.response import HEAD_AND_TAIL, Response
 from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
 from coaxshell.response.stations import StationMotion, Transforms, chosen_stations, joined
@@ -68,6 +69,14 @@ class SpatialResponse(WithoutFields, Response):
         """Return what is read at each of some stations, dims (time, station, ...)."""
         chosen, alone = chosen_stations(self.stations, station)
         return joined([read(self.motions[i]) for i in chosen], self.stations, chosen, alone=alone)
+
+    def absorber_displacement(self) -> xr.DataArray:
+        """Return the displacement of the point absorbers' masses, m, positive inward, dims (absorber, time)."""
+        return point_absorber_displacement(self.spatial)
+
+    def absorber_force(self) -> xr.DataArray:
+        """Return the forces of the point absorbers on their shells, N, positive inward, dims (absorber, side, time)."""
+        return point_absorber_force(self.spatial)
 
     def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> SpatialSummary:  # type: ignore[override]
         """Return peaks, RMS, error estimates and warnings of every station, and the largest over all of them; print it for a table.

@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 from html import escape
 from typing import Any
 
+import numpy as np
+
 from coaxshell.model.display.card import card
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
+from coaxshell.response.arguments import time_window
 from coaxshell.response.quantities import summary_rows
 from coaxshell.response.stations import StationMotion
 from coaxshell.response.summary import Summary, summarise
@@ -34,10 +37,14 @@ class SpatialSummary:
         Axial positions, m.
     each : tuple of Summary
         One a station.
+    absorber_displacement, absorber_force : float or None
+        Largest magnitude over all point absorbers (and both sides), m and N; None without absorbers.
     """
 
     stations: tuple[float, ...]
     each: tuple[Summary, ...]
+    absorber_displacement: float | None = None
+    absorber_force: float | None = None
 
     def at(self, station: float) -> Summary:
         """Return the summary of a station of the run (m)."""
@@ -72,7 +79,8 @@ class SpatialSummary:
         """Return all of it as nested plain dicts, lists and numbers, ready for JSON."""
         each = [{"station": z, **summary.to_dict()} for z, summary in zip(self.stations, self.each, strict=True)]
         common = {key: each[0][key] for key in ("title", "window", "transit_time", "settings", "warnings")}
-        return {**common, "stations": each, "largest": self.largest}
+        absorbers = {"absorber_displacement": self.absorber_displacement, "absorber_force": self.absorber_force}
+        return {**common, **absorbers, "stations": each, "largest": self.largest}
 
     def __str__(self) -> str:
         plain = self.each[0].to_dict()
@@ -81,6 +89,14 @@ class SpatialSummary:
         return "\n".join(
             [*title_lines(plain), self.waves, "", *aligned([_HEADING, *self.rows()], left=2), *along, "", *self.notes(), *warnings]
         )
+
+    def _absorbers(self) -> list[str]:
+        if self.absorber_displacement is None or self.absorber_force is None:
+            return []
+        return [
+            f"largest absorber displacement: {engineering(self.absorber_displacement, 'm')}",
+            f"largest absorber force: {engineering(self.absorber_force, 'N')}",
+        ]
 
     @property
     def waves(self) -> str:
@@ -95,7 +111,7 @@ class SpatialSummary:
         shells = [{**shell, **largest} for shell, largest in zip(plain["shells"], self.largest, strict=True)]
         rates = any("shell_velocity" in largest for largest in self.largest)
         left_out = "velocity and acceleration of shells are read by name: their transforms are not at hand, which takes as long as the run"
-        return [*notes({**plain, "shells": shells}), *([] if rates or not shells else [left_out])]
+        return [*self._absorbers(), *notes({**plain, "shells": shells}), *([] if rates or not shells else [left_out])]
 
     def rows(self) -> list[tuple[str, ...]]:
         """Return the rows of the table: shell, what, largest value, time, angle and z, as text."""
@@ -153,4 +169,11 @@ def summarise_stations(
 ) -> SpatialSummary:
     """Return the summary of each station within a window (start, end) in transits; see :func:`coaxshell.response.summary.summarise`."""
     each = tuple(summarise(motion.solution, window, segment, motion=motion) for motion in motions)
-    return SpatialSummary(tuple(spatial.stations.tolist()), each)
+    span, scales = time_window(spatial.time, window), spatial.problem.scales
+    q, f = spatial.absorber_displacement, spatial.absorber_force
+    return SpatialSummary(
+        tuple(spatial.stations.tolist()),
+        each,
+        None if q is None else scales.length * float(np.abs(q[..., span]).max()),
+        None if f is None else scales.force * float(np.abs(f[..., span]).max()),
+    )

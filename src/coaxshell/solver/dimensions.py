@@ -14,6 +14,8 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
     """Raise InputError if a run asks for three dimensions where only two can be had, or its sources for more than two."""
     if settings.dimensions == 3:
         raise InputError("dimensions", "3 is solved by single runs only", "use dimensions=2, or simulate each system")
+    if system.point_absorbers:
+        raise InputError("absorbers", "a point absorber is held at one point of the axis", "use dimensions=3, or absorbers without z")
     for number, source in enumerate(system.sources):
         where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
         for name in OFF_THE_PLANE:

@@ -55,6 +55,11 @@ class Scales:
         return self.pressure * self.length
 
     @property
+    def force(self) -> float:
+        """rho_e c_e^2 a^2, N."""
+        return self.pressure * self.length**2
+
+    @property
     def line_energy(self) -> float:
         """rho_e c_e^2 a^2, J/m."""
         return self.pressure * self.length**2

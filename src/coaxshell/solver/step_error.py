@@ -129,15 +129,15 @@ class CoarserStructure(StructureSpectra):
     @cached_property
     def kernels(self) -> KernelTable:
         """Step weights of the velocities."""
-        velocity = _summed(self._fine.kernels.kernels, self._every, self.grid.time.size)
+        velocity = summed_weights(self._fine.kernels.kernels, self._every, self.grid.time.size)
         return KernelTable(velocity if self._points is None else self._points.between(velocity)[:, :, None])
 
     @cached_property
     def kernels_with_voltage(self) -> KernelTable:
         """Step weights of the velocities without feedback, with the voltages asked for as further outputs."""
         fine, steps = self._fine, self.grid.time.size
-        velocity = _summed(fine.open_loop.kernels.kernels, self._every, steps)
-        rates = _summed(fine.sensor_rates, self._every, steps)
+        velocity = summed_weights(fine.open_loop.kernels.kernels, self._every, steps)
+        rates = summed_weights(fine.sensor_rates, self._every, steps)
         return KernelTable(np.concatenate([velocity, voltage_weights(fine.problem, rates, fine.controlled, self.grid.time_step)]))
 
     def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
@@ -170,7 +170,7 @@ class CoarserStructure(StructureSpectra):
         return self._fine.voltage_without_actuators[..., self._kept]
 
 
-def _summed(weights: FloatArray, every: int, steps: int) -> FloatArray:
+def summed_weights(weights: FloatArray, every: int, steps: int) -> FloatArray:
     """Return step weights for steps *every* times longer: a hat as wide is the sum of narrower ones."""
     whole = weights[..., : weights.shape[-1] // every * every]
     falling = 1.0 - np.arange(every) / every  # from each long step on; what lies before it rises with the rest of 1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, get_args
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import PDControl
 from coaxshell.model.explanations import explanations
@@ -88,8 +88,8 @@ def field_of(system: System, path: str) -> Field:
     path = path.strip()
     if way == ["control"] and system.control is None and last in _GAINS:
         return _described(path, PDControl, last, 0.0)
-    if way == ["absorbers"] and isinstance(system.absorbers, tuple) and system.absorbers and last in Absorber.model_fields:
-        return _described(path, Absorber, last, getattr(system.absorbers[0], last))
+    if way == ["absorbers"] and isinstance(system.absorbers, tuple) and system.absorbers and last in _settable(system.absorbers):
+        return _described(path, type(system.absorbers[0]), last, getattr(system.absorbers[0], last))
     node = entry(system, way)
     if isinstance(node, Described) and last in type(node).model_fields:
         return _described(path, type(node), last, getattr(node, last))
@@ -125,11 +125,11 @@ def _new_control(entries: Mapping[str, Any]) -> PDControl:
         raise InputError(f"control.{error.where}", error.problem, error.remedy) from None
 
 
-def _settable(absorbers: tuple[Absorber, ...]) -> Collection[str]:
-    return Absorber.model_fields if absorbers else AbsorberRing.model_fields
+def _settable(absorbers: tuple[Absorber | PointAbsorber, ...]) -> Collection[str]:
+    return type(absorbers[0]).model_fields if absorbers else AbsorberRing.model_fields
 
 
-def _each(system: System, entries: Mapping[str, Any]) -> AbsorberRing | tuple[Absorber, ...]:
+def _each(system: System, entries: Mapping[str, Any]) -> AbsorberRing | tuple[Absorber | PointAbsorber, ...]:
     assert not isinstance(system.absorbers, AbsorberRing)
     try:
         if not system.absorbers and "count" in entries:

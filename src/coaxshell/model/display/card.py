@@ -26,6 +26,8 @@ def system_line(system: SystemParts) -> str:
     parts = [f"{count} shell{'s' * (count != 1)} ({radii})", f"fluids {fluids}", sources]
     if system.absorber_list:
         parts.append(f"{len(system.absorber_list)} absorbers")
+    if system.point_absorbers:
+        parts.append(f"{len(system.point_absorbers)} point absorbers")
     if system.control is not None:
         parts.append("saturating control" if system.control.saturation else "control")
     name = f"{system.name!r}, " if system.name else ""
@@ -83,6 +85,8 @@ def _parts(system: SystemParts) -> list[Cells]:
     rows += [("", "source", _source(system, source)) for source in system.sources]
     if system.absorber_list:
         rows.append(("", "absorbers", _absorbers(system)))
+    if system.point_absorbers:
+        rows.append(("", "point absorbers", _point_absorbers(system)))
     if system.control is not None:
         control = system.control
         stop = ", stops at the field limit" if control.saturation else ""
@@ -113,6 +117,13 @@ def _source(system: SystemParts, source: Source) -> str:
     z, inclination = getattr(source, "z", 0.0), getattr(source, "inclination", 0.0)
     turned += (f" at z = {_length(z)}," if z else "") + (f" inclined by {inclination:g}°," if inclination else "")
     return f"{source.type.replace('-', ' ')},{where}{turned} peak {_pressure(abs(source.pulse.peak))}"
+
+
+def _point_absorbers(system: SystemParts) -> str:
+    many = system.point_absorbers
+    places = sorted({one.z for one in many})
+    where = f"z = {places[0]:g} m" if len(places) == 1 else f"z = {places[0]:g} to {places[-1]:g} m"
+    return f"{len(many)} at {where}, {engineering(sum(one.mass for one in many), 'kg')} together"
 
 
 def _absorbers(system: SystemParts) -> str:

@@ -9,7 +9,8 @@ For the share of a spherical wave from z0 with the axial period L (theory manual
 
     e = c cos k(z - z0),    o = c sin k(z - z0),    c = 2/L for k = 0, else 4/L,
 
-and for a plane wave inclined by alpha, of complex wavenumber k = -i s sin alpha,
+and half of c for forces at points of a wall, which are taken apart into what is even and what is odd about z = 0; for a plane wave
+inclined by alpha, of complex wavenumber k = -i s sin alpha,
 
     e = e^{-s z sin alpha},    o = i e.
 
@@ -27,8 +28,9 @@ from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.excitation import SourceGroup, source_groups
+from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities
 from coaxshell.solver.scaling import Problem
 
 
@@ -43,12 +45,21 @@ class Family:
         e and o of every wavenumber at the stations.
     mean : ndarray, shape (waves,)
         Mean square of e along the axis.
+    parities : int
+        Of the motion around the circle.
+    forces : PointForces or None
+        Of point absorbers, instead of sources.
+    odd_forces : bool
+        Whether of these forces what is odd along z.
     """
 
     groups: list[SourceGroup]
     even: npt.NDArray[np.number]
     odd: npt.NDArray[np.number]
     mean: FloatArray
+    parities: int
+    forces: PointForces | None = None
+    odd_forces: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +87,10 @@ def axial_position(source: Source) -> float:
     return float(getattr(source, "z", 0.0))
 
 
-def wave_sets(problem: Problem, sampling: AxialSampling, stations: FloatArray, s: ComplexArray) -> list[WaveSet]:
-    """Return all waves of the sources of a problem at some nodes.
+def wave_sets(
+    problem: Problem, sampling: AxialSampling, stations: FloatArray, s: ComplexArray, forces: PointForces | None = None
+) -> list[WaveSet]:
+    """Return all waves of the sources of a problem at some nodes, and those of the forces of point absorbers.
 
     Parameters
     ----------
@@ -87,8 +100,10 @@ def wave_sets(problem: Problem, sampling: AxialSampling, stations: FloatArray, s
     stations : ndarray, shape (stations,)
         z of the stations, in a.
     s : ndarray, shape (nodes,)
+    forces : PointForces, optional
+        At the same nodes.
     """
-    a, top = problem.scales.length, sampling.max_order
+    a, top, parities = problem.scales.length, sampling.max_order, source_parities(problem.system.sources)
     spherical: dict[float, list[SourceGroup]] = {}
     uniform: list[SourceGroup] = []
     sets: list[WaveSet] = []
@@ -100,13 +115,23 @@ def wave_sets(problem: Problem, sampling: AxialSampling, stations: FloatArray, s
         elif isinstance(geometry, PlaneGeometry) and geometry.inclination:
             shape = np.exp(-np.multiply.outer(stations, s) * geometry.trace_slowness)[:, None]
             modes = Modes(np.arange(top + 1.0), -1j * s * geometry.trace_slowness)
-            sets.append(WaveSet([modes], [Family([group], shape, 1j * shape, np.ones(1))]))
+            sets.append(WaveSet([modes], [Family([group], shape, 1j * shape, np.ones(1), parities)]))
         else:
             uniform.append(group)
     if uniform:
         ones = np.ones((stations.size, 1))
-        sets.append(WaveSet([Modes.up_to(top)], [Family(uniform, ones, np.zeros_like(ones), np.ones(1))]))
-    if spherical:
-        families = [Family(groups, *sampling.shares(stations - z0), sampling.mean) for z0, groups in spherical.items()]
-        sets.append(WaveSet(sampling.modes, families))
-    return sets
+        sets.append(WaveSet([Modes.up_to(top)], [Family(uniform, ones, np.zeros_like(ones), np.ones(1), parities)]))
+    families = [Family(groups, *sampling.shares(stations - z0), sampling.mean, parities) for z0, groups in spherical.items()]
+    if forces is not None:
+        families += _force_families(sampling, stations, forces)
+    return [*sets, WaveSet(sampling.modes, families)] if families else sets
+
+
+def _force_families(sampling: AxialSampling, stations: FloatArray, forces: PointForces) -> list[Family]:
+    """Return the waves of forces at points: cos k z cos k z_b and sin k z sin k z_b of each, 1/L for k = 0, else 2/L."""
+    cosine, sine = (0.5 * share for share in sampling.shares(stations))
+    mean, around = 0.25 * sampling.mean, forces.parities
+    return [
+        Family([], cosine, sine, mean, around, forces),
+        Family([], sine, -cosine, mean, around, forces, odd_forces=True),
+    ]

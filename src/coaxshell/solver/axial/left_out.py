@@ -18,6 +18,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import StationSpectra
 from coaxshell.solver.axial.sums import amplitudes_of
@@ -79,18 +80,18 @@ def _spherical_samples(sampling: AxialSampling) -> list[_Sample]:
     return samples
 
 
-def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling) -> LeftOut:
-    """Return the squares of what is left out, summed over the sampled nodes."""
+def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, forces: PointForces | None = None) -> LeftOut:
+    """Return the squares of what is left out under sources and forces of point absorbers, summed over the sampled nodes."""
     s, count = grid.nodes[NODES], len(problem.shells)
     found = LeftOut(np.zeros((count, 2)), np.zeros((count, 2)))
-    for waves in wave_sets(problem, sampling, np.zeros(1), s):
+    for waves in wave_sets(problem, sampling, np.zeros(1), s, None if forces is None else forces.at(NODES)):
         if waves.modes is sampling.modes:
-            samples, mean = _spherical_samples(sampling), float(sampling.mean[-1])
+            samples = _spherical_samples(sampling)
         else:
-            samples, mean = [_sample(orders_above(problem, sampling.max_order + 1), waves.modes[0].wavenumber, 1.0, True)], 1.0
+            samples = [_sample(orders_above(problem, sampling.max_order + 1), waves.modes[0].wavenumber, 1.0, True)]
         for sample in samples:
             for family in waves.families:
-                squares = squares_of(problem, grid, sample.modes, family) * (mean * sample.weight)
+                squares = squares_of(problem, grid, sample.modes, family) * (float(family.mean[-1]) * sample.weight)
                 found.orders[...] += squares @ sample.higher_order
                 found.axial[...] += squares @ ~sample.higher_order
     return found
@@ -111,6 +112,8 @@ def estimated_errors(
     squares: FloatArray,
     motion: StationSpectra,
     histories: tuple[FloatArray, FloatArray],
+    forces: PointForces | None = None,
+    force_error: float = 0.0,
 ) -> Estimates:
     """Return the printed errors of a three-dimensional run.
 
@@ -119,11 +122,15 @@ def estimated_errors(
     problem : Problem
     grid : LaplaceGrid
     sampling : AxialSampling
-    squares : ndarray, shape (shells, 2, M + 1)
-        Mean squares along the axis of all that was added up, all nodes together.
+    squares : ndarray, shape (2, shells, 2, M + 1)
+        Mean squares along the axis of all that was added up, all nodes together, under sources and under forces.
     motion : StationSpectra
     histories : pair of ndarray, shape (stations, shells, parities, M + 1, T)
         W and V at the stations.
+    forces : PointForces, optional
+        Of point absorbers.
+    force_error : float
+        Their relative error by the steps of the march.
     """
     spectra = motion.normal, motion.tangential
     stations = range(histories[0].shape[0])
@@ -134,8 +141,9 @@ def estimated_errors(
     high = slice(-max(1, whole.shape[-1] // 3), None)
     beyond = persistence(grid, whole[..., high].sum(axis=-1), along[..., high].sum(axis=-1))
     circle = np.where(np.arange(squares.shape[-1]) == 0, 1.0, 0.5)
-    total = (squares * lasting * circle).sum(axis=-1) / NODES.step
-    missing = left_out(problem, grid, sampling)
+    by_sources, by_forces = (squares * lasting * circle).sum(axis=-1) / NODES.step
+    total = by_sources + by_forces
+    missing = left_out(problem, grid, sampling, forces)
     orders, axial = (ORDERS_FACTOR * relative(part * beyond, total + part * beyond) for part in missing)
     steps = [band_limit(grid, spectra[0][i], spectra[1][i], each[i]) for i in stations]
-    return Estimates(orders, STEP_FACTOR * np.max(steps, axis=0), np.zeros_like(orders), axial)
+    return Estimates(orders, STEP_FACTOR * np.max(steps, axis=0), force_error * relative(by_forces, total), axial)

@@ -22,7 +22,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.causality import Front, least_period, rounded_up
+from coaxshell.solver.axial.causality import Front, first_arrival, least_period, rounded_up
 from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
@@ -110,9 +110,12 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
             require_axial_constants(shell, f"shells[{i}]")
     require_leading_fronts(problem, settings)
     highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
+    fastest = fastest_wave(problem, highest)
     fronts = _fronts(problem)
-    places = [z / length for z in settings.stations]
-    needed = least_period(settings.duration, places, fronts, fastest_wave(problem, highest))
+    held = {one.z / length for one in problem.system.point_absorbers}
+    places = [*(z / length for z in settings.stations), *sorted(held)]
+    fronts += [_from_point(problem, z, fronts, fastest) for z in sorted(held)]
+    needed = least_period(settings.duration, places, fronts, fastest)
     given = None if settings.axial_period is None else settings.axial_period / length
     if given is not None and given < needed * (1.0 - 1e-12):
         raise InputError(
@@ -136,6 +139,13 @@ def fastest_wave(problem: Problem, highest: float) -> float:
     """Return the greatest speed of any wave along the axis, in c_e, at wavenumbers up to a highest one (in 1/a)."""
     fluids = [1.0 / fluid.slowness for fluid in problem.fluids if fluid is not None]
     return max(fluids + [wall.fastest_wave(highest) for wall in problem.shells])
+
+
+def _from_point(problem: Problem, z: float, fronts: list[Front], fastest: float) -> Front:
+    """Return what starts from a wall where an absorber holds it, from the first instant at which the wall can move there."""
+    if len(fronts) < len(problem.sources):
+        return Front(z, 0.0)  # other sources may reach it at once
+    return Front(z, 0.0, min(front.delay + first_arrival(z - front.z, front.start, fastest) for front in fronts))
 
 
 def _fronts(problem: Problem) -> list[Front]:

@@ -45,6 +45,10 @@ class SpatialSolution:
         Relative to the answer in the norm over the surface of all of an axial period.
     warnings : tuple of str
     timings : dict
+    absorber_displacement : ndarray, shape (absorbers, T), or None
+        q of the point absorbers.
+    absorber_force : ndarray, shape (absorbers, 2, T), or None
+        Forces on the inner [0] and outer [1] of the shells they link, positive inward, in units of rho_e c_e^2 a^2.
     spectra : StationSpectra or None
         Transforms of the motion at the stations, where they are no more than half a gigabyte.
     """
@@ -57,6 +61,8 @@ class SpatialSolution:
     estimates: Estimates
     warnings: tuple[str, ...] = ()
     timings: dict[str, float] = field(default_factory=dict)
+    absorber_displacement: FloatArray | None = None
+    absorber_force: FloatArray | None = None
     spectra: StationSpectra | None = field(default=None, compare=False, repr=False)
 
     @property

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 
@@ -14,14 +11,18 @@ from coaxshell.acoustics.sources import PlaneGeometry
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
+from coaxshell.solver.axial.blocks import BlockMap, node_blocks, on_threads
 from coaxshell.solver.axial.left_out import estimated_errors
+from coaxshell.solver.axial.linked import PointSolution, point_structure, solve_points
 from coaxshell.solver.axial.mode_choice import resolved_sampling
+from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
-from coaxshell.solver.axial.sums import StationSums, station_sums
+from coaxshell.solver.axial.sums import station_sums
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
@@ -29,24 +30,11 @@ from coaxshell.solver.solution import KEPT_BYTES
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
 
-_BLOCK_ELEMENTS = 8 * 1024
-"""Order-node pairs of a block, 128 kB a complex array: a few dozen of them stay in a processor's cache."""
-
 _CHECKED = 16
 """Wavenumbers at which a feedback is checked; poles move with k as smoothly as with the order."""
 
-Work = Callable[[slice], StationSums]
-Map = Callable[[Work, list[slice]], Iterable[StationSums]]
-"""Gives what a function makes of each block, in the order of the blocks: threads, or processes of one or many machines."""
 
-
-def on_threads(work: Work, blocks: list[slice]) -> Iterable[StationSums]:
-    """Map blocks on all cores of this machine."""
-    with ThreadPoolExecutor(WORKERS) as pool:
-        yield from pool.map(work, blocks)
-
-
-def solve_spatial(system: System, settings: Settings, progress: Progress | None = None, on: Map = on_threads) -> SpatialSolution:
+def solve_spatial(system: System, settings: Settings, progress: Progress | None = None, on: BlockMap = on_threads) -> SpatialSolution:
     """Return the modal histories of a system at its stations.
 
     Parameters
@@ -75,16 +63,23 @@ def solve_spatial(system: System, settings: Settings, progress: Progress | None 
     for modes in sampling.modes[:: max(1, len(sampling.modes) // _CHECKED)]:
         require_stable(problem, modes.max_order, settings.duration, wavenumber=float(modes.wavenumber))
     stopwatch.lap("stability of the feedback")
-    spectra, squares = _summed(problem, grid, sampling, settings, progress, on)
+    linked = _linked(problem, grid, sampling, progress, on)
+    stopwatch.lap("point absorbers")
+    forces = None if linked is None else linked.forces
+    spectra, squares = _summed(problem, grid, sampling, settings, forces, progress, on)
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
     histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in spectra.items()}
     stopwatch.lap("inverse transform")
     motion = StationSpectra(grid, spectra["w"], spectra["v"])
-    estimates = estimated_errors(problem, grid, sampling, squares, motion, (histories["w"], histories["v"]))
+    moved = histories["w"], histories["v"]
+    force_error = 0.0 if linked is None else linked.error
+    estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, forces, force_error)
     stopwatch.lap("error estimates")
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
+    if linked is not None:
+        solution = replace(solution, absorber_displacement=linked.displacement[..., keep], absorber_force=linked.force[..., keep])
     return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
 
 
@@ -94,7 +89,9 @@ def station_spectra(solution: SpatialSolution) -> StationSpectra:
         return solution.spectra
     solution.at(0).need_every_instant("what is computed from its transforms (velocity and acceleration of shells)")
     grid = _grid(solution.settings)
-    spectra, _ = _summed(solution.problem, grid, solution.sampling, solution.settings, None, on_threads)
+    linked = _linked(solution.problem, grid, solution.sampling, None, on_threads)
+    forces = None if linked is None else linked.forces
+    spectra, _ = _summed(solution.problem, grid, solution.sampling, solution.settings, forces, None, on_threads)
     return StationSpectra(grid, spectra["w"], spectra["v"])
 
 
@@ -102,13 +99,27 @@ def _grid(settings: Settings) -> LaplaceGrid:
     return LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
 
 
+def _linked(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, progress: Progress | None, on: BlockMap) -> PointSolution | None:
+    """Return what the point absorbers do, None if there are none."""
+    if not problem.system.point_absorbers:
+        return None
+    blocks = node_blocks(grid, sampling.max_order)
+    return solve_points(point_structure(problem, grid, sampling, point_layout(problem), blocks, on, progress), progress)
+
+
 def _summed(
-    problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, settings: Settings, progress: Progress | None, on: Map
+    problem: Problem,
+    grid: LaplaceGrid,
+    sampling: AxialSampling,
+    settings: Settings,
+    forces: PointForces | None,
+    progress: Progress | None,
+    on: BlockMap,
 ) -> tuple[dict[str, ComplexArray], FloatArray]:
     """Return the transforms of the motion at all stations, and its mean squares along the axis, from those of blocks of nodes in turn."""
     stations = np.array(settings.stations) / problem.scales.length
     blocks = node_blocks(grid, sampling.max_order)
-    work = partial(station_sums, problem, grid, sampling, stations)
+    work = partial(station_sums, problem, grid, sampling, stations, forces)
     spectra: dict[str, ComplexArray] = {}
     squares: FloatArray = np.zeros(1)
     for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
@@ -119,14 +130,6 @@ def _summed(
         if progress is not None:
             progress(done / len(blocks), "axial wavenumbers")
     return spectra, squares
-
-
-def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:
-    """Return consecutive slices of the Laplace nodes, each of about the same size."""
-    count = grid.nodes.size
-    blocks = max(WORKERS, round(count / max(32, _BLOCK_ELEMENTS // (max_order + 1))))
-    edges = np.linspace(0, count, blocks + 1).astype(int)
-    return [slice(int(a), int(b)) for a, b in pairwise(edges)]
 
 
 def require_known(problem: Problem, settings: Settings) -> None:

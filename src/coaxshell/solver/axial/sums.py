@@ -15,6 +15,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities, superposed
@@ -32,52 +33,68 @@ class StationSums:
     ----------
     fields : dict of str to ndarray, shape (stations, shells, parities, M + 1, nodes)
         Of :data:`coaxshell.structure.shell_model.FIELDS` and "potential 0", ..., those that are zero at all stations left out.
-    squares : ndarray, shape (shells, 2, M + 1)
-        Mean squares along the axis of W and of the strains, |m V - W|^2 + |k U|^2, parities and nodes added up.
+    squares : ndarray, shape (2, shells, 2, M + 1)
+        Mean squares along the axis of W and of the strains, |m V - W|^2 + |k U|^2, parities and nodes added up: under the sources [0] and
+        under the forces of point absorbers [1].
     """
 
     fields: dict[str, ComplexArray]
     squares: FloatArray
 
 
-def station_sums(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, stations: FloatArray, block: slice) -> StationSums:
-    """Return the motion at stations (z in a) at a slice of the grid's nodes."""
-    s = grid.nodes[block]
-    shape = (stations.size, len(problem.shells), source_parities(problem.system.sources), sampling.max_order + 1, s.size)
+def station_sums(
+    problem: Problem,
+    grid: LaplaceGrid,
+    sampling: AxialSampling,
+    stations: FloatArray,
+    forces: PointForces | None,
+    block: slice,
+) -> StationSums:
+    """Return the motion at stations (z in a) at a slice of the grid's nodes, under the sources and forces of point absorbers."""
+    s, parities = grid.nodes[block], source_parities(problem.system.sources)
+    parities = parities if forces is None else max(parities, forces.parities)
+    shape = (stations.size, len(problem.shells), parities, sampling.max_order + 1, s.size)
     fields: dict[str, ComplexArray] = {}
-    squares = np.zeros((shape[1], 2, shape[3]))
+    squares = np.zeros((2, shape[1], 2, shape[3]))
     layers = piezoelectric_layers(problem)
-    for waves in wave_sets(problem, sampling, stations, s):
+    for waves in wave_sets(problem, sampling, stations, s, None if forces is None else forces.at(block)):
         for first in range(0, len(waves.modes), _TOGETHER):
             some = range(first, min(first + _TOGETHER, len(waves.modes)))
             amplitudes = [np.zeros((3 + layers, len(some), *shape[1:]), np.complex128) for _ in waves.families]
             for place, j in enumerate(some):
                 for one, solved in zip(amplitudes, amplitudes_of(problem, waves, j, grid, block), strict=True):
-                    one[:, place, :, :, : waves.modes[j].count] = solved
+                    one[:, place, :, : solved.shape[2], : waves.modes[j].count] = solved
             for family, found in zip(waves.families, amplitudes, strict=True):
                 _add(fields, shape, family, waves.wavenumber, some, found)
-                squares += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
+                under = squares[int(family.forces is not None)]
+                under += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
     return StationSums(fields, squares)
 
 
 def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
-    """Return W, V, U of wave j under each family's sources, and the potentials of piezoelectric layers if there are any.
+    """Return W, V, U of wave j under each family's loads, and the potentials of piezoelectric layers if there are any.
 
     One array a family, (3 + layers, shells, parities, orders, nodes).
     """
-    modes, last, parities = waves.modes[j], len(problem.shells) - 1, source_parities(problem.system.sources)
-    layers = piezoelectric_layers(problem)
-    system = ModalSystem(problem, grid.nodes[block], modes)
-    found = []
-    for family in waves.families:
-        units = [(group.geometry.prepare(grid, modes)(system.radial, block), group) for group in family.groups]
-        motions = []
-        for load in superposed(parities, modes, units):
-            normal = system.solve(last, load)
-            motion = [normal, system.tangential(normal), system.axial(normal)]
-            motions.append(np.array([*motion, *_potentials(problem, modes, layers, *motion)]))
-        found.append(np.stack(motions, axis=2))
-    return found
+    system = ModalSystem(problem, grid.nodes[block], waves.modes[j])
+    return [motions_of(problem, system, family, grid, block) for family in waves.families]
+
+
+def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
+    """Return W, V, U and potentials of a wave under the loads of a family, (3 + layers, shells, parities, orders, nodes)."""
+    modes, last = system.modes, len(problem.shells) - 1
+    layers, motions = piezoelectric_layers(problem), []
+    units = [(group.geometry.prepare(grid, modes)(system.radial, block), group) for group in family.groups]
+    on_outermost = superposed(family.parities, modes, units) if units else []
+    forces = {} if family.forces is None else family.forces.loads(problem, modes, odd=family.odd_forces)
+    for parity in range(family.parities):
+        loads = [(last, on_outermost[parity])] if units else []
+        loads += [(shell, pressures[parity]) for shell, pressures in forces.items()]
+        each = [system.solve(shell, load) for shell, load in loads]
+        normal = [np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)]
+        motion = [normal, system.tangential(normal), system.axial(normal)]
+        motions.append(np.array([*motion, *_potentials(problem, modes, layers, *motion)]))
+    return np.stack(motions, axis=2)
 
 
 def piezoelectric_layers(problem: Problem) -> int:

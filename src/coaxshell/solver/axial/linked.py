@@ -1,0 +1,221 @@
+"""Point absorbers in three dimensions: their points march alone, or are solved exactly at each Laplace node where they are linear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.convolution import KernelTable
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver.axial.blocks import BlockMap
+from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_sums
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, admittance
+from coaxshell.solver.interface.march import march
+from coaxshell.solver.kernels import exponential_weights, initial_decay
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.step_error import SHARES, summed_weights
+from coaxshell.solver.structure_spectra import StructureSpectra
+
+Numbers = TypeVar("Numbers", FloatArray, ComplexArray)
+
+
+@dataclass(frozen=True)
+class PointSolution:
+    """What the absorbers of a run did.
+
+    Attributes
+    ----------
+    forces : PointForces
+        At all points.
+    force : ndarray, shape (N, 2, T)
+        On the inner and the outer shell, positive inward, for every absorber of the description.
+    displacement : ndarray, shape (N, T)
+        q of every absorber.
+    error : float
+        Relative error of the forces by the steps of the march; 0 where nothing was marched.
+    """
+
+    forces: PointForces
+    force: FloatArray
+    displacement: FloatArray
+    error: float = 0.0
+
+
+class PointStructure(StructureSpectra):
+    """A structure seen at points alone: kernels between them, and their motion under the sources.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : LaplaceGrid
+    layout : PointLayout
+    motion : ndarray, shape (carried points, nodes)
+        w under the sources.
+    receptance : ndarray, shape (carried points, carried points, nodes)
+        w of a point per force at another and at all its images.
+    immediate : ndarray, shape (carried points, carried points)
+        What of it answers at once: the sum of the orders' shares, between points of one shell.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        grid: LaplaceGrid,
+        layout: PointLayout,
+        motion: ComplexArray,
+        receptance: ComplexArray,
+        immediate: FloatArray,
+    ) -> None:
+        super().__init__(problem, grid, Modes.up_to(0))
+        self.layout, self.motion, self.receptance, self.immediate = layout, motion, receptance, immediate
+
+    @property
+    def linear_displacement(self) -> FloatArray:
+        """W of the points without absorbers, shape (points, 1, 1, T)."""
+        return self.grid.invert(self.motion)[:, None, None]
+
+    @property
+    def linear_velocity(self) -> FloatArray:
+        """Velocity dW/dt of the points without absorbers, shape (points, 1, 1, T)."""
+        return self.grid.invert(self.motion * self.grid.nodes)[:, None, None]
+
+    def points(self, absorbers: AbsorberSet) -> PointsAlone:
+        """Return the points, which march alone."""
+        return PointsAlone(self.layout.carried.count)
+
+    @property
+    def kernels(self) -> KernelTable:
+        """Step weights of forces in the velocities of the points; see :mod:`coaxshell.solver.kernels`.
+
+        Points of one shell answer at once by its mass: (immediate/M)/(s + b) is inverted in closed form.
+        """
+        if self.units.kernels is None:
+            grid, shell = self.grid, self.layout.carried.shell
+            hat, weights = grid.hat * grid.time_step, np.empty((shell.size, shell.size, 1, grid.time.size))
+            for a, i in enumerate(shell):
+                mass = self.problem.shells[i].leading(self.modes).mass
+                decay = initial_decay(self.problem, int(i), 0)
+                at_once = self.immediate[a][:, None] / mass
+                rest = self.receptance[a] * grid.nodes - at_once / (grid.nodes + decay)
+                weights[a, :, 0] = grid.invert(rest * hat) + at_once * exponential_weights(decay, grid)
+            self.units.kernels = KernelTable(weights)
+        return self.units.kernels
+
+
+def point_structure(
+    problem: Problem,
+    grid: LaplaceGrid,
+    sampling: AxialSampling,
+    layout: PointLayout,
+    blocks: list[slice],
+    on: BlockMap,
+    progress: Progress | None = None,
+) -> PointStructure:
+    """Return the structure at the points of some absorbers, from blocks of nodes in turn."""
+    classes = pair_classes(layout)
+    motion = np.empty((layout.carried.count, grid.nodes.size), np.complex128)
+    by_class = np.empty((classes.moved.size, grid.nodes.size), np.complex128)
+    work = partial(point_sums, problem, grid, sampling, layout, classes)
+    for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
+        motion[:, block], by_class[:, block] = part.motion, part.receptance
+        if progress is not None:
+            progress(done / len(blocks), "points of the absorbers")
+    at_once = np.zeros(classes.moved.size)
+    for (i, j), share in class_shares(problem, layout, classes, sampling.max_order).items():
+        if i == j:
+            at_once[share.numbers] = sum(share.at(modes, sampling, wave).sum(axis=1) for wave, modes in enumerate(sampling.modes))
+    return PointStructure(problem, grid, layout, motion, _over_images(layout, classes, by_class), _over_images(layout, classes, at_once))
+
+
+def _over_images(layout: PointLayout, classes: PairClasses, values: Numbers) -> Numbers:
+    """Return what forces at a carried point and all its images do, (carried points, carried points, ...), from values by class."""
+    pairs = [(side * layout.member_count + members) for side in (0, 1) for members in layout.images]
+    return np.stack([values[classes.number[:, images]].sum(axis=1) for images in pairs], axis=1)
+
+
+def solve_points(structure: PointStructure, progress: Progress | None = None) -> PointSolution:
+    """Return what the absorbers do: exact where all are linear, by the march otherwise.
+
+    Raises
+    ------
+    InputError
+        If a step does not converge.
+    """
+    layout, grid = structure.layout, structure.grid
+    absorbers = layout.absorbers
+    if absorbers.is_linear:
+        force, displacement = _exact(structure)
+        spectra = layout.of_every(force)
+        histories, moved, error = grid.invert(force), grid.invert(displacement), 0.0
+    else:
+        result = march(structure, absorbers, progress=progress)
+        histories, moved = result.force, result.mass_displacement
+        error = _march_error(structure, histories)
+        spectra = layout.of_every(grid.transform_linear(histories))
+    every = layout.of_every(histories)
+    sides = every.reshape(2, layout.member_count, -1).swapaxes(0, 1)
+    forces = PointForces(layout.points, spectra, layout.parities)
+    return PointSolution(forces, sides, moved[absorbers.member], error)
+
+
+def _exact(structure: PointStructure) -> tuple[ComplexArray, ComplexArray]:
+    """Return the transforms of the forces (2N, nodes) and of the masses' displacements (N, nodes) of linear absorbers."""
+    absorbers, nodes = structure.layout.absorbers, structure.grid.nodes
+    count, index = absorbers.count, np.arange(absorbers.count)
+    own, other, mass = admittance(absorbers, nodes)
+    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
+    for a in (0, 1):
+        law[:, a * count + index, a * count + index] = own
+        law[:, a * count + index, (1 - a) * count + index] = other
+    receptance = np.ascontiguousarray(np.moveaxis(structure.receptance, -1, 0))
+    moved = np.linalg.solve(np.eye(2 * count) + receptance @ law, structure.motion.T[:, :, None])
+    force = -(law @ moved)[:, :, 0].T
+    walls = moved[:, :, 0].T
+    return force, mass.T * (walls[:count] + walls[count:])
+
+
+class _CoarserPoints(PointStructure):
+    """Points seen at every few steps of a run: for the error of the march."""
+
+    def __init__(self, fine: PointStructure, every: int) -> None:
+        coarse = LaplaceGrid(fine.grid.time_step * every, fine.grid.steps // every)
+        super().__init__(fine.problem, coarse, fine.layout, fine.motion, fine.receptance, fine.immediate)
+        self._fine, self._kept = fine, slice(0, coarse.time.size * every, every)
+        self.units.kernels = KernelTable(summed_weights(fine.kernels.kernels, every, coarse.time.size))
+
+    @property
+    def linear_displacement(self) -> FloatArray:
+        """W of the points without absorbers at the kept instants."""
+        return self._fine.linear_displacement[..., self._kept]
+
+    @property
+    def linear_velocity(self) -> FloatArray:
+        """Velocity dW/dt of the points without absorbers at the kept instants."""
+        return self._fine.linear_velocity[..., self._kept]
+
+
+def _march_error(structure: PointStructure, force: FloatArray) -> float:
+    """Return a share of what changes in the forces at steps eight times longer, or four times or twice; 1 if all of them fail."""
+    found = 1.0
+    for every, (share, telling) in SHARES.items():
+        coarser = _CoarserPoints(structure, every)
+        try:
+            with np.errstate(all="ignore"):
+                coarse = march(coarser, structure.layout.absorbers).force
+        except (InputError, np.linalg.LinAlgError, FloatingPointError):
+            continue
+        change, whole = force[:, ::every][:, : coarse.shape[1]] - coarse, np.linalg.norm(force[:, ::every])
+        if np.isfinite(change).all() and whole > 0:
+            found = min(found, share * float(np.linalg.norm(change) / whole))
+        if found < telling:
+            break
+    return found

@@ -1,0 +1,108 @@
+"""Point absorbers of three-dimensional runs: symmetry, exact against marched, moved and turned systems, rows of them, what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.errors import InputError
+from coaxshell.solver.axial import solve as axial_solve
+from coaxshell.solver.axial.sampling import AxialSampling
+
+RUN = {"duration": 2.0, "time_step": 2e-2, "modes": 12, "dimensions": 3}
+LINKS = {"mass": 20.0, "damping": 1e4, "linear_stiffness": 1e8, "footprint": 0.2}
+BARE = cx.presets.load("bare")
+
+
+def off(found, true):
+    found, true = np.asarray(found), np.asarray(true)
+    return float(np.linalg.norm(found - true) / np.linalg.norm(true))
+
+
+def run(absorbers, system=BARE, **changes):
+    return cx.simulate(system.replace(absorbers=absorbers), **{**RUN, **changes})
+
+
+def test_marched_forces_tend_to_the_exact_ones_at_second_order():
+    ring = cx.absorber_ring(4, z=[-0.4, 0.0, 0.4], **LINKS)
+    almost = cx.absorber_ring(4, z=[-0.4, 0.0, 0.4], **LINKS, cubic_stiffness=1e-3)
+    errors = []
+    for step in (2e-2, 1e-2):
+        exact, marched = run(ring, time_step=step), run(almost, time_step=step)
+        errors.append(off(marched.absorber_force(), exact.absorber_force()))
+        told = marched.errors().sel(cause="march", quantity="stress").to_numpy()
+        assert off(marched.stress("inner"), exact.stress("inner")) < 5 * told.max()
+    assert errors[0] < 5e-3
+    assert errors[1] < errors[0] / 3
+
+
+def test_mirror_images_carried_once_do_what_all_of_them_do():
+    ring = cx.absorber_ring(4, z=[-0.4, 0.4], **LINKS, cubic_stiffness=1e17)
+    nothing = cx.PointAbsorber(angle=17, z=0.13, mass=1e-9, linear_stiffness=1e-9)
+    once, all_of_them = run(ring), run((*ring, nothing))
+    assert off(once.stress("outer", [0, 50]), all_of_them.stress("outer", [0, 50])) < 1e-9
+    assert off(once.absorber_force(), all_of_them.absorber_force()[:-1]) < 1e-9
+
+
+def test_a_system_that_is_moved_and_turned_does_the_same_there():
+    here = run([cx.PointAbsorber(angle=15, z=0.3, **LINKS)], stations=0.5)
+    source = BARE.source.model_copy(update={"angle": 25.0, "z": 0.1})
+    there = run([cx.PointAbsorber(angle=40, z=0.4, **LINKS)], BARE.replace(source=source), stations=0.6)
+    for component in ("hoop", "axial", "shear"):
+        moved = there.stress("inner", [25, 60, 200], component=component)
+        assert off(moved, here.stress("inner", [0, 35, 175], component=component)) < 1e-10
+    assert off(there.absorber_force(), here.absorber_force()) < 1e-10
+
+
+def test_a_row_of_points_closer_than_any_wave_is_a_line(monkeypatch):
+    plane = BARE.replace(source=cx.PlaneShock(peak_pressure=2.5e4, decay_time=1.3e-4))
+    per_metre = {"mass": 20.0, "damping": 1e4, "linear_stiffness": 1e8, "cubic_stiffness": 1e20}
+    line = cx.simulate(plane.replace(absorbers=cx.absorber_ring(4, **per_metre)), duration=2.0, time_step=2e-2, modes=12)
+    errors = []
+    for spacing in (0.8, 0.4, 0.1):
+        points = cx.absorber_ring(4, z=0.0, **{name: value * spacing for name, value in per_metre.items()}, footprint=1e-9)
+        # one absorber in an axial period of its spacing is an endless row of them
+        monkeypatch.setattr(axial_solve, "resolved_sampling", lambda *_, spacing=spacing: (AxialSampling(spacing, 12, 40.0), []))
+        row = run(points, plane, stations=[spacing / 2])
+        errors.append(off(row.stress("inner", station=spacing / 2), line.stress("inner")))
+    assert errors[-1] < 1e-12  # the first wavenumber but 0 lies above the highest
+    assert errors[0] > errors[-1]
+
+
+def test_what_is_read_of_them():
+    found = run([cx.PointAbsorber(angle=0, z="20 cm", **LINKS), cx.PointAbsorber(angle=90, z=0.0, **LINKS)])
+    force, moved = found.absorber_force(), found.absorber_displacement()
+    assert force.dims == ("absorber", "side", "time")
+    assert force.attrs["units"] == "N"
+    assert force["z"].to_numpy().tolist() == [0.2, 0.0]
+    assert moved.attrs["units"] == "m"
+    told = found.summary().to_dict()
+    assert told["absorber_force"] == pytest.approx(float(abs(force).max()))
+    # the mass answers the sum of both links' forces: m q'' = -(f_0 + f_1)
+    time = force["time_seconds"].to_numpy()
+    velocity = np.gradient(moved[0], time)
+    acceleration = np.gradient(velocity, time)
+    assert off(LINKS["mass"] * acceleration[4:-4], -force[0].sum("side")[4:-4]) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: cx.simulate(BARE.replace(absorbers=[cx.PointAbsorber(z=0, mass=1)]), duration=1, time_step=0.1, modes=4), "dimensions=3"),
+        (lambda: run(cx.absorber_ring(4, mass=1, linear_stiffness=1e6)), "line absorbers"),
+        (lambda: cx.PointAbsorber(z=0, mass=0), "undetermined"),
+        (lambda: cx.PointAbsorber(z="3 kg", mass=1), "z"),
+        (lambda: BARE.replace(absorbers=[cx.PointAbsorber(z=0, mass=1, inner_shell=1)]), "no shell outside"),
+    ],
+)
+def test_what_does_not_fit_is_refused(make, match):
+    with pytest.raises(InputError, match=match):
+        make()
+
+
+def test_toml_holds_them_without_loss(tmp_path):
+    system = BARE.replace(absorbers=cx.absorber_ring(3, z=[-0.5, 0.5], mass=1, linear_stiffness="1 MN/m", footprint="12 mm"))
+    path = tmp_path / "system.toml"
+    system.to_toml(path)
+    assert cx.System.from_toml(path) == system
