@@ -76,14 +76,14 @@ def test_an_item_of_an_option_is_called_by_the_option(refused):
     assert "--engine: 'direct' solves two dimensions only" in refused("run", "bare", "--dimensions", "3", "--engine", "direct")
 
 
-@pytest.mark.parametrize("command", [("plot", "bare"), ("snapshots", "bare"), ("animate", "bare"), ("figure", "2"), ("figure", "12")])
+@pytest.mark.parametrize("command", [("snapshots", "bare"), ("animate", "bare"), ("figure", "2"), ("figure", "12")])
 def test_commands_that_show_two_dimensions_say_so(refused, command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     told = refused(*command, "--dimensions", "3")
     assert told == "error: --dimensions: 3 is not for this command, which shows two; use coaxshell run, or --dimensions 2\n"
 
 
-@pytest.mark.parametrize("option", ["--figure=x.png", "--energy=x.pdf", "--output=x.nc", "--compare=active"])
+@pytest.mark.parametrize("option", ["--energy=x.pdf"])
 def test_options_that_show_two_dimensions_say_so(refused, option, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     name = option.partition("=")[0]

@@ -16,6 +16,8 @@ TRANSIT = 1 / 1400
 class FakeResponse:
     """Damped oscillations that start at each point's own arrival."""
 
+    stations = None
+
     def __init__(self, system, amplitude=1.0):
         self.system = system
         self.amplitude = amplitude
@@ -39,6 +41,8 @@ class FakeResponse:
             return self.displacement(shell, angle, component, relative="relative" in quantity)
         if quantity.endswith(("velocity", "acceleration")):
             return self._array(shell, angle, 1e-2 if quantity.endswith("velocity") else 1e3, 9.0)
+        if quantity.endswith("_stress"):
+            return self._array(shell, angle, 1e5, 9.0)
         return getattr(self, quantity)(shell, angle)
 
     def _array(self, shell, angle, scale, frequency):

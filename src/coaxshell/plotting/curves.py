@@ -60,6 +60,8 @@ def figure_curves(
     runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
     angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
     sections = _sections(runs, station)
+    if all(section.station is None for section in sections.values()) and _of_space(quantity):
+        raise InputError("quantity", f"{quantity!r} belongs to three dimensions", "run with dimensions=3")
     for where, count, most in (
         ("station" if len(sections) > len(runs) else "responses", len(sections), len(_DASHES)),
         ("angle", len(angles), len(_COLOURS)),
@@ -125,6 +127,12 @@ def _sections(runs: Mapping[str, Response], station: Any) -> dict[str, _Section]
         for z in chosen:
             found[f"{name}, z = {z:g} m" if name and len(runs) > 1 else f"z = {z:g} m"] = _Section(response, float(z))
     return found
+
+
+def _of_space(quantity: str) -> bool:
+    from coaxshell.response.quantities import QUANTITIES as TABLE
+
+    return quantity in TABLE and TABLE[quantity].dimensions == 3
 
 
 def _spread(stations: FloatArray, most: int) -> list[float]:

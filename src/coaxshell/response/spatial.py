@@ -63,7 +63,7 @@ class SpatialResponse(WithoutFields, Response):
     def at(self, station: Any) -> SpatialResponse:
         """Return the response at some of its stations alone: one axial position (m or text) or several."""
         chosen, _ = chosen_stations(self.stations, station)
-        return SpatialResponse(self.spatial.some(chosen))
+        return self if chosen == list(range(self.stations.size)) else SpatialResponse(self.spatial.some(chosen))
 
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read at each of some stations, dims (time, station, ...)."""

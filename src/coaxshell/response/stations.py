@@ -16,7 +16,7 @@ from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.solve import station_spectra
 from coaxshell.solver.stations import stations_of
 
-_SAME = 1e-9
+SAME = 1e-9
 """Of a station's position, in m, within which it is found."""
 
 
@@ -44,7 +44,7 @@ def chosen_stations(known: FloatArray, station: Any) -> tuple[list[int], bool]:
     chosen = []
     for z in asked:
         near = int(np.abs(known - z).argmin())
-        if abs(known[near] - z) > _SAME:
+        if abs(known[near] - z) > SAME:
             listed = ", ".join(f"{one:g}" for one in known[:8]) + (", ..." if known.size > 8 else "")
             raise InputError("station", f"{z:g} m is none of the run's", f"it has {listed} m; name others in stations= of the run")
         chosen.append(near)

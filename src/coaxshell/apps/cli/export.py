@@ -52,7 +52,7 @@ def export(
     side = options.whole("--points", points)
     with options.named_as_options():
         check_grid(half_width, side, factor)
-    (response,) = answers(context, [source], request, quiet=quiet)
+    (response,) = answers(context, [source], request, quiet=quiet, dimensions=2 if to == "paraview" else 3)
     with options.named_as_options(folder="output", path="output"), progress(quiet) as report:
         if to == "paraview":
             export_paraview(

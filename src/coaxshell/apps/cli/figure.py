@@ -61,7 +61,7 @@ def figure(
     if isinstance(recipe, StudyRecipe):
         tell_warnings(_draw_study(recipe, sources, request, target, quiet=quiet))
     else:
-        responses = answers(context, sources, request, quiet=quiet, options=("--preset", "--preset"))
+        responses = answers(context, sources, request, quiet=quiet, arguments=("--preset", "--preset"))
         with progress(quiet) as report:
             drawn = recipe.draw(responses, report)
         write_figure(drawn, target, "--output")

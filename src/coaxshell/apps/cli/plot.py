@@ -40,10 +40,10 @@ def plot(
 ) -> None:
     """Draw a quantity of a run against time.
 
-    The run is a saved one, or a preset or a .toml file that is solved; with --compare, two of them. The paper's own figures: coaxshell
-    figure.
+    The run is a saved one, or a preset or a .toml file that is solved; with --compare, two of them. Runs in three dimensions are drawn at
+    --stations, at most four, and may stand beside one in two. The paper's own figures: coaxshell figure.
     """
-    from coaxshell.apps.cli.comparison import labels
+    from coaxshell.apps.cli.comparison import run_labels
     from coaxshell.plotting import FIGURE_SUFFIXES, QUANTITIES, figure_curves
     from coaxshell.response.arguments import one_of
 
@@ -51,9 +51,9 @@ def plot(
     target = Outputs(force).file(output or Path(f"{chosen}.png"), "--output", FIGURE_SUFFIXES)
     angles = [options.number("--angle", each) for each in angle.split(",")]
     sources = [source, *([compare] if compare else [])]
-    responses = answers(context, sources, request, quiet=quiet)
-    names = labels(*(response.system for response in responses)) if compare else (responses[0].system.name or Path(source).stem,)
-    with options.named_as_options(shell="shell", shells="shell", responses="compare"):
+    responses = answers(context, sources, request, quiet=quiet, dimensions=3)
+    names = run_labels(*responses) if compare else (responses[0].system.name or Path(source).stem,)
+    with options.named_as_options(shell="shell", shells="shell", quantity="quantity", responses="compare", station="stations"):
         drawn = figure_curves(dict(zip(names, responses, strict=True)), chosen, shell, angles)
     write_figure(drawn, target, "--output")
     tell_all_warnings(responses)

@@ -36,7 +36,7 @@ def run(
         typer.Option(
             "--compare",
             metavar="SCENARIO",
-            help="Solve this one too and print both side by side: by how much the first is smaller or larger.",
+            help="Solve this one too, or read a saved run (.nc), and print both side by side: by how much the first is smaller or larger.",
         ),
     ] = None,
     figure: Annotated[
@@ -52,11 +52,13 @@ def run(
     """Solve a system and print its peaks.
 
     With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them;
-    --output saves the first run.
+    --output saves the first run. With --dimensions 3 the shells answer at --stations to the true spherical shock; beside a saved run in
+    two dimensions the first station is compared.
     """
-    from coaxshell.apps.cli.comparison import labels, print_comparison
+    from coaxshell.apps.cli.comparison import compared, print_comparison, run_labels
     from coaxshell.apps.cli.output import print_summary, tell_warnings
-    from coaxshell.apps.cli.running import load_reference, load_system
+    from coaxshell.apps.cli.running import is_saved, load_reference, load_system
+    from coaxshell.response import load_response
 
     outputs = Outputs(force)
     if output is not None:
@@ -64,25 +66,28 @@ def run(
     outputs.figure(figure)
     outputs.figure(energy, "--energy")
     systems = [load_system(scenario, request.changes or ())]
-    given = {"--output": output, "--compare": compare, "--figure": figure, "--energy": energy}
-    for option in (name for name, value in given.items() if value is not None):
-        request.require_two_dimensions(systems[0], option)
-    if compare is not None:
+    if energy is not None:
+        request.require_two_dimensions(systems[0], "--energy")
+    saved = [load_response(compare)] if compare is not None and is_saved(compare) else []
+    if compare is not None and not saved:
         systems.append(load_reference(compare, request.changes or ()))
-    responses = [request.solve(system, quiet=quiet) for system in systems]
-    names = labels(systems[0], systems[-1]) if compare is not None else (systems[0].name or scenario,)
+    for system in systems:
+        request.check(system)
+    responses = [*(request.solve(system, quiet=quiet) for system in systems), *saved]
+    names = run_labels(*responses) if compare is not None else (systems[0].name or scenario,)
     named = dict(zip(names, responses, strict=True))
+    shown = compared(named) if compare is not None else named
     if output is not None:
         with named_as_options(path="output"):
             responses[0].save(output)
-    _draw(named, figure, energy, quiet=quiet)
+    _draw(shown, figure, energy, quiet=quiet)
     if as_json:
         found = {name: response.summary() for name, response in named.items()}
         print_document(runs_document(found))
         for summary in found.values():
             tell_warnings(summary.warnings)
     elif compare is not None:
-        print_comparison(named)
+        print_comparison(shown)
     else:
         print_summary(responses[0])
     for word, path in (("saved", output), ("wrote", figure), ("wrote", energy)):
@@ -93,9 +98,10 @@ def run(
 def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:
     """Draw the runs, and where the energy of the first goes."""
     if figure is not None:
-        from coaxshell.plotting import figure_comparison
+        from coaxshell.plotting import figure_comparison, figure_curves
 
-        write_figure(figure_comparison(named), figure)
+        alone = len(named) == 1 and next(iter(named.values())).stations is not None
+        write_figure(figure_curves(named) if alone else figure_comparison(named), figure)
     if energy is not None:
         from coaxshell.apps.cli.progress import progress
         from coaxshell.plotting import figure_energy

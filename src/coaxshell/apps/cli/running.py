@@ -112,11 +112,22 @@ class Request:
         from coaxshell.response import simulate
         from coaxshell.solver.cost import run_cost
 
+        self.check(system)
         settings = self.settings(system)
         with options.named_as_options(), progress(quiet) as report:
             if settings.modes != "auto":
                 tell_time(run_cost(system, settings), "the run", quiet)
             return simulate(system, settings=settings, progress=report)
+
+    def check(self, system: System) -> None:
+        """Refuse what a run in three dimensions does not know, before any other run is begun; InputError."""
+        settings = self.settings(system)
+        if settings.dimensions == 3:
+            from coaxshell.solver.axial.solve import require_known
+            from coaxshell.solver.scaling import dimensionless
+
+            with options.named_as_options():
+                require_known(dimensionless(system, dimensions=3), settings)
 
     def settings(self, system: System) -> Settings:
         """Return the settings of a run of a system; InputError names the option that is wrong."""
@@ -177,37 +188,65 @@ def is_saved(source: str) -> bool:
 
 
 def answers(
-    context: typer.Context, sources: Sequence[str], request: Request, *, quiet: bool, options: tuple[str, str] = ("SOURCE", "--compare")
+    context: typer.Context,
+    sources: Sequence[str],
+    request: Request,
+    *,
+    quiet: bool,
+    arguments: tuple[str, str] = ("SOURCE", "--compare"),
+    dimensions: int = 2,
 ) -> list[Response]:
     """Return the response of each source: a saved run (.nc), a preset or a scenario (.toml).
 
-    *options* are the arguments that name the first and the second source.
+    *arguments* are those that name the first and the second source; *dimensions* are those that the command shows. Of a saved run
+    in three dimensions --stations chooses what is shown.
 
     Raises
     ------
     InputError
-        There is no such source, or every one is a saved run and an option for solving is given.
+        There is no such source, it has more dimensions, or every one is a saved run and an option for solving is given.
     """
-    if all(is_saved(source) for source in sources):
-        _refuse_solving_options(context)
-    found = []
+    saved = {source: _opened(context, source, dimensions) for source in sources if is_saved(source)}
+    if len(saved) == len(set(sources)):
+        _refuse_solving_options(context, chooses_stations=any(response.stations is not None for response in saved.values()))
+    systems: dict[int, System] = {}
     for number, source in enumerate(sources):
-        if is_saved(source):
-            from coaxshell.response import load_response
-
-            found.append(load_response(source))
-        else:
+        if source not in saved:
             load = load_reference if number else load_system
-            system = load(source, request.changes or (), options[number > 0])
-            request.require_two_dimensions(system)
-            found.append(request.solve(system, quiet=quiet))
-    return found
+            systems[number] = load(source, request.changes or (), arguments[number > 0])
+            if dimensions == 2:
+                request.require_two_dimensions(systems[number])
+            request.check(systems[number])
+    return [saved[source] if source in saved else request.solve(systems[i], quiet=quiet) for i, source in enumerate(sources)]
 
 
-def _refuse_solving_options(context: typer.Context) -> None:
+def _opened(context: typer.Context, source: str, dimensions: int) -> Response:
+    """Return a saved run, of three dimensions at the stations that are asked for."""
+    from coaxshell.response import load_response
+
+    response = load_response(source)
+    if response.stations is None:
+        return response
+    if dimensions == 2:
+        raise InputError(source, "is a run in three dimensions, this command shows two", "use coaxshell info, plot or export --to csv")
+    if not _typed(context, "stations"):
+        return response
+    from coaxshell.response.spatial import SpatialResponse
+
+    assert isinstance(response, SpatialResponse)
+    with options.named_as_options(station="stations"):
+        return response.at(context.params["stations"])
+
+
+def _typed(context: typer.Context, parameter: str) -> bool:
+    """Return whether an option was given on the command line."""
+    source = context.get_parameter_source(parameter)
+    return source is not None and source.name == "COMMANDLINE"
+
+
+def _refuse_solving_options(context: typer.Context, *, chooses_stations: bool) -> None:
     for parameter, option in _FOR_SOLVING.items():
-        source = context.get_parameter_source(parameter)
-        if source is not None and source.name == "COMMANDLINE":
+        if _typed(context, parameter) and not (chooses_stations and parameter == "stations"):
             raise InputError(option, "has no effect on a saved run", "leave it out, or name a preset or a .toml file to solve")
 
 
