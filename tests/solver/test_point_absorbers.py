@@ -106,3 +106,16 @@ def test_toml_holds_them_without_loss(tmp_path):
     path = tmp_path / "system.toml"
     system.to_toml(path)
     assert cx.System.from_toml(path) == system
+
+
+def test_files_hold_what_they_did(tmp_path):
+    found = run(cx.absorber_ring(3, z=[0.1], **LINKS, cubic_stiffness=1e17))
+    loaded = cx.load_response(found.save(tmp_path / "run.nc"))
+    np.testing.assert_array_equal(loaded.absorber_force(), found.absorber_force())
+    np.testing.assert_array_equal(loaded.absorber_displacement(), found.absorber_displacement())
+    np.testing.assert_array_equal(loaded.stress("inner"), found.stress("inner"))
+    again = loaded.without_transforms().shell_velocity("outer")
+    np.testing.assert_allclose(again, found.shell_velocity("outer"), rtol=0, atol=1e-12 * float(abs(again).max()))
+    few = found.thin(5)
+    np.testing.assert_array_equal(few.absorber_force(), found.absorber_force()[..., ::5])
+    assert cx.load_response(few.save(tmp_path / "few.nc")).absorber_force().shape == few.absorber_force().shape

@@ -44,6 +44,15 @@ VOLTAGES = {
     "potential_rate": ("V c_e/a", "derivative of potential_{} by time"),
 }
 TRANSFORMS = ("normal_transform", "tangential_transform")
+ABSORBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "absorber_displacement": (("absorber", "time"), "a", "displacement q of the point absorbers' masses, positive inward"),
+    "absorber_force": (
+        ("absorber", "side", "time"),
+        "rho_e c_e^2 a^2",
+        "forces of the point absorbers on the inner and outer shell they link, positive inward",
+    ),
+}
+"""Arrays of runs with point absorbers."""
 _CAUSES = 4
 
 
@@ -53,6 +62,9 @@ def to_dataset(solution: SpatialSolution) -> xr.Dataset:
     for name, values in solution.fields.items():
         written, units, long_name = _told(name)
         arrays[written] = xr.Variable(SPATIAL_MODAL, values, {"units": units, "long_name": long_name})
+    for name, (dims, units, long_name) in ABSORBERS.items():
+        if (found := getattr(solution, name)) is not None:
+            arrays[name] = xr.Variable(dims, found, {"units": units, "long_name": long_name})
     if solution.spectra is not None:
         for name, spectrum in zip(TRANSFORMS, solution.spectra[1:], strict=True):
             parts = np.ascontiguousarray(spectrum).view(np.float64).reshape(*spectrum.shape, 2)
@@ -73,7 +85,8 @@ def _told(field: str) -> tuple[str, str, str]:
 def dimensions_of(file: ForeignFile) -> dict[str, tuple[str, ...]]:
     """Return the arrays of fields and transforms that a file may hold, and their dimensions."""
     names = [*FIELDS, *(f"{kind}_{number}" for kind in VOLTAGES for number in range(_layers_in(file)))]
-    return {**dict.fromkeys(names, SPATIAL_MODAL), **dict.fromkeys(TRANSFORMS, TRANSFORM)}
+    of_absorbers = {name: dims for name, (dims, _, _) in ABSORBERS.items()}
+    return {**dict.fromkeys(names, SPATIAL_MODAL), **of_absorbers, **dict.fromkeys(TRANSFORMS, TRANSFORM)}
 
 
 def sizes_of(file: ForeignFile) -> dict[str, int]:
@@ -102,6 +115,8 @@ def solution_of(file: ForeignFile) -> SpatialSolution:
         Estimates(*np.moveaxis(arrays["error_estimate"], -1, 0)),
         told.warnings,
         told.timings,
+        absorber_displacement=arrays.get("absorber_displacement"),
+        absorber_force=arrays.get("absorber_force"),
     )
     restored.judge_instants(solution.time, solution.settings)
     if not file.sealed and solution.whole and told.about["checksum"] != checksum(arrays, told.text, told.about):
@@ -134,6 +149,7 @@ def _agree(sizes: Mapping[str, int], file: ForeignFile, problem: Problem, settin
         (sizes["shell"], len(problem.shells), "shells", "scenario"),
         (_layers_in(file), piezoelectric_layers(problem), "voltages of piezoelectric layers", "scenario"),
         (sizes["station"], len(settings.stations), "stations", "settings"),
+        (sizes.get("absorber", 0), len(problem.system.point_absorbers), "point absorbers", "scenario"),
         (sizes["mode"] - 1, settings.modes, "as highest order", "settings"),
         (sizes.get("node", grid.samples // 2 + 1), grid.samples // 2 + 1, "Laplace nodes", "settings"),
     ):
@@ -141,7 +157,7 @@ def _agree(sizes: Mapping[str, int], file: ForeignFile, problem: Problem, settin
             raise ValueError(f"{found} {what} in the arrays, {expected} in the {where}")
     if any(f"potential_rate_{number}" in file for number in range(_layers_in(file))) != (f"potential_rate_{_layers_in(file) - 1}" in file):
         raise ValueError("rates of some layers only")
-    fixed = {"quantity": len(QUANTITIES), "cause": _CAUSES, "part": 2}
+    fixed = {"quantity": len(QUANTITIES), "cause": _CAUSES, "part": 2, "side": 2}
     if sizes["half"] not in (1, 2) or any(sizes.get(dim, size) != size for dim, size in fixed.items()):
         raise ValueError("arrays of another shape than ours")
 

@@ -49,7 +49,9 @@ def thinned_stations(solution: SpatialSolution, every: int, window: Sequence[flo
     kept = _kept(solution.time, every, window)
     fields = {**solution.fields, **_potential_rates(solution)}
     fields = {name: values[..., kept].copy() for name, values in fields.items()}
-    fewer = replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None)
+    absorbers = {name: getattr(solution, name) for name in ("absorber_displacement", "absorber_force")}
+    absorbers = {name: None if values is None else values[..., kept].copy() for name, values in absorbers.items()}
+    fewer = replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None, **absorbers)
     return replace(fewer, warnings=with_missing(fewer))
 
 
