@@ -102,4 +102,21 @@ SPATIAL = (
         "shear stress by the twist of a station's field",
         "structure/test_axial_stress.py",
     ),
+    # what is kept of stations
+    Mutation(
+        "stations-alone",
+        "solver/axial/solution.py",
+        "spectra.normal[chosen]",
+        "spectra.normal",
+        "transforms of stations that are read alone: those of another station",
+        "response/test_station_files.py",
+    ),
+    Mutation(
+        "potential-rates",
+        "response/thinning.py",
+        "time_derivative(values, step) for name, values in potentials",
+        "time_derivative(values, 2.0 * step) for name, values in potentials",
+        "rates of voltages kept where instants are left out",
+        "response/test_station_files.py",
+    ),
 )

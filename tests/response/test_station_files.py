@@ -123,6 +123,27 @@ def test_thin_keeps_what_can_be_kept(whole: SpatialResponse, tmp_path: Path) -> 
         whole.thin(21)
 
 
+def test_point_absorbers_are_kept(tmp_path: Path) -> None:
+    ring = cx.absorber_ring(2, z=[0.0, 0.4], mass=20.0, damping=1e4, linear_stiffness=1e8, cubic_stiffness=1e17, footprint=0.2)
+    run = cx.simulate(cx.presets.load("bare").replace(absorbers=ring), **QUICK)
+    found = loaded(run.save(tmp_path / "run.nc"))
+    xr.testing.assert_identical(found.absorber_displacement(), run.absorber_displacement())
+    xr.testing.assert_identical(found.absorber_force(), run.absorber_force())
+    assert str(found.summary()) == str(run.summary())
+    thin = loaded(found.thin(5).save(tmp_path / "thin.nc"))
+    np.testing.assert_array_equal(thin.absorber_force(), run.absorber_force()[..., ::5])
+    np.testing.assert_array_equal(run.to_dataframe()["absorber 3 displacement (m)"], run.absorber_displacement()[3])
+    assert "absorber_force (absorber 4, side 2, time 21)" in info(tmp_path / "run.nc")
+    with h5py.File(tmp_path / "run.nc", "r+") as file:
+        del file["absorber_force"]
+    with pytest.raises(InputError, match="0 point absorbers in the arrays, 4 in the scenario"):
+        load_response(tmp_path / "run.nc")
+    force = run.spatial.absorber_force.copy()  # type: ignore[attr-defined]
+    force[1, 0, 4] = np.inf
+    with pytest.raises(InputError, match="the force of the absorbers is inf first at absorber 1, side 0, t = 0"):
+        SpatialResponse(replace(run.spatial, absorber_force=force))  # type: ignore[attr-defined]
+
+
 def test_stations_alone_are_those_of_the_run(whole: SpatialResponse, tmp_path: Path) -> None:
     alone = whole.at("70 cm")
     assert alone.stations.tolist() == [0.7]

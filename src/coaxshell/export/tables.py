@@ -80,7 +80,7 @@ def export_mat(response: Response, path: str | Path) -> Path:
     }
     if response.stations is not None:
         content["stations"] = response.stations
-    if response.system.absorber_list:
+    if response.system.absorber_list or response.system.point_absorbers:
         content["absorber_displacement"] = np.asarray(response.absorber_displacement())
     with replacing(target) as partial, partial.open("wb") as file:
         savemat(cast(Any, file), content, do_compression=True, oned_as="column")

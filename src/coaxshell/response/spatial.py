@@ -107,8 +107,12 @@ class SpatialResponse(WithoutFields, Response):
         return storage.save(self.spatial, path, compression=compression)
 
     def history_table(self) -> dict[str, FloatArray]:
-        """Return all histories at head and tail of all stations as columns by names with z and units."""
-        return history_table(self.motions, self.stations)
+        """Return all histories at head and tail of all stations as columns by names with z and units; those of point absorbers too."""
+        table = history_table(self.motions, self.stations)
+        if self.system.point_absorbers:
+            for number, row in enumerate(self.absorber_displacement().to_numpy()):
+                table[f"absorber {number} displacement (m)"] = row
+        return table
 
     def plot(
         self,

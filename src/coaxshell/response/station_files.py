@@ -149,7 +149,10 @@ def _agree(sizes: Mapping[str, int], file: ForeignFile, problem: Problem, settin
         (sizes["shell"], len(problem.shells), "shells", "scenario"),
         (_layers_in(file), piezoelectric_layers(problem), "voltages of piezoelectric layers", "scenario"),
         (sizes["station"], len(settings.stations), "stations", "settings"),
-        (sizes.get("absorber", 0), len(problem.system.point_absorbers), "point absorbers", "scenario"),
+        *(
+            (file.shape(name)[0] if name in file else 0, len(problem.system.point_absorbers), "point absorbers", "scenario")
+            for name in ABSORBERS
+        ),
         (sizes["mode"] - 1, settings.modes, "as highest order", "settings"),
         (sizes.get("node", grid.samples // 2 + 1), grid.samples // 2 + 1, "Laplace nodes", "settings"),
     ):

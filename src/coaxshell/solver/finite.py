@@ -81,6 +81,11 @@ def require_finite_stations(solution: SpatialSolution, where: str = "response", 
     axes = ("station", "shell", "half", "order")
     found: list[Stage] = [Stage(where, "time", solution.time, (), True, remedy)]
     found += [Stage(where, f"the field {name}", values, axes, True, remedy) for name, values in solution.fields.items()]
+    for name, of_points, along in (
+        ("displacement", solution.absorber_displacement, ("absorber",)),
+        ("force", solution.absorber_force, ("absorber", "side")),
+    ):
+        found += [] if of_points is None else [Stage(where, f"the {name} of the absorbers", of_points, along, True, remedy)]
     for stage in found:
         index = first_bad(stage.values)
         if index is not None:

@@ -103,7 +103,11 @@ def comparison_rows(first: Summary | SpatialSummary, second: Summary | SpatialSu
                 texts = [_NONE if value is None else engineering(value, unit) for value in pair]
                 grows = any(isinstance(value, Mapping) and value.get("growing", False) for value in found)
                 rows.append((name, label, *texts, GROWING if grows else against(pair[0], pair[1])))
-    for key, label, unit in (("absorber_displacement", "displacement of masses", "m"), ("absorber_force", "force on a shell", "N/m")):
+    spatial = ["stations" in one for one in plain]
+    of_absorbers = [("absorber_displacement", "displacement of masses", "m")]
+    if spatial[0] == spatial[1]:  # a line's force is per metre, a point's is none
+        of_absorbers.append(("absorber_force", "force on a shell", "N" if spatial[0] else "N/m"))
+    for key, label, unit in of_absorbers:
         pair = [one.get(key) for one in plain]
         if any(value is not None for value in pair):
             rows.append(("absorbers", label, *(_NONE if v is None else engineering(v, unit) for v in pair), against(pair[0], pair[1])))

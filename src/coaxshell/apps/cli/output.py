@@ -265,7 +265,8 @@ def runs_document(named: Mapping[str, Summary]) -> dict[str, Any]:
         "angle": "deg",
         "transit_time": "s",
     }
-    units |= {"station": "m"} if dimensions == 3 else {}
+    flat = any(run["settings"].get("dimensions", 2) == 2 for run in runs)
+    units |= {"station": "m", "absorber_force": "N/m in two dimensions, N in three" if flat else "N"} if dimensions == 3 else {}
     return {"runs": runs, "units": units}
 
 
