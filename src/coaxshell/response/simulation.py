@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Unpack
 
 from coaxshell import solver
+from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.system import System
@@ -15,6 +16,7 @@ from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.response import Response
 from coaxshell.response.storage import load_solution
+from coaxshell.solver.axial.blocks import Workplace
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.finite import require_finite_solution, require_finite_stations
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -29,6 +31,7 @@ def simulate(
     system: SystemLike,
     *,
     progress: Progress | None = None,
+    execution: Workplace | None = None,
     **keywords: Unpack[SettingsKeywords],
 ) -> Response:
     """Return the response of a system to its sources.
@@ -53,6 +56,9 @@ def simulate(
         All of these at once, or a table of some; those given beside it change it.
     progress : callable, optional
         Called with the fraction done (0 to 1) and the name of the stage.
+    execution : Execution, optional
+        See :class:`coaxshell.Execution`: where the work of a run in three dimensions is done, by default on all cores of this machine,
+        and where finished parts of it are kept. The answer is the same to the last bit.
 
     Returns
     -------
@@ -62,7 +68,7 @@ def simulate(
     Raises
     ------
     InputError
-        If a setting is not allowed, or there is no such preset or file.
+        If a setting is not allowed, there is no such preset or file, or an execution cannot be had.
     """
     system = as_system(system)
     settings = Settings.asked(system, keywords)
@@ -70,7 +76,9 @@ def simulate(
         from coaxshell.response.spatial import SpatialResponse
         from coaxshell.solver.axial.solve import solve_spatial
 
-        return SpatialResponse(solve_spatial(system, settings, progress))
+        return SpatialResponse(solve_spatial(system, settings, progress, execution))
+    if execution is not None:
+        raise InputError("execution", "has no effect on a run in two dimensions", "leave it out, or use dimensions=3")
     return Response(solver.solve(system, settings=settings, progress=progress))
 
 

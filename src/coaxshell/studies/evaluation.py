@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.response import Response
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.reading import MetricSource
 from coaxshell.studies.structures import Structures, structure_of
-from coaxshell.studies.threads import one_blas_thread
 
 LARGEST_BATCH = 4
 """Cases in one batch at most: what is done again when a worker or the study is killed."""

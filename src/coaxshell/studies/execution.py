@@ -1,4 +1,4 @@
-"""How a study is worked on: one holder for calls, commands and optimisations; nothing of it changes a number."""
+"""How a study, or a run in three dimensions, is worked on: one holder for calls and commands; nothing of it changes a number."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.axial.blocks import BlockMap
 from coaxshell.solver.settings import Settings, SettingsKeywords, whole
+from coaxshell.studies.blocks import BlocksSharedOut
 from coaxshell.studies.executors import MAX_WORKERS, capacity, dask_executor
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.store import StudyStore
@@ -21,16 +23,16 @@ from coaxshell.studies.store import StudyStore
 
 @dataclass(frozen=True)
 class Execution:
-    """How a study is worked on.
+    """How a study is worked on: case by case; or a single run in three dimensions: block by block of its Laplace nodes.
 
     Attributes
     ----------
     executor : concurrent.futures.Executor, optional
         Where the work is done; a pool of processes of our own otherwise.
     workers : int, optional
-        Processes of that pool, one a core by default; 1 works in this process.
+        Processes of that pool, one a core by default; 1 works in this process. A single run takes threads of this process by default.
     store : str or Path, optional
-        Folder in which every finished case is kept; safe to kill at any moment, safe for several writers.
+        Folder in which every finished case or block is kept; safe to kill at any moment, safe for several writers.
     resume : bool
         Go on with what the store holds.
     progress : callable, optional
@@ -66,6 +68,16 @@ class Execution:
     def opened(self, parts: Mapping[str, Any], metrics: Sequence[Metric], where: str = "store") -> StudyStore | None:
         """Return the store of a study, told from others by its *parts*; None if nothing is to be kept. Errors call it *where*."""
         return None if self.store is None else StudyStore(Path(self.store), parts, metrics, resume=self.resume, where=where)
+
+    @contextmanager
+    def mapping(self, run: Mapping[str, Any]) -> Iterator[BlockMap]:
+        """Yield the map of the blocks of a run in three dimensions, told from others by the parts of *run*.
+
+        In this process on all of its cores, unless there are an executor, workers or a cluster; with a store finished blocks are kept.
+        """
+        store = self.opened(run, ())
+        with self.started() as ready:
+            yield BlocksSharedOut(ready.executor, ready.workers, store)
 
     @contextmanager
     def started(self) -> Iterator[Execution]:

@@ -90,7 +90,7 @@ class Store:
 
 
 class StudyStore(Store):
-    """The cases of one study in a folder.
+    """The cases of one study in a folder, or the blocks of one run in three dimensions.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class StudyStore(Store):
     study : mapping
         Plain data that tell one study from another, by parts ("scenario", "over", ...): a difference is told by the part's name.
     metrics : sequence of Metric
-        Their values are what is kept, in this order.
+        Their values are what is kept of cases, in this order.
     resume : bool
         Whether the folder may already hold this study.
     where : str
@@ -128,8 +128,10 @@ class StudyStore(Store):
             self._same(_read(path))
             if not self._resume:
                 kept = sum(1 for _ in self.folder.glob("*.json")) - 1
+                blocks = sum(1 for _ in self.folder.glob("*.npz"))
+                what = f"{blocks} blocks of this run" if blocks else f"{kept} cases of this study"
                 remedy = "use resume (--resume) to go on with it, or remove it"
-                raise InputError(self._where, f"{str(self.folder)!r} already holds {kept} cases of this study", remedy)
+                raise InputError(self._where, f"{str(self.folder)!r} already holds {what}", remedy)
             return
         with scratch(self.folder, sweep=False) as place:
             made = place / MANIFEST

@@ -12,13 +12,13 @@ import numpy as np
 from coaxshell.apps.paper.fields import Fields, fields_of
 from coaxshell.apps.paper.observed import Observed, observe
 from coaxshell.errors import PhysicsWarning
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.identity import origin
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.executors import completed
 from coaxshell.studies.store import Store, digest
 from coaxshell.studies.structures import solve_each
-from coaxshell.studies.threads import one_blas_thread
 
 if TYPE_CHECKING:
     from coaxshell.model import System

@@ -1,35 +1,67 @@
-"""Blocks of Laplace nodes, independent of each other: what is shared out among threads, processes or machines."""
+"""Blocks of Laplace nodes, independent of each other: what is shared out among threads, processes or machines.
+
+What is found at a block are arrays by name, so that whoever maps the blocks can send and keep them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager
+from functools import partial
 from itertools import pairwise
-from typing import Protocol, TypeVar
+from typing import Any, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.progress import Progress
 
 _BLOCK_ELEMENTS = 8 * 1024
 """Order-node pairs of a block, 128 kB a complex array: a few dozen of them stay in a processor's cache."""
 _FEWEST = 32
 
-Found = TypeVar("Found")
+Found = dict[str, npt.NDArray[Any]]
+"""Arrays by name."""
+Work = Callable[[slice], Found]
 
 
 class BlockMap(Protocol):
-    """Gives what a function makes of each block, in the order of the blocks: on threads, or in processes of one or many machines."""
+    """Gives what a function makes of each block, in the order of the blocks: on threads, or in processes of one or many machines.
 
-    def __call__(self, work: Callable[[slice], Found], blocks: list[slice]) -> Iterable[Found]:
+    Work is a ``functools.partial`` of a function that a module has at its top, so that it can be sent; its name says what is found.
+    """
+
+    def __call__(self, work: partial[Found], blocks: list[slice]) -> Iterable[Found]:
         """Return the results as they are needed."""
         ...
 
 
-def on_threads(work: Callable[[slice], Found], blocks: list[slice]) -> Iterable[Found]:
+class Workplace(Protocol):
+    """Where runs in three dimensions have their blocks worked on: :class:`coaxshell.Execution` is one."""
+
+    @property
+    def progress(self) -> Progress | None:
+        """Whom to tell of progress."""
+        ...
+
+    def mapping(self, run: Mapping[str, Any]) -> AbstractContextManager[BlockMap]:
+        """Return the map of the blocks of a run, told from others by plain data."""
+        ...
+
+
+def on_threads(work: partial[Found], blocks: list[slice]) -> Iterable[Found]:
     """Map blocks on all cores of this machine."""
     with ThreadPoolExecutor(WORKERS) as pool:
-        yield from pool.map(work, blocks)
+        yield from pool.map(partial(alike, work), blocks)
+
+
+def alike(work: Work, block: slice) -> Found:
+    """Return what is found at a block, to the last bit the same wherever that is done: sums of BLAS depend on its number of threads."""
+    with one_blas_thread():
+        return work(block)
 
 
 def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:

@@ -126,7 +126,7 @@ def point_structure(
     by_class = np.empty((classes.moved.size, grid.nodes.size), np.complex128)
     work = partial(point_sums, problem, grid, sampling, layout, classes)
     for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
-        motion[:, block], by_class[:, block] = part.motion, part.receptance
+        motion[:, block], by_class[:, block] = part["motion"], part["receptance"]
         if progress is not None:
             progress(done / len(blocks), "points of the absorbers")
     at_once = np.zeros(classes.moved.size)

@@ -24,6 +24,7 @@ from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import axial_position, wave_sets
 from coaxshell.solver.axial.point_forces import WallPoints, patch
 from coaxshell.solver.axial.sampling import AxialSampling
@@ -178,22 +179,6 @@ def pair_classes(layout: PointLayout) -> PairClasses:
     return PairClasses(number.reshape(turned.shape), moved.astype(np.int64), pressed.astype(np.int64))
 
 
-@dataclass(frozen=True)
-class PointSums:
-    """Transforms at a block of nodes.
-
-    Attributes
-    ----------
-    motion : ndarray, shape (carried points, nodes)
-        w of the points under the sources alone.
-    receptance : ndarray, shape (classes, nodes)
-        w of a point per unit force at another.
-    """
-
-    motion: ComplexArray
-    receptance: ComplexArray
-
-
 @dataclass(frozen=True, eq=False)
 class _ClassShares:
     """What the classes on shell i pressed on shell j need: their numbers, (classes, orders), distances along, and their patches' h_k."""
@@ -226,8 +211,10 @@ def class_shares(problem: Problem, layout: PointLayout, classes: PairClasses, ma
 
 def point_sums(
     problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, layout: PointLayout, classes: PairClasses, block: slice
-) -> PointSums:
-    """Return motion and receptance of the points at a slice of the grid's nodes."""
+) -> Found:
+    """Return "motion", w of the points under the sources alone, (carried points, nodes), and "receptance", w of a point per unit force
+    at another, (classes, nodes), at a slice of the grid's nodes.
+    """
     s, carried = grid.nodes[block], layout.carried
     motion = np.zeros((carried.count, s.size), np.complex128)
     receptance = np.zeros((classes.moved.size, s.size), np.complex128)
@@ -248,7 +235,7 @@ def point_sums(
     if not any(waves.modes is sampling.modes for waves in wave_sets(problem, sampling, carried.z, s)):
         for j, modes in enumerate(sampling.modes):
             _add_receptance(receptance, ModalSystem(problem, s, modes), shares, sampling, j)
-    return PointSums(motion, receptance)
+    return {"motion": motion, "receptance": receptance}
 
 
 def _add_receptance(

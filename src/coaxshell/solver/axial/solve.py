@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +15,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
-from coaxshell.solver.axial.blocks import BlockMap, node_blocks, on_threads
+from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
 from coaxshell.solver.axial.left_out import estimated_errors
 from coaxshell.solver.axial.linked import PointSolution, point_structure, solve_points
 from coaxshell.solver.axial.mode_choice import resolved_sampling
@@ -22,7 +23,7 @@ from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
-from coaxshell.solver.axial.sums import station_sums
+from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
@@ -34,7 +35,9 @@ _CHECKED = 16
 """Wavenumbers at which a feedback is checked; poles move with k as smoothly as with the order."""
 
 
-def solve_spatial(system: System, settings: Settings, progress: Progress | None = None, on: BlockMap = on_threads) -> SpatialSolution:
+def solve_spatial(
+    system: System, settings: Settings, progress: Progress | None = None, workplace: Workplace | None = None
+) -> SpatialSolution:
     """Return the modal histories of a system at its stations.
 
     Parameters
@@ -43,8 +46,8 @@ def solve_spatial(system: System, settings: Settings, progress: Progress | None 
     settings : Settings
         Of three dimensions.
     progress : callable, optional
-    on : callable
-        Where blocks of Laplace nodes are worked on. The answer does not depend on it.
+    workplace : Workplace, optional
+        Where blocks of Laplace nodes are worked on, all cores of this machine by default. The answer does not depend on it.
 
     Raises
     ------
@@ -52,6 +55,7 @@ def solve_spatial(system: System, settings: Settings, progress: Progress | None 
         If the system has what three dimensions do not know, its feedback is unstable, or the axial period is too short.
     """
     stopwatch = Stopwatch()
+    progress = progress or (None if workplace is None else workplace.progress)
     problem = dimensionless(system, dimensions=3)
     require_known(problem, settings)
     grid = _grid(settings)
@@ -63,10 +67,12 @@ def solve_spatial(system: System, settings: Settings, progress: Progress | None 
     for modes in sampling.modes[:: max(1, len(sampling.modes) // _CHECKED)]:
         require_stable(problem, modes.max_order, settings.duration, wavenumber=float(modes.wavenumber))
     stopwatch.lap("stability of the feedback")
-    linked = _linked(problem, grid, sampling, progress, on)
-    stopwatch.lap("point absorbers")
-    forces = None if linked is None else linked.forces
-    spectra, squares = _summed(problem, grid, sampling, settings, forces, progress, on)
+    run = {"scenario": system.canonical(), "resolution": settings.arguments()}
+    with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:
+        linked = _linked(problem, grid, sampling, progress, on)
+        stopwatch.lap("point absorbers")
+        forces = None if linked is None else linked.forces
+        spectra, squares = _summed(problem, grid, sampling, settings, forces, progress, on)
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
     histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in spectra.items()}
@@ -123,10 +129,10 @@ def _summed(
     spectra: dict[str, ComplexArray] = {}
     squares: FloatArray = np.zeros(1)
     for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
-        for name, values in part.fields.items():
+        squares = squares + part.pop(SQUARES)
+        for name, values in part.items():
             whole = spectra.setdefault(name, np.zeros((*values.shape[:-1], grid.nodes.size), np.complex128))
             whole[..., block] = values
-        squares = squares + part.squares
         if progress is not None:
             progress(done / len(blocks), "axial wavenumbers")
     return spectra, squares

@@ -6,14 +6,13 @@ added up, so that a run keeps what is at its stations alone, however many wavenu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.sampling import AxialSampling
@@ -25,21 +24,7 @@ _TOGETHER = 16
 """Wavenumbers whose amplitudes are added up at once, by a matrix product."""
 
 
-@dataclass(frozen=True)
-class StationSums:
-    """Transforms of the walls' motion at stations, at a block of nodes.
-
-    Attributes
-    ----------
-    fields : dict of str to ndarray, shape (stations, shells, parities, M + 1, nodes)
-        Of :data:`coaxshell.structure.shell_model.FIELDS` and "potential 0", ..., those that are zero at all stations left out.
-    squares : ndarray, shape (2, shells, 2, M + 1)
-        Mean squares along the axis of W and of the strains, |m V - W|^2 + |k U|^2, parities and nodes added up: under the sources [0] and
-        under the forces of point absorbers [1].
-    """
-
-    fields: dict[str, ComplexArray]
-    squares: FloatArray
+SQUARES = "squares"
 
 
 def station_sums(
@@ -49,8 +34,13 @@ def station_sums(
     stations: FloatArray,
     forces: PointForces | None,
     block: slice,
-) -> StationSums:
-    """Return the motion at stations (z in a) at a slice of the grid's nodes, under the sources and forces of point absorbers."""
+) -> Found:
+    """Return the motion at stations (z in a) at a slice of the grid's nodes, under the sources and forces of point absorbers.
+
+    Arrays (stations, shells, parities, M + 1, nodes) by the names of :data:`coaxshell.structure.shell_model.FIELDS` and "potential 0", ...,
+    those left out that are zero at all stations; and "squares", (2, shells, 2, M + 1): mean squares along the axis of W and of the
+    strains, |m V - W|^2 + |k U|^2, parities and nodes added up, under the sources [0] and under the forces of point absorbers [1].
+    """
     s, parities = grid.nodes[block], source_parities(problem.system.sources)
     parities = parities if forces is None else max(parities, forces.parities)
     shape = (stations.size, len(problem.shells), parities, sampling.max_order + 1, s.size)
@@ -68,7 +58,7 @@ def station_sums(
                 _add(fields, shape, family, waves.wavenumber, some, found)
                 under = squares[int(family.forces is not None)]
                 under += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
-    return StationSums(fields, squares)
+    return {**fields, SQUARES: squares}
 
 
 def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:

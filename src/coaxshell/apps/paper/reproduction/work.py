@@ -19,9 +19,9 @@ from coaxshell.apps.paper.known_runs import Runs, key_of
 from coaxshell.apps.paper.recipes import FigureRecipe
 from coaxshell.apps.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups
 from coaxshell.errors import PhysicsWarning
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
-from coaxshell.studies.threads import one_blas_thread
 
 Piece = tuple[dict[str, Any], dict[str, Any]]
 FILM = {"frames": 200, "fps": 20.0, "pixels": 300}

@@ -1,4 +1,4 @@
-"""BLAS held to one thread while a case is evaluated."""
+"""BLAS held to one thread while a case, or a block of a run, is worked on."""
 
 from __future__ import annotations
 
