@@ -39,11 +39,11 @@ DimensionsOption = Annotated[str, typer.Option("--dimensions", metavar="2|3", he
 StationsOption = Annotated[
     str,
     typer.Option(
-        "--stations", metavar="Z,Z,...", help='Axial positions at which a run in three dimensions answers, in m or as in "0 m,70 cm".'
+        "--stations", metavar="LENGTH,...", help='Axial positions at which a run in three dimensions answers, in m or as in "0 m,70 cm".'
     ),
 ]
 AxialModesOption = Annotated[
-    str | None, typer.Option("--axial-modes", metavar="K", help="Largest axial wavenumber times a.", show_default="as --modes")
+    str | None, typer.Option("--axial-modes", metavar="FACTOR", help="Largest axial wavenumber times a.", show_default="as --modes")
 ]
 AxialPeriodOption = Annotated[
     str | None,

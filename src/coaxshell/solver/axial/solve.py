@@ -143,7 +143,9 @@ def require_known(problem: Problem, settings: Settings) -> None:
     system = problem.system
     if system.absorber_list:
         raise InputError(
-            "absorbers", "line absorbers are uniform along the axis, a spherical shock is not", "use dimensions=2, or no absorbers"
+            "absorbers",
+            "line absorbers are uniform along the axis, a spherical shock is not",
+            "give them a z (point absorbers), or use dimensions=2",
         )
     if system.control is not None and system.control.saturation:
         raise InputError("control.saturation", "is marched in two dimensions alone", "use saturation = false")
