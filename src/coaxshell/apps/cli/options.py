@@ -71,6 +71,14 @@ StoreOption = Annotated[
         show_default="STUDY.store in this folder, removed when all is done",
     ),
 ]
+RunWorkersOption = Annotated[
+    str | None,
+    typer.Option("--workers", metavar="N", help="Processes for a run in three dimensions; threads of this one unless given."),
+]
+RunStoreOption = Annotated[
+    Path | None,
+    typer.Option("--store", metavar="FOLDER", help="Keep finished parts of a run in three dimensions here, for --resume."),
+]
 AllowCodeOption = Annotated[bool, typer.Option("--allow-code", help="Run Python files that the study names outside its folder too.")]
 ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with what has been kept.")]
 

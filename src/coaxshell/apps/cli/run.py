@@ -11,13 +11,14 @@ import typer
 from coaxshell.apps.cli import options
 from coaxshell.apps.cli.options import named_as_options
 from coaxshell.apps.cli.output import Outputs, echo, print_document, runs_document, write_figure
-from coaxshell.apps.cli.running import Request, with_resolution
+from coaxshell.apps.cli.running import Request, WorkRequest, with_options
+from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
 
 
-@with_resolution
+@with_options(request=Request, work=WorkRequest)
 def run(
     scenario: Annotated[
         str,
@@ -27,6 +28,7 @@ def run(
     ],
     *,
     request: Request,
+    work: WorkRequest,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="Save the run as NetCDF (.nc): arrays, system, settings, versions."),
@@ -53,7 +55,7 @@ def run(
 
     With --compare, beside those of another one. --set changes both systems, but absorbers and control only where a system has them;
     --output saves the first run. With --dimensions 3 the shells answer at --stations to the true spherical shock; beside a saved run in
-    two dimensions the first station is compared.
+    two dimensions the first station is compared; --workers and --dask share the work out, --store keeps it for --resume.
     """
     from coaxshell.apps.cli.comparison import compared, print_comparison, run_labels
     from coaxshell.apps.cli.output import print_summary, tell_warnings
@@ -73,7 +75,10 @@ def run(
         systems.append(load_reference(compare, request.changes or ()))
     for system in systems:
         request.check(system)
-    responses = [*(request.solve(system, quiet=quiet) for system in systems), *saved]
+    execution = work.execution(request.settings(systems[0]))
+    if len(systems) > 1 and work.store is not None:
+        raise InputError("--store", "keeps one run", "leave it out, or compare with a saved run (.nc)")
+    responses = [*(request.solve(system, quiet=quiet, execution=execution) for system in systems), *saved]
     names = run_labels(*responses) if compare is not None else (systems[0].name or scenario,)
     named = dict(zip(names, responses, strict=True))
     shown = compared(named) if compare is not None else named

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, fields, replace
 from functools import wraps
 from inspect import Parameter, signature
@@ -107,17 +107,17 @@ class Request:
     axial_modes: options.AxialModesOption = None
     axial_period: options.AxialPeriodOption = None
 
-    def solve(self, system: System, *, quiet: bool) -> Response:
+    def solve(self, system: System, *, quiet: bool, execution: Execution | None = None) -> Response:
         """Solve the system at this resolution, showing progress; InputError names the option that is wrong."""
         from coaxshell.response import simulate
         from coaxshell.solver.cost import run_cost
 
         self.check(system)
         settings = self.settings(system)
-        with options.named_as_options(), progress(quiet) as report:
+        with options.named_as_options(), WorkRequest.named(), progress(quiet) as report:
             if settings.modes != "auto":
                 tell_time(run_cost(system, settings), "the run", quiet)
-            return simulate(system, settings=settings, progress=report)
+            return simulate(system, settings=settings, progress=report, execution=execution)
 
     def check(self, system: System) -> None:
         """Refuse what a run in three dimensions does not know, before any other run is begun; InputError."""
@@ -140,6 +140,50 @@ class Request:
                 raise InputError(option, "is for runs in two dimensions", "leave it out, or use --dimensions 2")
             if not options:
                 raise InputError("--dimensions", "3 is not for this command, which shows two", "use coaxshell run, or --dimensions 2")
+
+
+@dataclass(frozen=True)
+class WorkRequest:
+    """The options that say where a run in three dimensions is worked on, and where its finished parts are kept; as typed."""
+
+    workers: options.RunWorkersOption = None
+    dask: options.DaskOption = None
+    store: options.RunStoreOption = None
+    resume: options.ResumeOption = False
+
+    def execution(self, settings: Settings) -> Execution | None:
+        """Return what they ask of a run; None if nothing.
+
+        Raises
+        ------
+        InputError
+            An option has no effect on the run, or beside another one; no number of processes.
+        """
+        given = {"workers": self.workers, "dask": self.dask, "store": self.store, "resume": self.resume or None}
+        asked = [name for name, value in given.items() if value is not None]
+        if not asked:
+            return None
+        if settings.dimensions == 2:
+            raise InputError(f"--{asked[0]}", "is for a run in three dimensions", "leave it out, or use --dimensions 3")
+        if self.resume and self.store is None:
+            raise InputError("--resume", "does not say where the run is kept", "give its --store")
+        with self.named():
+            return execution_of(self.workers, self.dask, self.store, resume=self.resume)
+
+    @staticmethod
+    def named() -> AbstractContextManager[None]:
+        """Let errors about where a run is worked on name the options."""
+        return named_as_options(workers="workers", address="dask", dask="dask", store="store")
+
+
+def execution_of(workers: str | None, dask: str | None, store: Path | None, *, resume: bool) -> Execution:
+    """Return the execution that the texts of some options describe; InputError if there is no such number of processes."""
+    from coaxshell.solver.settings import whole
+    from coaxshell.studies import Execution
+    from coaxshell.studies.executors import MAX_WORKERS
+
+    number = None if workers is None else whole("workers", workers, MAX_WORKERS)
+    return Execution(workers=number, store=store, resume=resume, dask=dask)
 
 
 def settings_of(system: System, given: Mapping[str, str]) -> Settings:
@@ -281,14 +325,9 @@ class StudyRequest:
         InputError
             No number of processes, or one beside a cluster; no cluster at the address.
         """
-        from coaxshell.solver.settings import whole
-        from coaxshell.studies import Execution
-        from coaxshell.studies.executors import MAX_WORKERS
-
         with ExitStack() as stack:
             with named_as_options(workers="workers", address="dask", dask="dask"):
-                number = None if self.workers is None else whole("workers", self.workers, MAX_WORKERS)
-                asked = Execution(workers=number, store=store, resume=self.resume, dask=self.dask)
+                asked = execution_of(self.workers, self.dask, store, resume=self.resume)
                 ready = stack.enter_context(asked.started())
             yield replace(ready, progress=stack.enter_context(progress(self.quiet, left=True)))
 
