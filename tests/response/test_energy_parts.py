@@ -51,7 +51,7 @@ def moved(double: cx.System) -> Callable[[dict[tuple[int, int, int], float]], Mo
         for place, amplitude in amplitudes.items():
             normal[place] = amplitude * 24.0 / SLOW**4 / (GRID.nodes + 1 / SLOW) ** 5
         spectra = spectra_of(problem, normal)
-        return Motion(run_of(problem), 10, spectra)
+        return Motion.of(run_of(problem), 10, spectra)
 
     return make
 
@@ -95,7 +95,7 @@ def test_a_gap_shaken_slowly_has_the_added_mass_of_potential_flow(moved) -> None
 def test_a_vacuum_holds_nothing(double: cx.System) -> None:
     problem = dimensionless(double.replace(fluids=[cx.VACUUM, double.fluids[1], double.fluids[2]]))
     empty = np.zeros((2, 1, M + 1, GRID.nodes.size), np.complex128)
-    motion = Motion(run_of(problem), 10, spectra_of(problem, empty))
+    motion = Motion.of(run_of(problem), 10, spectra_of(problem, empty))
     assert fluid_energy(motion, 0) is None
 
 

@@ -8,6 +8,7 @@ from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.solution import ModalSolution
 
 TRANSIT = "a/c_e"
@@ -19,7 +20,7 @@ COUNTERCLOCKWISE = "positive towards increasing angle"
 ALONG_AXIS = "positive towards increasing z"
 
 
-def time_coordinates(solution: ModalSolution) -> dict[str, xr.Variable]:
+def time_coordinates(solution: ModalSolution | SpatialSolution) -> dict[str, xr.Variable]:
     """Return the coordinates ``time`` (transits) and ``time_seconds`` of a run, both along the dimension time."""
     seconds = solution.time * solution.problem.scales.time
     return {

@@ -110,7 +110,11 @@ def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis)
 
     *basis* holds the modes at all nodes of the grid.
     """
-    parities, groups = source_parities(problem.system.sources), source_groups(problem, grid.nodes)
+    return incident_of(source_groups(problem, grid.nodes), source_parities(problem.system.sources), grid, basis)
+
+
+def incident_of(groups: list[SourceGroup], parities: int, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    """Return modal pressure and slope dp/dr at r = 1 of the waves of some sources, each (parities, orders, nodes), at all nodes."""
     waves = [group.geometry.incident(grid, basis) for group in groups]
     pressure, slope = (
         np.stack(superposed(parities, basis.modes, ((wave[which], group) for wave, group in zip(waves, groups, strict=True))))

@@ -164,7 +164,7 @@ class MetricSource(DesignReading):
         """Energy that the absorbers' dampers have turned into heat by the end of the run, J/m; 0 without absorbers."""
         if self.solution.absorber_force is None:
             return 0.0
-        last = Motion(self.solution, self.solution.time.size - 1)
+        last = Motion.of(self.solution, self.solution.time.size - 1)
         return float(absorber_energy(last).dissipated[-1]) * self.solution.problem.scales.line_energy
 
     @cached_property

@@ -35,7 +35,7 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
     """
     fitted = motion.problem.system.absorber_list
     time, kept = motion.grid.time, motion.kept
-    links = motion.spectra.links
+    links = motion.links
     powers, energies = np.zeros((2, time.size)), np.zeros((2, time[kept].size))
     if links is not None:
         q, dq, force = links.displacement, links.velocity, links.force
@@ -69,4 +69,4 @@ def _at_absorbers(motion: Motion, shell: int, angle: FloatArray) -> tuple[FloatA
 def _impedance(motion: Motion, shell: int) -> float:
     """Return Z, by which a line force moves the wall's own mass within half a step of the run, spread over the orders -M..M."""
     wall = motion.problem.shells[shell]
-    return 4.0 * np.pi * wall.radius * wall.mass / (motion.grid.time_step * (2 * motion.spectra.modes.max_order + 1))
+    return 4.0 * np.pi * wall.radius * wall.mass / (motion.grid.time_step * (2 * motion.modes.max_order + 1))

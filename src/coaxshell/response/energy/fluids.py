@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.operators import RadialFunctions, annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -117,7 +117,7 @@ def band_of(motion: Motion, walls: tuple[int, ...]) -> Band:
     return Band(window, kept * step, strong * step)
 
 
-def radii_needed(band: Band, phase: float, orders: int) -> int:
+def radii_needed(band: Band, phase: float, orders: float) -> int:
     """Return the number of Gauss points in a region *phase* wide (slowness times width) for modes r^m up to m = orders - 1."""
     waves = max(0.25 * band.highest, 0.45 * band.strong) * phase
     return min(MAX_RADII, int(12 + 2.0 * math.sqrt(orders) + waves))
@@ -167,13 +167,14 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     band = band_of(motion, walls)
     inner, outer = problem.shells[region - 1].radius if region else 0.0, problem.shells[region].radius
     sampler = Sampler(motion.grid, motion.every)
-    width = max(16, _BLOCK_ELEMENTS // motion.orders.size)
+    width = max(16, _BLOCK_ELEMENTS // motion.modes.count)
     blocks = [_block(motion, fluid, walls, band.window, part) for part in sampler.blocks(band.window.size, width)]
-    points, weights = np.polynomial.legendre.leggauss(radii or radii_needed(band, fluid.slowness * (outer - inner), motion.orders.size))
+    steepest = motion.modes.count + motion.wavenumber * outer  # r^m e^{kr}
+    points, weights = np.polynomial.legendre.leggauss(radii or radii_needed(band, fluid.slowness * (outer - inner), steepest))
     places = 0.5 * (inner + outer) + 0.5 * (outer - inner) * points
     total = np.zeros((2, motion.grid.time[motion.kept].size))
-    parities = motion.spectra.normal.shape[1]
-    memory = 5 * 16 * parities * motion.orders.size * sampler.length
+    parities = motion.normal.shape[1]
+    memory = 5 * 16 * parities * motion.modes.count * sampler.length
     work = partial(_circle_energy, motion, fluid, blocks, sampler)
     with ThreadPoolExecutor(max(1, min(WORKERS, _WORK_BYTES // memory))) as pool:
         for done, (circle, r, weight) in enumerate(zip(pool.map(work, places), places, weights, strict=True), start=1):
@@ -185,7 +186,7 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
 
 def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: FloatArray, nodes: slice) -> _Block:
     """Return what the fields at a block of nodes share: functions and weighted slopes at the walls."""
-    radial = RadialBasis(Modes(motion.orders), motion.grid.nodes[nodes])
+    radial = RadialBasis(motion.modes, motion.grid.nodes[nodes])
     at_walls = [radial(fluid.slowness, motion.problem.shells[wall].radius) for wall in walls]
     # Slope of Pi at a wall: rho s w.
     slopes = [fluid.density * motion.normal_velocity[wall, :, :, nodes] * window[nodes] for wall in walls]
@@ -205,7 +206,7 @@ def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: F
 
 def _circle_energy(motion: Motion, fluid: FluidRegion, blocks: list[_Block], sampler: Sampler, r: float) -> FloatArray:
     """Return kinetic and compression energy per unit of r dr at a radius, shape (2, kept instants)."""
-    parities, modes = motion.spectra.normal.shape[1], Modes(motion.orders)
+    parities, modes = motion.normal.shape[1], motion.modes
     sums = np.zeros((3, parities, modes.count, sampler.length), np.complex128)
     for block in blocks:
         here = block.radial.passing(fluid.slowness, r)

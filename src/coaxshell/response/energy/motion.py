@@ -2,47 +2,96 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.excitation import incident_on_surface
+from coaxshell.solver.interface.link_motion import LinkMotion
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
+Incident = Callable[[RadialBasis], tuple[ComplexArray, ComplexArray]]
+"""From the radial functions at all nodes to the modal pressure of the undisturbed waves at r = 1 and its slope."""
 
+
+@dataclass(frozen=True, eq=False)
 class Motion:
-    """Displacements and velocities of all shells of a finished run, made again from its solution.
+    """Motion of all shells in the orders of one axial wavenumber, 0 in two dimensions.
 
     Every quantity of an energy balance passes the same roll-off of the spectra, so that all of them belong to one motion of
     the same linear system and the balance between them is exact.
 
-    Parameters
+    Attributes
     ----------
-    solution : ModalSolution
+    problem : Problem
+    grid : LaplaceGrid
+        On which the run was solved: all its instants, of which a refined run kept some.
+    modes : Modes
+    normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
+        Transforms of W and V. Energies do not ask which parity is which: those of the axis stand beside those of the circle.
+    axial : ndarray or None
+        That of U, None where nothing moves along the axis.
     every : int
-        Stores are taken at every such instant that the run kept.
-    spectra : SolvedSpectra, optional
-        Those of the solution, if known.
+        Stores are taken at every such instant of the grid.
+    incident : callable
+        The waves as if nothing were there, at r = 1.
+    links : LinkMotion or None
+        Of the absorbers, if there are any.
+    actuation : ndarray, shape (shells, parities, M + 1, T), or None
+        Modal pressure that saturating actuators gave, None where the linear law held throughout.
     """
 
-    def __init__(self, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> None:
-        self.solution = solution
-        self.spectra = spectra_of(solution) if spectra is None else spectra
-        self.every = every * solution.settings.refinement
+    problem: Problem
+    grid: LaplaceGrid
+    modes: Modes
+    normal: ComplexArray
+    tangential: ComplexArray
+    axial: ComplexArray | None
+    every: int
+    incident: Incident
+    links: LinkMotion | None = None
+    actuation: FloatArray | None = None
+
+    @classmethod
+    def of(cls, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> Motion:
+        """Return the motion of a two-dimensional run, made again from its solution.
+
+        Parameters
+        ----------
+        solution : ModalSolution
+        every : int
+            Stores are taken at every such instant that the run kept.
+        spectra : SolvedSpectra, optional
+            Those of the solution, if known.
+        """
+        known = spectra_of(solution) if spectra is None else spectra
+        return cls(
+            problem=solution.problem,
+            grid=known.grid,
+            modes=known.modes,
+            normal=known.normal,
+            tangential=known.tangential,
+            axial=None,
+            every=every * solution.settings.refinement,
+            incident=partial(incident_on_surface, known.problem, known.grid),
+            links=known.links,
+            actuation=known.actuation,
+        )
 
     @property
-    def problem(self) -> Problem:
-        """The dimensionless problem."""
-        return self.solution.problem
-
-    @property
-    def grid(self) -> LaplaceGrid:
-        """The Laplace grid on which the run was solved: all its instants, of which a refined run kept some."""
-        return self.spectra.grid
+    def wavenumber(self) -> float:
+        """k, in 1/a."""
+        assert isinstance(self.modes.wavenumber, (int, float))
+        return self.modes.wavenumber
 
     @property
     def kept(self) -> slice:
@@ -50,22 +99,24 @@ class Motion:
         return slice(None, None, self.every)
 
     @cached_property
-    def orders(self) -> FloatArray:
-        """Orders 0, 1, ..., M."""
-        return self.spectra.modes.orders
-
-    @cached_property
     def circle(self) -> FloatArray:
         """Integrals of cos^2(m theta) over the circle, beta pi, shape (M + 1,)."""
-        return np.pi * np.where(self.orders == 0, 2.0, 1.0)
+        return np.pi * np.where(self.modes.orders == 0, 2.0, 1.0)
 
     @cached_property
     def normal_velocity(self) -> ComplexArray:
         """Transform of dW/dt, shape (shells, parities, M + 1, nodes)."""
-        return self.spectra.normal * self.grid.nodes
+        return self.normal * self.grid.nodes
 
     def histories(self, shell: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return W, V, dW/dt and dV/dt of one shell, each of shape (parities, M + 1, T)."""
-        w, v, s = self.spectra.normal[shell], self.spectra.tangential[shell], self.grid.nodes
+        w, v, s = self.normal[shell], self.tangential[shell], self.grid.nodes
         w, v, dw, dv = (self.grid.invert(x) for x in (w, v, w * s, v * s))
         return w, v, dw, dv
+
+    def axial_histories(self, shell: int) -> tuple[FloatArray, FloatArray] | tuple[None, None]:
+        """Return U and dU/dt of one shell, each of shape (parities, M + 1, T); None where nothing moves along the axis."""
+        if self.axial is None:
+            return None, None
+        u = self.axial[shell]
+        return self.grid.invert(u), self.grid.invert(u * self.grid.nodes)

@@ -6,7 +6,6 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import integrate
-from coaxshell.numerics.modes import Modes
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.shell_model import WallEnergy, WallMotion
@@ -28,7 +27,8 @@ def shell_dissipation(motion: Motion, shell: int) -> FloatArray | None:
 
 def _of_wall(motion: Motion, shell: int, instants: slice) -> WallMotion:
     w, v, w_rate, v_rate = (x[..., instants] for x in motion.histories(shell))
-    return WallMotion(motion.orders, motion.circle, w, v, w_rate, v_rate)
+    u, u_rate = (None if x is None else x[..., instants] for x in motion.axial_histories(shell))
+    return WallMotion(motion.modes.orders, motion.circle, w, v, w_rate, v_rate, u, u_rate, motion.wavenumber)
 
 
 def actuator_work(motion: Motion) -> FloatArray:
@@ -38,7 +38,7 @@ def actuator_work(motion: Motion) -> FloatArray:
     voltage saturates, what was given.
     """
     problem, grid, s = motion.problem, motion.grid, motion.grid.nodes
-    given = motion.spectra.actuation
+    given = motion.actuation
     total = np.zeros(grid.time.size)
     for i, wall in enumerate(problem.shells):
         if wall.gains is None:
@@ -46,8 +46,10 @@ def actuator_work(motion: Motion) -> FloatArray:
         if given is not None:
             pressure = grid.transform_linear(given[i])
         else:
-            sensor = wall.sensor_gain(Modes(motion.orders)).columns
-            volts = sensor.v * motion.spectra.tangential[i] + sensor.w * motion.spectra.normal[i]
+            sensor = wall.sensor_gain(motion.modes).columns
+            volts = sensor.v * motion.tangential[i] + sensor.w * motion.normal[i]
+            if sensor.u is not None and motion.axial is not None:
+                volts += sensor.u * motion.axial[i]
             pressure = wall.actuator_pressure * wall.gains.at(s) * volts
         total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

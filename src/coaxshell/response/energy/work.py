@@ -19,8 +19,7 @@ from scipy import fft
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.solver.excitation import incident_on_surface
-from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.response.energy.motion import Motion
 
 
 class SurfacePressures(NamedTuple):
@@ -39,13 +38,13 @@ class SurfacePressures(NamedTuple):
     radiated: ComplexArray
 
 
-def surface_pressures(spectra: SolvedSpectra) -> SurfacePressures:
-    """Return the three parts of the pressure on the outermost surface of a finished run."""
-    s = spectra.grid.nodes
-    radial = RadialBasis(spectra.modes, s)
+def surface_pressures(motion: Motion) -> SurfacePressures:
+    """Return the three parts of the pressure on the outermost surface."""
+    s = motion.grid.nodes
+    radial = RadialBasis(motion.modes, s)
     surface = radial.surface
-    incident, slope = incident_on_surface(spectra.problem, spectra.grid, radial)
-    return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * spectra.normal[-1])
+    incident, slope = motion.incident(radial)
+    return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * motion.normal[-1])
 
 
 _LEAD = 64
