@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.late import supplied
+from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
 from coaxshell.response import arguments, storage
 from coaxshell.response.point_absorbers import point_absorber_displacement, point_absorber_force
 from coaxshell.response.response import HEAD_AND_TAIL, Response
@@ -24,6 +25,11 @@ from coaxshell.response.without_fields import WithoutFields
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_stations
+
+if TYPE_CHECKING:
+    from coaxshell.response.energy import whole_length
+else:
+    whole_length = Late("coaxshell.response.energy.whole_length")
 
 
 class SpatialResponse(WithoutFields, Response):
@@ -84,6 +90,14 @@ class SpatialResponse(WithoutFields, Response):
         See :class:`coaxshell.response.spatial_summary.SpatialSummary`.
         """
         return summarise_stations(self.spatial, self.motions, window, segment)
+
+    def energy(self, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
+        """Return every store, flow and loss of energy over the whole length of the shells and the closure residual, J.
+
+        As much work as a two-dimensional balance for each of some 2 c (T + S) k_max/(2 pi) axial wavenumbers, c the fastest wave in c_e:
+        take fewer instants with *every*, and watch *progress*. See :func:`coaxshell.response.energy.whole_length.whole_length_energy`.
+        """
+        return whole_length.whole_length_energy(self.spatial, every, progress)
 
     def without_transforms(self) -> SpatialResponse:
         """Return the response without the transforms that a run keeps: for keeping many responses at a time.

@@ -64,6 +64,11 @@ class Scales:
         """rho_e c_e^2 a^2, J/m."""
         return self.pressure * self.length**2
 
+    @property
+    def energy(self) -> float:
+        """rho_e c_e^2 a^3, J."""
+        return self.pressure * self.length**3
+
 
 @dataclass(frozen=True)
 class FluidRegion:

@@ -17,7 +17,7 @@ from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
-_ARRAYS = 40.0
+ARRAYS = 40.0
 """Arrays of the size of all normal displacements that stand side by side at the worst, as measured."""
 
 BALANCE = "exterior_work = sum of the variables with the role store or loss + closure_residual"
@@ -57,7 +57,7 @@ def energy(
         If *every* is not a whole number from 1 to the number of time steps.
     """
     every = whole_steps(every, solution.time.size - 1)
-    Cost(_ARRAYS * solution.normal.nbytes).require(
+    Cost(ARRAYS * solution.normal.nbytes).require(
         f"the energy of {solution.time.size:,} instants and orders 0 to {solution.normal.shape[2] - 1:,}",
         "run fewer orders or a coarser step",
     )

@@ -60,12 +60,27 @@ class Front(NamedTuple):
     delay: float = 0.0
 
 
+def felt_length(duration: float, fronts: Iterable[Front], speed: float) -> float:
+    """Return the length of the stretch of the axis along which shocks are felt within a run; 0 for no fronts.
+
+    max (z_source + reach) - min (z_source - reach): from this axial period on nothing of the sources meets anything of their images, and
+    integrals along the whole axis, energies for instance, are those of the sources alone. For one source it is 2 reach.
+
+    Parameters
+    ----------
+    duration, fronts, speed
+        As for :func:`least_period`.
+    """
+    ends = [(front.z, reach(duration - front.delay, front.start, speed)) for front in fronts]
+    return max((z + r for z, r in ends), default=0.0) - min((z - r for z, r in ends), default=0.0)
+
+
 def least_period(duration: float, places: Iterable[float], fronts: Iterable[Front], speed: float) -> float:
     """Return the axial period L from which on images of the sources, at z + nL, are not felt at some places within a run; 0 for no fronts.
 
     L = max (|z - z_source| + reach(T - delay)), over places and sources.
 
-    Integrals along the whole axis are those of one source alone from 2 reach on; below, those of the row of sources.
+    Integrals along the whole axis are then those of the row of sources; those of the sources alone need :func:`felt_length`.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.causality import Front, first_arrival, least_period, rounded_up
+from coaxshell.solver.axial.causality import Front, felt_length, first_arrival, least_period, rounded_up
 from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
@@ -133,6 +133,22 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
             raise InputError("axial_period", found, "use a shorter one")
         raise InputError("stations", found, "use nearer stations, a shorter run, or fewer axial_modes")
     return AxialSampling(period, settings.modes, highest)
+
+
+def whole_length_sampling(problem: Problem, settings: Settings) -> AxialSampling:
+    """Return the axial wavenumbers of integrals along the whole axis: to the same highest one, so many that images stay out of all of it.
+
+    Parameters
+    ----------
+    problem : Problem
+    settings : Settings
+        Of a finished run, with ``modes`` and ``axial_modes`` numbers.
+    """
+    assert isinstance(settings.modes, int)
+    assert settings.axial_modes is not None
+    highest, fronts = settings.axial_modes, _fronts(problem)
+    length = felt_length(settings.duration, fronts, fastest_wave(problem, highest))
+    return AxialSampling(length or math.pi / highest, settings.modes, highest)
 
 
 def fastest_wave(problem: Problem, highest: float) -> float:

@@ -1,0 +1,97 @@
+"""The energy balance of a three-dimensional run over the whole length of the shells: a sum of balances, one an axial wavenumber.
+
+With the weights of Parseval's theorem (:mod:`coaxshell.solver.axial.motion`) for the axial period L
+
+    E = L [E(k_0) + (1/2) sum_{j>=1} E(k_j)],
+
+E(k) the balance in two dimensions of the amplitudes at k, shares 2/L and 4/L of the sources included. Every wavenumber closes by itself.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
+from coaxshell.errors import InputError
+from coaxshell.numerics.cost import Cost
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.progress import Progress
+from coaxshell.response.energy.balance import ARRAYS, labelled, whole_steps
+from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.parts import Entry, parts_of
+from coaxshell.solver.axial.motion import wave_motions
+from coaxshell.solver.axial.sampling import whole_length_sampling
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.scaling import Problem
+
+
+def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
+    """Return the energy balance of a three-dimensional run over the whole length of the shells, J; stations do not matter.
+
+    Variables, roles and attributes are those of :func:`coaxshell.response.energy.energy`; ``extent`` of the dataset says along what they
+    count. Sources that are all uniform along the axis (line sources, plane waves across it) have an energy per length, J/m: that of two
+    dimensions.
+
+    The axial wavenumbers are solved again, for a period so long that images of the sources meet nothing of them (about twice as many as
+    a run of one station has), and each costs what a balance in two dimensions does.
+
+    Parameters
+    ----------
+    solution : SpatialSolution
+    every : int
+        Energies are taken at every such instant of the run; work and losses are integrated over all of them.
+    progress : callable, optional
+        Called with the fraction done and the name of the stage.
+
+    Raises
+    ------
+    InputError
+        If *every* is not a whole number from 1 to the number of time steps, a plane wave is inclined, or some sources are spherical and
+        some are not.
+    """
+    problem, settings = solution.problem, solution.settings
+    every = whole_steps(every, solution.time.size - 1)
+    uniform = _uniform(problem)
+    solution.at(0).need_every_instant("what is computed from its transforms (energy)")
+    grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+    sampling = whole_length_sampling(problem, settings)
+    Cost(2.0 * ARRAYS * solution.fields["w"][0].nbytes * settings.refinement).require(
+        f"the energy of {solution.time.size:,} instants and orders 0 to {sampling.max_order:,}", "run fewer orders or a coarser step"
+    )
+    count = 1 if uniform else len(sampling.modes)
+    total: dict[str, Entry] = {}
+    for j, wave in enumerate(wave_motions(problem, sampling, grid)):
+        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, every * settings.refinement, wave.incident)
+
+        def report(fraction: float, stage: str, j: int = j) -> None:
+            if progress is not None:
+                progress((j + fraction) / count, f"axial wavenumber {j + 1:,} of {count:,}")
+
+        report(0.0, "")
+        for name, part in parts_of(motion, report).items():
+            before = total[name].values if name in total else np.zeros_like(part.values)
+            total[name] = part._replace(values=before + wave.length * part.values)
+    scales = problem.scales
+    found = labelled(solution, every, total, scales.line_energy if uniform else scales.energy, "J/m" if uniform else "J")
+    return found.assign_attrs(extent="per metre of length" if uniform else "over the whole length")
+
+
+def _uniform(problem: Problem) -> bool:
+    """Return whether all sources are uniform along the axis, False if all are spherical; InputError for any others."""
+    for number, geometry in enumerate(problem.sources):
+        if isinstance(geometry, PlaneGeometry) and geometry.inclination:
+            where = f"source[{number}].inclination" if isinstance(problem.system.source, tuple) else "source.inclination"
+            raise InputError(
+                where,
+                f"{geometry.inclination:g} degrees: an inclined wave carries energy along the shells, so that none is balanced at a place",
+                "ask for the energy of an upright one, or of a spherical source far away",
+            )
+    spherical = [isinstance(geometry, SphericalFrontGeometry) for geometry in problem.sources]
+    if any(spherical) and not all(spherical):
+        raise InputError(
+            "source",
+            "spherical sources have an energy, in J, line sources and plane waves one per length, in J/m: together they have neither",
+            "ask for the energy of each kind in a run of its own",
+        )
+    return not any(spherical)

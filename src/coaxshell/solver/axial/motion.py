@@ -1,0 +1,97 @@
+"""The motion of all walls in one axial wavenumber, at all Laplace nodes: what integrals along the whole axis are made of.
+
+With families of sources in different planes (e and o of :mod:`coaxshell.solver.axial.families` at z = 0)
+
+    w = A cos kz - B sin kz,        A = sum_f e_f W_f,      B = sum_f o_f W_f,
+
+and likewise v and the pressures; u = A_u sin kz + B_u cos kz. A and B do not meet in an integral of a product over an axial period L,
+
+    integral of w w' dz = L (A A' + B B')/2,        L A A' for k = 0:
+
+they are two more parities, of the axis, which share all operators.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.acoustics.basis import RadialBasis
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.families import Family, wave_sets
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.sums import amplitudes_of
+from coaxshell.solver.excitation import incident_of, source_parities
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.spectral import node_blocks
+
+
+@dataclass(frozen=True, eq=False)
+class WaveMotion:
+    """Motion in one axial wavenumber; parities of the circle for each of the axis, first those of A.
+
+    Attributes
+    ----------
+    modes : Modes
+    length : float
+        Integral along the axis of a product of two amplitudes 1, in a; 1 where all is uniform along it, for its energy per length.
+    normal, tangential, axial : ndarray, shape (shells, parities, orders, nodes)
+        Transforms of W, V and U.
+    """
+
+    modes: Modes
+    length: float
+    normal: ComplexArray
+    tangential: ComplexArray
+    axial: ComplexArray
+    _families: list[Family]
+    _shares: FloatArray
+    _problem: Problem
+    _grid: LaplaceGrid
+
+    def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+        """Return modal pressure and slope dp/dr at r = 1 of the waves as if nothing were there, each (parities, orders, nodes)."""
+        parities = source_parities(self._problem.system.sources)
+        found = [np.stack(incident_of(family.groups, parities, self._grid, basis)) for family in self._families]
+        pressure, slope = _superposed(self._shares, found)
+        return pressure, slope
+
+
+def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid) -> Iterator[WaveMotion]:
+    """Yield the motion of every axial wavenumber in turn, of sources that are all spherical or all uniform along the axis.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of three dimensions.
+    sampling : AxialSampling
+    grid : LaplaceGrid
+    """
+    origin = np.zeros(1)
+    blocks = node_blocks(grid, sampling.max_order)
+    per_block = [wave_sets(problem, sampling, origin, grid.nodes[block])[0] for block in blocks]
+    waves = wave_sets(problem, sampling, origin, grid.nodes)[0]
+    for j, modes in enumerate(waves.modes):
+        shares = np.array([[family.even[0, j], family.odd[0, j]] for family in waves.families])
+        if not shares[:, 1].any():
+            shares = shares[:, :1]
+
+        def work(which: int, j: int = j, shares: FloatArray = shares) -> ComplexArray:
+            found = amplitudes_of(problem, per_block[which], j, grid, blocks[which])
+            return _superposed(shares, [amplitude[:3] for amplitude in found])
+
+        with ThreadPoolExecutor(WORKERS) as pool:
+            motion = np.concatenate(list(pool.map(work, range(len(blocks)))), axis=-1)
+        length = sampling.period * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
+        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, problem, grid)
+
+
+def _superposed(shares: FloatArray, amplitudes: list[ComplexArray]) -> ComplexArray:
+    """Return what families make with their shares (families, axial parities): (..., parities, orders, nodes), first those of A."""
+    parts = [sum(share * amplitude for share, amplitude in zip(column, amplitudes, strict=True)) for column in shares.T]
+    return np.concatenate(parts, axis=-3)
