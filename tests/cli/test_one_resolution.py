@@ -83,14 +83,6 @@ def test_commands_that_show_two_dimensions_say_so(refused, command, tmp_path, mo
     assert told == "error: --dimensions: 3 is not for this command, which shows two; use coaxshell run, or --dimensions 2\n"
 
 
-@pytest.mark.parametrize("option", ["--energy=x.pdf"])
-def test_options_that_show_two_dimensions_say_so(refused, option, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    name = option.partition("=")[0]
-    told = refused("run", "bare", "--dimensions", "3", option)
-    assert told == f"error: {name}: is for runs in two dimensions; leave it out, or use --dimensions 2\n"
-
-
 def test_the_defaults_that_a_command_shows_are_those_of_a_run():
     assert Request().settings(BARE) == Settings() == Settings.of(BARE)
 

@@ -46,6 +46,12 @@ def test_draws_the_energy(run, small):
     assert "wrote energy.png" in outcome.out
 
 
+def test_draws_the_energy_over_the_whole_length(run, small):
+    outcome = run("run", "bare", *small, "--dimensions", "3", "-q", "--energy", "energy.png")
+    assert outcome.code == 0, outcome.err
+    assert outcome.files == ["energy.png"]
+
+
 def test_runs_a_file(run, small, tmp_path):
     cx.presets.load("iakovlev-filled").to_toml(tmp_path / "mine.toml")
     outcome = run("run", "mine.toml", *small, "--quiet")

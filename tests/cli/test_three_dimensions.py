@@ -104,7 +104,10 @@ def test_a_sphere_is_compared_with_a_slice(run, saved):
         (["run", "bare", "--dimensions", "3", "--set", "source.distance=0.5", "--set", "source.z=3"], "source.distance"),
         (["run", "hybrid", "--dimensions", "3"], "absorbers: line absorbers are uniform along the axis"),
         (["run", "bare", "--dimensions", "3", "--compare", "hybrid"], "absorbers: line absorbers are uniform along the axis"),
-        (["run", "bare", "--dimensions", "3", "--energy", "e.png"], "--energy: is for runs in two dimensions"),
+        (
+            ["run", "iakovlev-filled", "--dimensions", "3", "--set", "source.inclination=5", "--energy", "e.png"],
+            "source.inclination: 5 degrees: an inclined wave carries energy along the shells",
+        ),
         (["run", "bare", "--dimensions", "3", "--engine", "direct"], "--engine: 'direct' solves two dimensions only"),
         (["export", "bare", "--dimensions", "3", "--to", "paraview"], "--dimensions: 3 is not for this command"),
     ],

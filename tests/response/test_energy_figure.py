@@ -34,3 +34,10 @@ def test_areas_reach_from_zero_to_the_work(balance) -> None:
 
 def test_a_new_figure_is_made_when_none_is_given(balance) -> None:
     assert plot_energy(balance).figure is not None
+
+
+def test_three_dimensions_are_drawn_in_joules() -> None:
+    balance = cx.simulate("bare", duration=1.0, time_step=2e-2, modes=4, dimensions=3).energy()
+    ax = plot_energy(balance)
+    assert ax.get_ylabel() == "energy over the whole length (mJ)"
+    assert sum(energy_groups(balance).values())[-1] == pytest.approx(1e3 * float(balance["exterior_work"][-1]), rel=1e-5)

@@ -33,7 +33,7 @@ _PER_JOULE = 1e3
 
 
 def energy_groups(energy: xr.Dataset) -> dict[str, FloatArray]:
-    """Return stores and losses in mJ/m summed by what they belong to, innermost first, those that vanish left out."""
+    """Return stores and losses in mJ/m, in three dimensions in mJ, by what they belong to, innermost first, those that vanish left out."""
     groups: dict[str, FloatArray] = {}
     for role in ("store", "loss"):
         for name, variable in energy.data_vars.items():
@@ -85,7 +85,8 @@ def plot_energy(energy: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.plot(time, _PER_JOULE * energy["exterior_work"].to_numpy(), color="black", linewidth=1.0, label="work of the exterior pressure")
         ax.axhline(0.0, color="black", linewidth=0.5)
         ax.set_xlabel(TIME_LABEL)
-        ax.set_ylabel("energy per length (mJ/m)")
+        per_length = energy["exterior_work"].attrs["units"] == "J/m"
+        ax.set_ylabel("energy per length (mJ/m)" if per_length else "energy over the whole length (mJ)")
         ax.set_xlim(float(time[0]), float(time[-1]))
         handles, labels = ax.get_legend_handles_labels()
         ax.legend(handles[::-1], labels[::-1], loc="upper left", bbox_to_anchor=(1.0, 1.0), reverse=False)

@@ -8,7 +8,7 @@ from coaxshell.errors import InputError
 
 
 class WithoutFields:
-    """Refuse the fields of the fluids, and the energy, of a run in three dimensions."""
+    """Refuse the fields of the fluids of a run in three dimensions."""
 
     def pressure(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse it; InputError."""
@@ -25,10 +25,6 @@ class WithoutFields:
     def intensity(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse it; InputError."""
         _refuse("intensity")
-
-    def energy(self, *_: Any, **__: Any) -> NoReturn:
-        """Refuse it; InputError."""
-        _refuse("energy")
 
 
 def _refuse(name: str) -> NoReturn:

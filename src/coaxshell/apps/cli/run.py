@@ -69,7 +69,7 @@ def run(
     outputs.figure(energy, "--energy")
     systems = [load_system(scenario, request.changes or ())]
     if energy is not None:
-        request.require_two_dimensions(systems[0], "--energy")
+        request.require_energy(systems[0])
     saved = [load_response(compare)] if compare is not None and is_saved(compare) else []
     if compare is not None and not saved:
         systems.append(load_reference(compare, request.changes or ()))

@@ -133,13 +133,18 @@ class Request:
         """Return the settings of a run of a system; InputError names the option that is wrong."""
         return settings_of(system, {name: text for name in RESOLUTION if (text := getattr(self, name)) is not None})
 
-    def require_two_dimensions(self, system: System, *options: str) -> None:
-        """Refuse options, or with none of them the command, that show runs in two dimensions only."""
+    def require_energy(self, system: System) -> None:
+        """Refuse what has no energy balance in three dimensions, before the run."""
         if self.settings(system).dimensions == 3:
-            for option in options:
-                raise InputError(option, "is for runs in two dimensions", "leave it out, or use --dimensions 2")
-            if not options:
-                raise InputError("--dimensions", "3 is not for this command, which shows two", "use coaxshell run, or --dimensions 2")
+            from coaxshell.response.energy.whole_length import require_balanced
+            from coaxshell.solver.scaling import dimensionless
+
+            require_balanced(dimensionless(system, dimensions=3))
+
+    def require_two_dimensions(self, system: System) -> None:
+        """Refuse runs in three dimensions for a command that shows two."""
+        if self.settings(system).dimensions == 3:
+            raise InputError("--dimensions", "3 is not for this command, which shows two", "use coaxshell run, or --dimensions 2")
 
 
 @dataclass(frozen=True)

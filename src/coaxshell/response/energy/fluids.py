@@ -106,10 +106,10 @@ def band_of(motion: Motion, walls: tuple[int, ...]) -> Band:
     taper, step = grid.taper(), grid.frequency_step
     needed = strong = 1
     for wall in walls:
-        power = np.einsum("m,hmk->k", motion.circle, np.abs(motion.normal_velocity[wall]) ** 2) * taper**2
-        above = np.cumsum(power[::-1])[::-1]
-        needed = max(needed, int(np.count_nonzero(above > NEGLIGIBLE * above[0])))
-        strong = max(strong, int(np.count_nonzero(above > FAINT * above[0])))
+        above = np.cumsum(motion.power(wall)[::-1])[::-1]
+        whole = above[0] if motion.usual_power is None else max(above[0], motion.usual_power[wall])
+        needed = max(needed, int(np.count_nonzero(above > NEGLIGIBLE * whole)))
+        strong = max(strong, int(np.count_nonzero(above > FAINT * whole)))
     position = (np.arange(taper.size) / needed - _FULL) / (_NONE - _FULL)
     kept = max(2, int(np.count_nonzero(position < 1.0)))
     window: FloatArray = taper[:kept] * np.cos(0.5 * np.pi * np.clip(position[:kept], 0.0, 1.0)) ** 2

@@ -48,6 +48,9 @@ class Motion:
         Of the absorbers, if there are any.
     actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
+    usual_power : ndarray, shape (shells,), or None
+        Of a motion that is one of many: all :meth:`power` of each wall in such a one on average. What is left out of a motion is measured
+        by it where the motion has less.
     """
 
     problem: Problem
@@ -60,6 +63,7 @@ class Motion:
     incident: Incident
     links: LinkMotion | None = None
     actuation: FloatArray | None = None
+    usual_power: FloatArray | None = None
 
     @classmethod
     def of(cls, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> Motion:
@@ -107,6 +111,10 @@ class Motion:
     def normal_velocity(self) -> ComplexArray:
         """Transform of dW/dt, shape (shells, parities, M + 1, nodes)."""
         return self.normal * self.grid.nodes
+
+    def power(self, wall: int) -> FloatArray:
+        """Return how the kinetic energy of a wall's normal motion is spread over the nodes, in a unit of its own, shape (nodes,)."""
+        return np.asarray(np.einsum("m,hmk->k", self.circle, np.abs(self.normal_velocity[wall]) ** 2) * self.grid.taper() ** 2)
 
     def histories(self, shell: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return W, V, dW/dt and dV/dt of one shell, each of shape (parities, M + 1, T)."""

@@ -9,6 +9,8 @@ E(k) the balance in two dimensions of the amplitudes at k, shares 2/L and 4/L of
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
@@ -24,6 +26,9 @@ from coaxshell.solver.axial.motion import wave_motions
 from coaxshell.solver.axial.sampling import whole_length_sampling
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.scaling import Problem
+
+_ALIKE = 10.0
+"""What a fluid may lose of its spectrum at a wavenumber, in so many of what it may lose at the usual one: a third faster."""
 
 
 def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
@@ -47,12 +52,12 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     Raises
     ------
     InputError
-        If *every* is not a whole number from 1 to the number of time steps, a plane wave is inclined, or some sources are spherical and
-        some are not.
+        If *every* is not a whole number from 1 to the number of time steps, and as :func:`require_balanced`.
     """
     problem, settings = solution.problem, solution.settings
     every = whole_steps(every, solution.time.size - 1)
-    uniform = _uniform(problem)
+    require_balanced(problem)
+    uniform = not isinstance(problem.sources[0], SphericalFrontGeometry)
     solution.at(0).need_every_instant("what is computed from its transforms (energy)")
     grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
     sampling = whole_length_sampling(problem, settings)
@@ -61,8 +66,12 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     )
     count = 1 if uniform else len(sampling.modes)
     total: dict[str, Entry] = {}
+    power = np.zeros(len(problem.shells))
     for j, wave in enumerate(wave_motions(problem, sampling, grid)):
         motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, every * settings.refinement, wave.incident)
+        power += [wave.length * motion.power(wall).sum() for wall in range(power.size)]
+        if not uniform:
+            motion = replace(motion, usual_power=_ALIKE * power / (count * wave.length))
 
         def report(fraction: float, stage: str, j: int = j) -> None:
             if progress is not None:
@@ -77,8 +86,11 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     return found.assign_attrs(extent="per metre of length" if uniform else "over the whole length")
 
 
-def _uniform(problem: Problem) -> bool:
-    """Return whether all sources are uniform along the axis, False if all are spherical; InputError for any others."""
+def require_balanced(problem: Problem) -> None:
+    """Refuse what has neither an energy over the whole length nor one per length: InputError names the sources, or the absorbers."""
+    if problem.system.point_absorbers:
+        remedy = "run without them, or with line absorbers in two dimensions"
+        raise InputError("absorbers", "what point absorbers hold and dissipate is not balanced", remedy)
     for number, geometry in enumerate(problem.sources):
         if isinstance(geometry, PlaneGeometry) and geometry.inclination:
             where = f"source[{number}].inclination" if isinstance(problem.system.source, tuple) else "source.inclination"
@@ -94,4 +106,3 @@ def _uniform(problem: Problem) -> bool:
             "spherical sources have an energy, in J, line sources and plane waves one per length, in J/m: together they have neither",
             "ask for the energy of each kind in a run of its own",
         )
-    return not any(spherical)
