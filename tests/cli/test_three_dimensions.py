@@ -105,7 +105,7 @@ def test_a_sphere_is_compared_with_a_slice(run, saved):
         (["run", "hybrid", "--dimensions", "3"], "absorbers: line absorbers are uniform along the axis"),
         (["run", "bare", "--dimensions", "3", "--compare", "hybrid"], "absorbers: line absorbers are uniform along the axis"),
         (
-            ["run", "iakovlev-filled", "--dimensions", "3", "--set", "source.inclination=5", "--energy", "e.png"],
+            ["run", "iakovlev-evacuated", "--dimensions", "3", "--set", "source.inclination=5", "--energy", "e.png"],
             "source.inclination: 5 degrees: an inclined wave carries energy along the shells",
         ),
         (["run", "bare", "--dimensions", "3", "--engine", "direct"], "--engine: 'direct' solves two dimensions only"),

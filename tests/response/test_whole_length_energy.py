@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -167,6 +168,20 @@ def test_instants_of_a_refined_run_and_progress() -> None:
     assert told[-1] == pytest.approx(1.0)
     np.testing.assert_allclose(balance["time"], run.time[::20], rtol=1e-15)
     assert worst(balance) < 3e-5
+
+
+def test_a_saved_run_has_the_same_and_a_thinned_one_none(tmp_path: Path) -> None:
+    run = cx.simulate(VACUUM, **{**SMALL, "duration": 0.5, "modes": 4})
+    loaded = cx.load_response(run.save(tmp_path / "run.nc"))
+    xr.testing.assert_allclose(loaded.energy(), run.energy(), rtol=1e-12)
+    with pytest.raises(InputError, match="needs every one of them"):
+        run.thin(2).energy(every=2)
+
+
+def test_point_absorbers_are_refused() -> None:
+    held = VACUUM.replace(absorbers=[cx.PointAbsorber(angle=0.0, z=0.0, mass=10, damping=1e3, linear_stiffness=1e6, footprint=0.2)])
+    with pytest.raises(InputError, match="point absorbers"):
+        cx.simulate(held, **{**SMALL, "duration": 0.2, "modes": 4}).energy()
 
 
 @pytest.mark.parametrize(
