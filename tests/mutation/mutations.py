@@ -413,14 +413,6 @@ MUTATIONS = (
         "response/test_spring_energy.py",
     ),
     Mutation(
-        "length-weight",
-        "solver/axial/motion.py",
-        "(1.0 if modes.two_dimensional else 0.5)",
-        "(0.5 if modes.two_dimensional else 0.5)",
-        "weight of k = 0 in integrals along the axis",
-        "response/test_whole_length_energy.py",
-    ),
-    Mutation(
         "gap-transfer",
         "response/fields/modal_field.py",
         "(slopes.outer - eps_k * slopes.inner)",

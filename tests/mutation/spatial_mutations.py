@@ -119,4 +119,12 @@ SPATIAL = (
         "rates of voltages kept where instants are left out",
         "response/test_station_files.py",
     ),
+    Mutation(
+        "length-weight",
+        "solver/axial/motion.py",
+        "(1.0 if modes.two_dimensional else 0.5)",
+        "(0.5 if modes.two_dimensional else 0.5)",
+        "weight of k = 0 in integrals along the axis",
+        "response/test_whole_length_energy.py",
+    ),
 )
