@@ -60,6 +60,9 @@ def test_a_saved_run_is_drawn_and_exported(run, saved):
         with open(name, encoding="utf-8", newline="") as file:
             tables.append(list(csv.DictReader(file)))
     assert "inner von mises stress tail z = 0.7 m (Pa)" in tables[1][0]
+    told = run("verify", "--against", "one.csv", "--case", "bare")
+    assert (told.code, told.err.count("\n")) == (2, 1)
+    assert "is of a run in three dimensions, and runs in two are compared here" in told.err
     assert set(tables[1][0]) < set(tables[0][0])
     np.testing.assert_array_equal(*[[row["outer stress head z = 0.7 m (Pa)"] for row in table] for table in tables])
 

@@ -129,6 +129,8 @@ def _column(where: str, column: FileColumn) -> Column:
     words = _plain(column.name).split()
     for quantity, shell, place in _meanings(words):
         return Column(column.name, quantity, shell, place, column.values * _factor(where, quantity, column.unit))
+    if "z" in words and "=" in words:
+        raise InputError(where, "is of a run in three dimensions, and runs in two are compared here", "export a run in two dimensions")
     raise InputError(where, "is not a name that is known here", _EXAMPLE)
 
 
