@@ -6,7 +6,11 @@ wavenumber k (in 1/a; 0 for the plane problem) tell modes apart.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
+from typing import Any, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -93,3 +97,27 @@ class Modes:
         for multiple, pair in exact.items():
             value = np.where(turns == multiple, pair[parity], value)
         return value
+
+
+Thing = TypeVar("Thing")
+Found = TypeVar("Found")
+_kept: WeakKeyDictionary[Modes, dict[tuple[Any, int], tuple[object, Any]]] = WeakKeyDictionary()
+
+
+def kept_with_modes(function: Callable[[Thing, Modes], Found]) -> Callable[[Thing, Modes], Found]:
+    """Let what a function finds of a thing that never changes and of modes of one wavenumber be kept as long as the modes are.
+
+    Blocks of Laplace nodes share their modes: it is then found once, not once a block. Nobody may change what is found.
+    """
+
+    @wraps(function)
+    def found(thing: Thing, modes: Modes) -> Found:
+        if np.ndim(modes.wavenumber):
+            return function(thing, modes)
+        known, key = _kept.setdefault(modes, {}), (function, id(thing))
+        if key not in known:
+            known[key] = thing, function(thing, modes)  # with the thing, whose number is then nobody else's
+        value: Found = known[key][1]
+        return value
+
+    return found

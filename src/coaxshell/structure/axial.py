@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.laminate import Laminate
 from coaxshell.structure.section import AxialCoupling, PiezoelectricLayer, Section
 from coaxshell.structure.shell_model import Gain, WallOperator
@@ -118,6 +118,7 @@ def open_circuit_stiffness(section: Section, modes: Modes, at: Strain) -> FloatA
     return total
 
 
+@kept_with_modes
 def axial_stiffness(section: Section, modes: Modes) -> FloatArray:
     """Return K on (U, V, W), shape (3, 3, orders) or (3, 3, orders, nodes): layers and open-circuit stiffening together.
 

@@ -15,7 +15,7 @@ from typing import Self
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.axial import axial_gain, axial_operator, laminate_of, natural_frequencies, potential, strain
 from coaxshell.structure.axial_energy import axial_energy
 from coaxshell.structure.axial_stress import axial_stress_gain, stress_of_fields
@@ -102,6 +102,7 @@ class ThinWall(ShellModel):
         """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
         return next((number for number, layer in enumerate(self.section.piezoelectric) if layer.role == role), None)
 
+    @kept_with_modes
     def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:
         """Return volts per unit (V, W, U) of every open-circuit layer, from the inside out (Eq. 20)."""
         return tuple(self._potential_gain(layer, modes) for layer in self.section.piezoelectric)

@@ -25,6 +25,7 @@ _TOGETHER = 16
 
 
 SQUARES = "squares"
+_ORDER_0 = Modes.up_to(0)
 
 
 def station_sums(
@@ -89,7 +90,7 @@ def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: Lapl
 
 def piezoelectric_layers(problem: Problem) -> int:
     """Return the largest number of piezoelectric layers of a wall."""
-    return max(len(wall.potential_gains(Modes.up_to(0))) for wall in problem.shells)
+    return max(len(wall.potential_gains(_ORDER_0)) for wall in problem.shells)
 
 
 def _potentials(
@@ -145,5 +146,6 @@ def mean_squares(mean: FloatArray, wavenumber: npt.NDArray[np.number], w: Comple
     m, k = np.arange(w.shape[3], dtype=np.float64)[:, None], wavenumber.reshape(len(mean), 1, 1, 1, -1)
     found = np.zeros((w.shape[1], 2, w.shape[3]))
     for which, x in ((0, w), (1, m * v - w), (1, k * u)):
-        found[:, which] += np.einsum("j,jipmn,jipmn->im", mean, x, x.conj()).real
+        parts = np.ascontiguousarray(x).view(np.float64)
+        found[:, which] += np.einsum("j,jipmn,jipmn->im", mean, parts, parts)
     return found
