@@ -60,6 +60,7 @@ def test_a_row_of_points_closer_than_any_wave_is_a_line(monkeypatch):
     per_metre = {"mass": 20.0, "damping": 1e4, "linear_stiffness": 1e8, "cubic_stiffness": 1e20}
     line = cx.simulate(plane.replace(absorbers=cx.absorber_ring(4, **per_metre)), duration=2.0, time_step=2e-2, modes=12)
     errors = []
+    monkeypatch.setattr(axial_solve, "require_room", lambda *_, **__: None)  # it asks for the period that causality does
     for spacing in (0.8, 0.4, 0.1):
         points = cx.absorber_ring(4, z=0.0, **{name: value * spacing for name, value in per_metre.items()}, footprint=1e-9)
         # one absorber in an axial period of its spacing is an endless row of them
