@@ -23,6 +23,7 @@ from coaxshell.solver.interface.absorbers import InterfacePoints
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.solver.slice_error import slice_error
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.tension import AMBIENT, Tension
@@ -36,6 +37,8 @@ CUT_LIMIT = 0.1
 """Share of a pulse's peak that may come after the run."""
 UNRESOLVED_LIMIT = 0.05
 """Share of a record's energy that may lie above what a run resolves; a sharp front with a decay of 0.13 ms has 0.02 at the defaults."""
+SLICE_LIMIT = 0.05
+"""Estimated error of the stress from which a slice through a spherical front is told to be one."""
 RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
@@ -48,6 +51,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)
+        + slice_of_sphere(problem, float(grid.time[-1]))
         + _unresolved_records(problem, grid, max_order)
         + remarks(problem.system)
     )
@@ -189,6 +193,21 @@ def cut(problem: Problem, duration: float) -> list[str]:
             f"come; use duration={_above(whole / transit)} or cut the pulse"
         )
     return warnings
+
+
+def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
+    """Return the warning that a run of *duration* transits in two dimensions solves a slice through spherical fronts."""
+    error = slice_error(problem, duration)
+    if error.value <= SLICE_LIMIT:
+        return []
+    about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
+    control = problem.system.control
+    changed = " with point absorbers, which have a z," if problem.system.absorber_list else ""
+    changed += " without saturation" if control is not None and control.saturation else ""
+    return [
+        f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
+        f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed.removesuffix(',')}"
+    ]
 
 
 def _above(value: float) -> str:
