@@ -65,7 +65,7 @@ def test_interpolated_grids_equal_exact_ones(answer, quantity):
     times = [0.35, 1.2, 2.0]
     read = getattr(answer, quantity)
     whole = read(AXIS, AXIS, time=times).values
-    assert scattered.raster_radii(answer._spectra, _Asked, np.linspace(0, 3.5, 9)) < 1000
+    assert scattered.raster_radii(answer._spectra.problem, _Asked, np.linspace(0, 3.5, 9)) < 1000
     for row in (3, 44, 61):
         exact = read(AXIS, AXIS[row], time=times).values[..., 0, :]
         assert abs(whole[..., row, :] - exact).max() < 5e-4 * abs(whole).max()

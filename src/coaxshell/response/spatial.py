@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy.typing as npt
 
@@ -13,7 +13,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
-from coaxshell.response import arguments, storage
+from coaxshell.response import arguments, fields, storage
 from coaxshell.response.point_absorbers import point_absorber_displacement, point_absorber_force
 from coaxshell.response.response import HEAD_AND_TAIL, Response
 from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
@@ -83,6 +83,21 @@ class SpatialResponse(WithoutFields, Response):
     def absorber_force(self) -> xr.DataArray:
         """Return the forces of the point absorbers on their shells, N, positive inward, dims (absorber, side, time)."""
         return point_absorber_force(self.spatial)
+
+    def pressure(
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        **options: Unpack[fields.SpatialPressureOptions],
+    ) -> xr.DataArray:
+        """Return the acoustic pressure, Pa, on a cut: dims (time, y, x) at one z, or (time, z, x) at one y.
+
+        All lengths in units of a, z too, unlike the stations' (m); *radius* and *angle* (degrees) may stand for x and y. *time* in
+        transits; *part* is "total", "incident", "diffracted", "radiated" or "scattered". The waves of the run are solved once more.
+        See :func:`coaxshell.response.fields.spatial_pressure.spatial_pressure`.
+        """
+        return fields.spatial_pressure(self.spatial, x, y, z, **options)
 
     def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> SpatialSummary:  # type: ignore[override]
         """Return peaks, RMS, error estimates and warnings of every station, and the largest over all of them; print it for a table.

@@ -8,11 +8,7 @@ from coaxshell.errors import InputError
 
 
 class WithoutFields:
-    """Refuse the fields of the fluids of a run in three dimensions."""
-
-    def pressure(self, *_: Any, **__: Any) -> NoReturn:
-        """Refuse it; InputError."""
-        _refuse("pressure")
+    """Refuse, of a run in three dimensions, the fields of the fluids but the pressure."""
 
     def pressure_rms(self, *_: Any, **__: Any) -> NoReturn:
         """Refuse it; InputError."""
@@ -28,6 +24,5 @@ class WithoutFields:
 
 
 def _refuse(name: str) -> NoReturn:
-    raise InputError(
-        name, "is of runs in two dimensions only", "use dimensions=2, or read the walls at stations: stress, displacement, history"
-    )
+    remedy = "use dimensions=2, or read the pressure on cuts, or the walls at stations: stress, displacement, history"
+    raise InputError(name, "is of runs in two dimensions only", remedy)

@@ -33,7 +33,7 @@ def settled(spectra: SolvedSpectra, asked: FieldRequest, grid: Grid) -> FieldReq
         return fine
     radii = points_of(grid).radius
     cost = radii.size * asked.resolution / fine.resolution
-    return fine if cost <= raster_radii(spectra, asked, radii) else replace(asked, resolution_given=True)
+    return fine if cost <= raster_radii(spectra.problem, asked, radii) else replace(asked, resolution_given=True)
 
 
 def points_of(grid: Grid) -> Points:
@@ -43,7 +43,7 @@ def points_of(grid: Grid) -> Points:
 
 def _exact(spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, points: Points) -> bool:
     """Return whether to evaluate radius by radius: always in polar coordinates, otherwise if there are fewer radii than on a raster."""
-    return grid.polar or points.radius.size <= raster_radii(spectra, asked, points.radius)
+    return grid.polar or points.radius.size <= raster_radii(spectra.problem, asked, points.radius)
 
 
 def evaluate(
@@ -160,14 +160,22 @@ def pressure(
     """
     step = spectra.grid.time_step
     asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step, front=front)
-    when = when_of(time, spectra)
+    when = when_of(time, float(spectra.grid.time[-1]), spectra.problem.scales)
     require_room("pressure", (x, y, radius, angle), when)
     grid = grid_of(x, y, radius, angle)
     asked = settled(spectra, asked, grid)
     values = evaluate(spectra, asked, grid, np.atleast_1d(when), ("pressure",))[0]
     values *= spectra.problem.scales.pressure
     return labelled(
-        spectra, grid, when, values, asked, name="pressure", long_name=LONG_NAMES[part], units="Pa", sign="positive in compression"
+        spectra.problem.scales,
+        grid,
+        when,
+        values,
+        asked,
+        name="pressure",
+        long_name=LONG_NAMES[part],
+        units="Pa",
+        sign="positive in compression",
     )
 
 
@@ -196,14 +204,16 @@ def velocity(
     """
     step = spectra.grid.time_step
     asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
-    when = when_of(time, spectra)
+    when = when_of(time, float(spectra.grid.time[-1]), spectra.problem.scales)
     require_room("velocity", (x, y, radius, angle), when, 2)
     grid = grid_of(x, y, radius, angle)
     asked = settled(spectra, asked, grid)
     values = _turned(grid, evaluate(spectra, asked, grid, np.atleast_1d(when), ("radial", "angular")))
     values *= spectra.problem.scales.velocity
     sign = OUTWARD if grid.polar else ALONG_AXES
-    return labelled(spectra, grid, when, values, asked, name="velocity", long_name="particle velocity", units="m s-1", sign=sign)
+    return labelled(
+        spectra.problem.scales, grid, when, values, asked, name="velocity", long_name="particle velocity", units="m s-1", sign=sign
+    )
 
 
 def intensity(
@@ -225,7 +235,7 @@ def intensity(
     """
     step = spectra.grid.time_step
     asked = request(part="total", filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
-    when = when_of(time, spectra)
+    when = when_of(time, float(spectra.grid.time[-1]), spectra.problem.scales)
     require_room("intensity", (x, y, radius, angle), when, 3)
     grid = grid_of(x, y, radius, angle)
     asked = settled(spectra, asked, grid)
@@ -233,7 +243,9 @@ def intensity(
     values = _turned(grid, flow)
     values *= pressure[:, None] * (spectra.problem.scales.pressure * spectra.problem.scales.velocity)
     sign = OUTWARD if grid.polar else ALONG_AXES
-    return labelled(spectra, grid, when, values, asked, name="intensity", long_name="acoustic intensity", units="W m-2", sign=sign)
+    return labelled(
+        spectra.problem.scales, grid, when, values, asked, name="intensity", long_name="acoustic intensity", units="W m-2", sign=sign
+    )
 
 
 def _turned(grid: Grid, flow: list[FloatArray]) -> FloatArray:

@@ -12,7 +12,9 @@ from coaxshell.numerics.finite import first_bad, require_finite
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.fields.request import FieldRequest, axis
 from coaxshell.response.labels import TRANSIT
-from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.scaling import Scales
+
+MEANINGS = {"x": "towards theta = 0", "y": "towards theta = 90 degrees", "z": "along the axis", "radius": "distance from the axis"}
 
 
 @dataclass(frozen=True)
@@ -23,13 +25,16 @@ class Grid:
     ----------
     polar : bool
     axes : tuple of ndarray
-        (radius, angle) or (y, x), the slow one first.
+        (radius, angle), (y, x) or (z, x), the slow one first.
+    across : str
+        Name of the slow axis of a Cartesian grid.
     """
 
     polar: bool
     axes: tuple[FloatArray, FloatArray]
     radius: FloatArray
     angle: FloatArray
+    across: str = "y"
 
     @property
     def radii(self) -> FloatArray:
@@ -44,7 +49,7 @@ class Grid:
     @property
     def dims(self) -> tuple[str, str]:
         """Names of the dimensions."""
-        return ("radius", "angle") if self.polar else ("y", "x")
+        return ("radius", "angle") if self.polar else (self.across, "x")
 
 
 def grid_of(x: object, y: object, radius: object, angle: object) -> Grid:
@@ -67,7 +72,7 @@ def grid_of(x: object, y: object, radius: object, angle: object) -> Grid:
 
 
 def labelled(
-    spectra: SolvedSpectra,
+    scales: Scales,
     grid: Grid,
     when: FloatArray,
     values: FloatArray,
@@ -96,30 +101,30 @@ def labelled(
         require_finite(
             values.reshape(np.atleast_1d(when).shape + components + shape), name, along, "look for extreme layers, fluids or sources"
         )
-    found = coordinates(spectra, grid, when)
+    found = coordinates(scales, grid, when)
     if components:
         found["component"] = xr.Variable("component", ["radius", "angle"] if grid.polar else ["x", "y"])
     return xr.DataArray(values, dims=dims, coords=found, name=name, attrs=attributes)
 
 
-def coordinates(spectra: SolvedSpectra, grid: Grid, when: FloatArray) -> dict[str, xr.Variable]:
+def coordinates(scales: Scales, grid: Grid, when: FloatArray) -> dict[str, xr.Variable]:
     """Return the coordinates of a field: times in transits and seconds, places in a and metres."""
-    found = instants_of(spectra, when)
-    length = spectra.problem.scales.length
+    found = instants_of(scales, when)
+    length = scales.length
     for name, values in zip(grid.dims, grid.axes, strict=True):
         if name == "angle":
             found[name] = xr.Variable(name, values, {"units": "degree", "long_name": "angle from the source direction"})
             continue
-        meaning = {"x": "towards theta = 0", "y": "towards theta = 90 degrees", "radius": "distance from the axis"}[name]
+        meaning = MEANINGS[name]
         found[name] = xr.Variable(name, values, {"units": "a", "long_name": meaning})
         found[f"{name}_metres"] = xr.Variable(name, values * length, {"units": "m", "long_name": meaning})
     return found
 
 
-def instants_of(spectra: SolvedSpectra, when: FloatArray) -> dict[str, xr.Variable]:
+def instants_of(scales: Scales, when: FloatArray) -> dict[str, xr.Variable]:
     """Return the coordinates of instants in transits and in seconds, scalar ones for a single instant."""
     along = ("time",) if when.ndim else ()
     return {
         "time": xr.Variable(along, when, {"units": TRANSIT, "long_name": "time in acoustic transits of the outer radius"}),
-        "time_seconds": xr.Variable(along, when * spectra.problem.scales.time, {"units": "s", "long_name": "time"}),
+        "time_seconds": xr.Variable(along, when * scales.time, {"units": "s", "long_name": "time"}),
     }

@@ -74,15 +74,19 @@ class Incident:
 def _wave(
     problem: Problem, source: Source, geometry: SourceGeometry, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None
 ) -> tuple[FreeField, tuple[float, float], float]:
-    scales, pulse = problem.scales, source.pulse
     angle = np.radians(source.angle)
     cos, sin = float(np.cos(angle)), float(np.sin(angle))
     along, across = cos * x + sin * y, cos * y - sin * x
+    wave = geometry.free_field(time_function(problem, source, smooth), along, across, latest)
+    return wave, (cos, sin), source.delay / problem.scales.time
+
+
+def time_function(problem: Problem, source: Source, smooth: LaplaceGrid | None) -> TimeFunction:
+    """Return the pulse of a source in dimensionless form, under the window of a band near its front if one is given."""
+    scales, pulse = problem.scales, source.pulse
     history = TimeFunction(
         lambda t: pulse_history(pulse, t, scales.time, scales.pressure),
         lambda t: pulse_impulse(pulse, t, scales.time, scales.pressure),
         lambda s: pulse_transform(pulse, s, scales.time, scales.pressure),
     )
-    if smooth is not None:
-        history = replace(history, history=banded(history, smooth))
-    return geometry.free_field(history, along, across, latest), (cos, sin), source.delay / scales.time
+    return history if smooth is None else replace(history, history=banded(history, smooth))

@@ -84,7 +84,7 @@ class Inversion:
         self._offsets, self._group = np.unique(offset, return_inverse=True)
         self.by_fft = few_offsets(grid, times)
         if not self.by_fft:
-            self._matrix = _matrix(grid, times)
+            self._matrix = direct_matrix(grid, times)
 
     @property
     def weight(self) -> FloatArray:
@@ -93,7 +93,7 @@ class Inversion:
 
     def __call__(self, spectra: ComplexArray) -> FloatArray:
         """Return values at the instants, shape (..., T), from weighted spectra, shape (..., nodes)."""
-        return self._shifted_ffts(spectra) if self.by_fft else self._direct_sums(spectra)
+        return self._shifted_ffts(spectra) if self.by_fft else direct_sums(self._matrix, spectra)
 
     def _shifted_ffts(self, spectra: ComplexArray) -> FloatArray:
         result = np.empty((*spectra.shape[:-1], self._times.size))
@@ -104,21 +104,26 @@ class Inversion:
             result[..., at] = histories[..., self._cell[at]] * np.exp(self._grid.shift * self._times[at])
         return result
 
-    def _direct_sums(self, spectra: ComplexArray) -> FloatArray:
-        rows = spectra.reshape(-1, spectra.shape[-1]).view(np.float64)
-        result = np.empty((rows.shape[0], self._times.size))
-        for first in range(0, self._times.size, _PANEL):
-            panel = self._matrix[:, first : first + _PANEL]
-            height = max(1, _SINGLE_THREADED // panel.size)
-            whole = rows.shape[0] // height * height
-            stacked = np.matmul(rows[:whole].reshape(-1, height, rows.shape[1]), panel)
-            result[:whole, first : first + _PANEL] = stacked.reshape(whole, panel.shape[1])
-            if whole < rows.shape[0]:
-                result[whole:, first : first + _PANEL] = rows[whole:] @ panel
-        return result.reshape(*spectra.shape[:-1], self._times.size)
+
+def direct_sums(matrix: FloatArray, spectra: ComplexArray) -> FloatArray:
+    """Return values at the instants, shape (..., T), from weighted spectra, shape (..., nodes).
+
+    *matrix* has the rows of these nodes of :func:`direct_matrix`: sums over some of the nodes add up to those over all.
+    """
+    rows, times = spectra.reshape(-1, spectra.shape[-1]).view(np.float64), matrix.shape[1]
+    result = np.empty((rows.shape[0], times))
+    for first in range(0, times, _PANEL):
+        panel = matrix[:, first : first + _PANEL]
+        height = max(1, _SINGLE_THREADED // panel.size)
+        whole = rows.shape[0] // height * height
+        stacked = np.matmul(rows[:whole].reshape(-1, height, rows.shape[1]), panel)
+        result[:whole, first : first + _PANEL] = stacked.reshape(whole, panel.shape[1])
+        if whole < rows.shape[0]:
+            result[whole:, first : first + _PANEL] = rows[whole:] @ panel
+    return result.reshape(*spectra.shape[:-1], times)
 
 
-def _matrix(grid: LaplaceGrid, times: FloatArray) -> FloatArray:
+def direct_matrix(grid: LaplaceGrid, times: FloatArray) -> FloatArray:
     """Return the matrix of direct sums for the real view (re, im, re, im, ...) of weighted spectra, shape (2 nodes, T)."""
     waves = np.exp(np.outer(grid.nodes, times)) * (2.0 / grid.period)
     waves[0] *= 0.5

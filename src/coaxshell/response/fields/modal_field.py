@@ -14,7 +14,7 @@ without a division or a Bessel function but those of order 0 and 1; J_m from rat
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Literal
@@ -47,16 +47,37 @@ class WallSlopes:
 
 def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part: str) -> WallSlopes | None:
     """Return the slopes that make a part of the scattered field in a region; None if that part vanishes there."""
+    radial = RadialBasis(spectra.modes, grid.nodes)
+
+    def incident() -> ComplexArray:
+        return incident_on_surface(spectra.problem, grid, radial)[1]
+
+    return region_slopes(region, part, spectra.normal[..., : grid.nodes.size], incident, radial)
+
+
+def region_slopes(
+    region: Region, part: str, normal: ComplexArray, incident: Callable[[], ComplexArray], radial: RadialBasis
+) -> WallSlopes | None:
+    """Return the slopes at the walls of a region from the motion of all walls; None if the part vanishes there.
+
+    Parameters
+    ----------
+    region : Region
+    part : str
+    normal : ndarray, shape (shells, parities, orders, nodes)
+        W.
+    incident : callable
+        Gives the slope of the incident wave at r = 1, shape (1 or 2, orders, nodes).
+    radial : RadialBasis
+        Of the same orders and nodes.
+    """
     parts = SCATTERED.get(part, ())
     if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
         return None
-    nodes = grid.nodes
-    fluid, problem, radial = region.fluid, spectra.problem, RadialBasis(spectra.modes, nodes)
-    acceleration = fluid.density * nodes * nodes
+    fluid, acceleration = region.fluid, region.fluid.density * radial.s * radial.s
 
     def radiated(shell: int) -> ComplexArray:
-        motion = spectra.normal[shell, ..., : nodes.size] * acceleration
-        return np.asarray(motion * fluid.wall_motion_factor(shell, radial))
+        return np.asarray(normal[shell] * acceleration * fluid.wall_motion_factor(shell, radial))
 
     inner: ComplexArray | None = None
     outer: ComplexArray | None = None
@@ -66,7 +87,7 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
         if not region.exterior:
             outer = radiated(region.index)
     if "diffracted" in parts and region.exterior:
-        rigid = -incident_on_surface(problem, grid, radial)[1]
+        rigid = -incident()
         inner = rigid if inner is None else _sum_of_parities(inner, rigid)
     return WallSlopes(inner, outer)
 
@@ -86,7 +107,7 @@ CENTRE = 1e-9
 
 
 class Transfer:
-    """The field of one region in the Laplace domain.
+    """The field of one region in the Laplace domain, at one axial wavenumber.
 
     Parameters
     ----------
@@ -95,13 +116,14 @@ class Transfer:
     slopes : WallSlopes
     nodes : ndarray, shape (nodes,)
         Laplace variable.
-    max_order : int
+    modes : Modes
+        All orders up to a highest one.
     """
 
-    def __init__(self, region: Region, slopes: WallSlopes, nodes: ComplexArray, max_order: int) -> None:
+    def __init__(self, region: Region, slopes: WallSlopes, nodes: ComplexArray, modes: Modes) -> None:
         assert region.fluid is not None
-        self.region, self.max_order = region, max_order
-        radial = RadialBasis(Modes.up_to(max_order + 1), nodes)  # one more: slopes need the next order
+        self.region, self.max_order = region, modes.max_order
+        radial = RadialBasis(Modes.up_to(modes.max_order + 1, modes.wavenumber), nodes)  # one more: slopes need the next order
         self.kappa = radial.modes.kappa(region.fluid.slowness, nodes)
         self._inner = radial(region.fluid.slowness, region.inner) if region.index > 0 else None
         self._outer = radial(region.fluid.slowness, region.outer) if not region.exterior else None
@@ -128,16 +150,21 @@ class Transfer:
     def pressure(self, radii: FloatArray, weight: Weight) -> Iterator[tuple[int, ComplexArray]]:
         """Yield (m, weighted transforms of the pressure at all radii, shape (parities, radii, nodes)) for m = 0..M."""
         for m, parts in self._shapes(radii):
-            yield m, _total([here * (amplitude[:, None, m] * weight) for amplitude, here, _ in parts])
+            yield m, _total([here * (amplitude[:, None, m] * weight) for amplitude, here, *_ in parts])
 
     def slope(self, radii: FloatArray, weight: Weight) -> Iterator[tuple[int, ComplexArray]]:
         """Yield (m, weighted transforms of dp/dr) as :meth:`pressure` does, from z f_m' = m f_m +- z f_{m+1} (DLMF 10.29.2)."""
         column = np.maximum(radii, CENTRE)[:, None]
         for m, parts in self._shapes(radii):
-            yield m, _total([(m / column * here + higher) * (amplitude[:, None, m] * weight) for amplitude, here, higher in parts])
+            yield (
+                m,
+                _total(
+                    [(m / column * here + factor * higher) * (amplitude[:, None, m] * weight) for amplitude, here, higher, factor in parts]
+                ),
+            )
 
-    def _shapes(self, radii: FloatArray) -> Iterator[tuple[int, list[tuple[ComplexArray, ComplexArray, ComplexArray]]]]:
-        """Yield (m, [(A, J_m, k I_{m+1}(kr)/I_m(k r_b)), (B, E_m, -k K_{m+1}(kr)/K_m(k r_a))]), the latter two of shape (radii, nodes)."""
+    def _shapes(self, radii: FloatArray) -> Iterator[tuple[int, list[tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray]]]]:
+        """Yield (m, [(A, J_m, I_{m+1}(kr)/I_m(k r_b), k), (B, E_m, E_{m+1}, -k K_{m+1}(k r_a)/K_m(k r_a))])."""
         radii = np.maximum(radii, CENTRE)
         standing = self._standing(radii) if self.standing is not None else None
         outgoing = self._outgoing(radii) if self.outgoing is not None else None
@@ -149,7 +176,7 @@ class Transfer:
                 parts.append((self.outgoing, *next(outgoing)))
             yield m, parts
 
-    def _standing(self, radii: FloatArray) -> Iterator[tuple[ComplexArray, ComplexArray]]:
+    def _standing(self, radii: FloatArray) -> Iterator[tuple[ComplexArray, ComplexArray, ComplexArray]]:
         assert self._outer is not None
         wall, count = self._outer, radii.size
         z = np.multiply.outer(radii, self.kappa)
@@ -158,10 +185,10 @@ class Transfer:
         here = ive(0, z) / ive(0, wall.argument) * np.exp(z.real - wall.argument.real)
         for m in range(self.max_order + 1):
             higher = here * ratios[m]
-            yield here, self.kappa * higher
+            yield here, higher, self.kappa
             here = higher / wall.i_ratios[m]
 
-    def _outgoing(self, radii: FloatArray) -> Iterator[tuple[ComplexArray, ComplexArray]]:
+    def _outgoing(self, radii: FloatArray) -> Iterator[tuple[ComplexArray, ComplexArray, ComplexArray]]:
         assert self._inner is not None
         wall = self._inner
         inverse = 1.0 / wall.k_ratios
@@ -171,7 +198,7 @@ class Transfer:
         higher = kve(1, z) * order_zero * phase * inverse[0]
         per_radius = (2.0 / radii)[:, None]
         for m in range(self.max_order + 1):
-            yield here, (-self.kappa * wall.k_ratios[m]) * higher
+            yield here, higher, -self.kappa * wall.k_ratios[m]
             step = inverse[m + 1]
             here, higher = higher, (per_radius * higher) * ((m + 1) / self.kappa * step) + here * (step * inverse[m])
 
@@ -246,4 +273,4 @@ def modal_field(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     slopes = wall_slopes(spectra, grid, region, part)
     if slopes is None:
         return None
-    return ModalField(region, Transfer(region, slopes, grid.nodes, spectra.modes.max_order), grid)
+    return ModalField(region, Transfer(region, slopes, grid.nodes, spectra.modes), grid)

@@ -17,8 +17,7 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
-from coaxshell.solver.scaling import FluidRegion, Problem
-from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.scaling import FluidRegion, Problem, Scales
 
 Tell = ShareDone
 
@@ -58,17 +57,16 @@ def instants(time: object, last: float) -> FloatArray:
     return np.asarray(np.clip(array, 0.0, last), dtype=np.float64)
 
 
-def when_of(time: npt.ArrayLike | None, spectra: SolvedSpectra) -> FloatArray:
-    """Return the instants asked for, in transits, shape () or (T,); InputError if there are none or some lie outside the run.
+def when_of(time: npt.ArrayLike | None, last: float, scales: Scales) -> FloatArray:
+    """Return the instants asked for, in transits, shape () or (T,); InputError if there are none or some lie after the *last*.
 
     NumPy's durations (timedelta64) are real time.
     """
-    last = float(spectra.grid.time[-1])
     if time is None:
         raise InputError("time", "is missing", f"give one time or a list of them, from 0 to {last:g} transits")
     given = np.asarray(time)
     if given.dtype.kind == "m":  # durations carry their unit
-        time = np.where(np.isnat(given), np.nan, given / np.timedelta64(1, "s")) / spectra.problem.scales.time
+        time = np.where(np.isnat(given), np.nan, given / np.timedelta64(1, "s")) / scales.time
     return instants(time, last)
 
 
@@ -178,7 +176,11 @@ def positive(name: str, value: object, unit: str) -> float:
 
 def mode_filter(name: str | None, max_order: int) -> FloatArray:
     """Return the weight of every order: 1; sinc(m/(M + 1)) for "lanczos"; exp(-36 (m/(M + 1))^6) for "exponential"."""
-    ratio = np.arange(max_order + 1) / (max_order + 1.0)
+    return filter_weight(name, np.arange(max_order + 1) / (max_order + 1.0))
+
+
+def filter_weight(name: str | None, ratio: FloatArray) -> FloatArray:
+    """Return 1, sinc(x) or exp(-36 x^6) of ratios x to the first order left out."""
     match name:
         case "lanczos":
             return np.asarray(np.sinc(ratio), dtype=np.float64)

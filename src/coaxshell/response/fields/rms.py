@@ -58,7 +58,7 @@ def pressure_rms(
     step = spectra.grid.time_step
     asked = request(part=part, filter=filter, time_resolution=time_resolution, memory=memory, progress=progress, step=step)
     domain = domain_of(spectra.problem, region, radius)
-    when = when_of(default_instants(spectra.grid.time) if time is None else time, spectra)
+    when = when_of(default_instants(spectra.grid.time) if time is None else time, float(spectra.grid.time[-1]), spectra.problem.scales)
     square = _mean_square(spectra, asked, domain, np.atleast_1d(when))
     values = np.sqrt(np.maximum(square, 0.0)) * spectra.problem.scales.pressure
     attributes = {
@@ -72,7 +72,9 @@ def pressure_rms(
         "time_resolution": asked.resolution,
     }
     dims = ("time",) if when.ndim else ()
-    return xr.DataArray(values.reshape(when.shape), dims=dims, coords=instants_of(spectra, when), name="pressure_rms", attrs=attributes)
+    return xr.DataArray(
+        values.reshape(when.shape), dims=dims, coords=instants_of(spectra.problem.scales, when), name="pressure_rms", attrs=attributes
+    )
 
 
 def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, times: FloatArray) -> FloatArray:

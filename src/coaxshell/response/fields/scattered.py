@@ -26,6 +26,7 @@ from coaxshell.response.fields.inversion import band, few_offsets
 from coaxshell.response.fields.modal_field import Quantity, modal_field
 from coaxshell.response.fields.request import FieldRequest, Region, Tell, mode_filter, reach, split
 from coaxshell.response.synthesis import angle_basis
+from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
@@ -217,12 +218,12 @@ def add_gridded(
                 span = slice(start, min(start + width, times.size))
                 modal = field.histories(raster.radii, times[span], quantity, np.float32)
                 modal *= weight.astype(np.float32)[:, None]
-                _to_points(out[span], modal, raster, (radius[at], angle[at]), at, asked.memory, odd=quantity in ("radial", "angular"))
+                to_points(out[span], modal, raster, (radius[at], angle[at]), at, asked.memory, odd=quantity in ("radial", "angular"))
                 tell((done + at.size * span.stop / times.size) / radius.size)
         done += at.size
 
 
-def _to_points(
+def to_points(
     out: FloatArray, modal: Single, raster: Raster, place: tuple[FloatArray, FloatArray], at: np.ndarray, memory: float, *, odd: bool
 ) -> None:
     """Add modal histories (radii, parities, M + 1, times), summed around the raster and interpolated, to ``out[:, at]``."""
@@ -246,10 +247,10 @@ def _to_points(
             list(pool.map(work, range(len(blocks))))
 
 
-def raster_radii(spectra: SolvedSpectra, asked: FieldRequest, radius: FloatArray) -> int:
+def raster_radii(problem: Problem, asked: FieldRequest, radius: FloatArray) -> int:
     """Return about how many radii the rasters of all regions have for points at these radii."""
     total = 0
-    for region, at in split(spectra.problem, radius):
+    for region, at in split(problem, radius):
         spacing = STEPS_PER_RESOLUTION * asked.resolution * region.spacing
         total += int(np.ptp(radius[at]) / spacing) + TAPS_RADIUS
     return total

@@ -111,7 +111,7 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
     require_leading_fronts(problem, settings)
     highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
     fastest = fastest_wave(problem, highest)
-    fronts = _fronts(problem)
+    fronts = spherical_fronts(problem)
     held = {one.z / length for one in problem.system.point_absorbers}
     places = [*(z / length for z in settings.stations), *sorted(held)]
     fronts += [_from_point(problem, z, fronts, fastest) for z in sorted(held)]
@@ -146,7 +146,7 @@ def whole_length_sampling(problem: Problem, settings: Settings) -> AxialSampling
     """
     assert isinstance(settings.modes, int)
     assert settings.axial_modes is not None
-    highest, fronts = settings.axial_modes, _fronts(problem)
+    highest, fronts = settings.axial_modes, spherical_fronts(problem)
     length = felt_length(settings.duration, fronts, fastest_wave(problem, highest))
     return AxialSampling(length or math.pi / highest, settings.modes, highest)
 
@@ -164,7 +164,8 @@ def _from_point(problem: Problem, z: float, fronts: list[Front], fastest: float)
     return Front(z, 0.0, min(front.delay + first_arrival(z - front.z, front.start, fastest) for front in fronts))
 
 
-def _fronts(problem: Problem) -> list[Front]:
+def spherical_fronts(problem: Problem) -> list[Front]:
+    """Return the fronts of the spherical sources of a problem."""
     length, time = problem.scales.length, problem.scales.time
     return [
         Front(getattr(source, "z", 0.0) / length, geometry.distance - 1.0, source.delay / time)

@@ -58,7 +58,7 @@ def solve_spatial(
     progress = progress or (None if workplace is None else workplace.progress)
     problem = dimensionless(system, dimensions=3)
     require_known(problem, settings)
-    grid = _grid(settings)
+    grid = laplace_grid(settings)
     sampling, notes = resolved_sampling(problem, grid, settings)
     stopwatch.lap("choosing the number of modes")
     period = sampling.period * problem.scales.length
@@ -94,14 +94,20 @@ def station_spectra(solution: SpatialSolution) -> StationSpectra:
     if solution.spectra is not None:
         return solution.spectra
     solution.at(0).need_every_instant("what is computed from its transforms (velocity and acceleration of shells)")
-    grid = _grid(solution.settings)
-    linked = _linked(solution.problem, grid, solution.sampling, None, on_threads)
-    forces = None if linked is None else linked.forces
+    grid = laplace_grid(solution.settings)
+    forces = forces_of(solution)
     spectra, _ = _summed(solution.problem, grid, solution.sampling, solution.settings, forces, None, on_threads)
     return StationSpectra(grid, spectra["w"], spectra["v"])
 
 
-def _grid(settings: Settings) -> LaplaceGrid:
+def forces_of(solution: SpatialSolution) -> PointForces | None:
+    """Return the transforms of the forces of a finished run's point absorbers, solved again; None if there are none."""
+    linked = _linked(solution.problem, laplace_grid(solution.settings), solution.sampling, None, on_threads)
+    return None if linked is None else linked.forces
+
+
+def laplace_grid(settings: Settings) -> LaplaceGrid:
+    """Return the nodes and instants of a run, its refinement included."""
     return LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
 
 

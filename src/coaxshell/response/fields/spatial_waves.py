@@ -1,0 +1,192 @@
+"""The fields of three dimensions, wave by wave: what drives the fluids at each axial wavenumber, in a second pass over those of a run.
+
+A run keeps the motion of the walls at its stations alone. A field solves the same waves again, at the nodes of the band that it needs and
+with the axial period that its own place and instants ask for: often a smaller one than that of the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.acoustics.basis import RadialBasis
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.response.fields.inversion import direct_matrix, window
+from coaxshell.response.fields.modal_field import Transfer, region_slopes
+from coaxshell.response.fields.request import SMEAR, FieldRequest, Region, Tell, filter_weight
+from coaxshell.solver.axial.causality import reach
+from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.axial.solve import forces_of
+from coaxshell.solver.axial.sums import amplitudes_of
+from coaxshell.solver.excitation import source_parities, superposed
+from coaxshell.solver.scaling import Problem
+
+_PAIRS = 16 * 1024
+"""Radius-node pairs of a block: a quarter of a megabyte an order, of which a dozen share a cache."""
+_FEWEST_NODES = 8
+
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What drives the fluids at one axial wavenumber.
+
+    Attributes
+    ----------
+    radial : RadialBasis
+        Orders, wavenumber and nodes.
+    normal : ndarray, shape (shells, families, parities, orders, nodes)
+        W.
+    incident : ndarray, shape (families, parities, orders, nodes)
+        Slope of the incident wave at r = 1.
+    """
+
+    radial: RadialBasis
+    normal: ComplexArray
+    incident: ComplexArray
+
+    def added_up(self, shares: npt.NDArray[np.number]) -> Drive:
+        """Return the families, each times its share, (families, 1 or nodes), as one."""
+        weight = shares[:, None, None]
+        return Drive(
+            self.radial, np.sum(self.normal * weight, axis=1, keepdims=True), np.sum(self.incident * weight, axis=0, keepdims=True)
+        )
+
+    def transfer(self, region: Region, part: str) -> Transfer | None:
+        """Return the field of a region, its families and parities in one dimension; None where the part vanishes."""
+        normal, incident = self.normal.reshape(self.normal.shape[0], -1, *self.normal.shape[3:]), self.incident
+        slopes = region_slopes(region, part, normal, lambda: incident.reshape(-1, *incident.shape[2:]), self.radial)
+        return None if slopes is None else Transfer(region, slopes, self.radial.s, self.radial.modes)
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialWaves:
+    """The waves of a run as a field at some axial positions and instants needs them.
+
+    Attributes
+    ----------
+    problem : Problem
+    sampling : AxialSampling
+    grid : LaplaceGrid
+        The band of nodes.
+    z : ndarray
+        Axial positions, in a.
+    part : str
+    filter : str or None
+    forces : PointForces or None
+        Of point absorbers, at the nodes of the run.
+    """
+
+    problem: Problem
+    sampling: AxialSampling
+    grid: LaplaceGrid
+    z: FloatArray
+    part: str
+    filter: str | None
+    forces: PointForces | None = None
+
+    @property
+    def parities(self) -> int:
+        """How many parities the motion around the circle has."""
+        return max(source_parities(self.problem.system.sources), 1 if self.forces is None else self.forces.parities)
+
+    def sets(self, block: slice) -> list[WaveSet]:
+        """Return all waves at a slice of the nodes."""
+        return wave_sets(
+            self.problem, self.sampling, self.z, self.grid.nodes[block], None if self.forces is None else self.forces.at(block)
+        )
+
+    def drive(self, waves: WaveSet, j: int, block: slice) -> Drive:
+        """Return what wave j of a set drives the fluids with, at a slice of the nodes."""
+        modes = waves.modes[j]
+        radial = RadialBasis(modes, self.grid.nodes[block])
+        weight = self._weight(waves, j)[:, None]
+        moved = [found[0] for found in amplitudes_of(self.problem, waves, j, self.grid, block)]
+        normal = np.zeros((moved[0].shape[0], len(moved), self.parities, *moved[0].shape[2:]), np.complex128)
+        incident = np.zeros(normal.shape[1:], np.complex128)
+        for number, (family, w) in enumerate(zip(waves.families, moved, strict=True)):
+            normal[:, number, : w.shape[1]] = w * weight
+            if family.groups:
+                slope = self._incident(family, radial)
+                incident[number, : slope.shape[0]] = slope * weight
+        return Drive(radial, normal, incident)
+
+    def _incident(self, family: Family, radial: RadialBasis) -> ComplexArray:
+        units = ((group.geometry.incident(self.grid, radial)[1], group) for group in family.groups)
+        return np.stack(superposed(family.parities, radial.modes, units))
+
+    def _weight(self, waves: WaveSet, j: int) -> FloatArray:
+        """Return the filter's weight of every order: by the distance of (m, k) from the ellipse on which orders and wavenumbers end."""
+        modes, top = waves.modes[j], self.sampling.max_order
+        along = 0.0 if np.iscomplexobj(modes.wavenumber) else float(np.asarray(modes.wavenumber)) / self.sampling.highest
+        return filter_weight(self.filter, np.hypot(modes.orders, along * top) / (top + 1.0))
+
+    def inverse(self, times: FloatArray) -> FloatArray:
+        """Return the matrix of direct sums under the band's window, shape (2 nodes, T)."""
+        return direct_matrix(self.grid, times) * np.repeat(window(self.grid), 2)[:, None]
+
+    def block_size(self, radii: int) -> int:
+        """Return how many nodes to take at a time for a field at so many radii."""
+        return max(_FEWEST_NODES, min(-(-self.grid.nodes.size // WORKERS), _PAIRS // max(1, radii)))
+
+    def pairs(self, radii: int) -> float:
+        """Return how many values of an order, a wave, a node and a radius a field at so many radii adds up."""
+        sets = self.sets(slice(0, 1))
+        return float(sum(modes.count for waves in sets for modes in waves.modes)) * self.grid.nodes.size * radii
+
+
+def cut_waves(
+    spatial: SpatialSolution, grid: LaplaceGrid, z: FloatArray, latest: float, asked: FieldRequest
+) -> tuple[SpatialWaves | None, npt.NDArray[np.int64]]:
+    """Return the waves that a field needs, and at which of its axial positions there is a scattered wave by the latest instant.
+
+    Parameters
+    ----------
+    spatial : SpatialSolution
+    grid : LaplaceGrid
+        The band of nodes.
+    z : ndarray
+        Axial positions, in a.
+    latest : float
+        Transits.
+    asked : FieldRequest
+
+    Returns
+    -------
+    tuple
+        (waves, positions); no waves where no position is reached.
+    """
+    problem, settings = spatial.problem, spatial.settings
+    until = latest + SMEAR * asked.resolution
+    fronts, speed = spherical_fronts(problem), fastest_wave(problem, spatial.sampling.highest)
+    felt = np.arange(z.size)
+    if len(fronts) == len(problem.sources):
+        far = np.array([abs(z - front.z) - reach(until - front.delay, front.start, speed) for front in fronts])
+        felt = np.flatnonzero(far.min(axis=0) <= 0.0)
+    if not felt.size:
+        return None, felt
+    ends = sorted({float(z[felt].min()) * problem.scales.length, float(z[felt].max()) * problem.scales.length})
+    sampling = axial_sampling(problem, replace(settings, stations=tuple(ends), duration=until, axial_period=None))
+    return SpatialWaves(problem, sampling, grid, z[felt], asked.part, asked.filter, forces_of(spatial)), felt
+
+
+def each_block(waves: SpatialWaves, radii: int, work: Callable[[slice], Found], tell: Tell) -> Iterator[Found]:
+    """Yield what a function makes of blocks of nodes, worked on by all threads, and tell the share done."""
+    count = waves.grid.nodes.size
+    edges = np.linspace(0, count, max(1, -(-count // waves.block_size(radii))) + 1).astype(int)
+    blocks = [slice(int(a), int(b)) for a, b in pairwise(edges)]
+    with ThreadPoolExecutor(WORKERS) as pool:
+        for done, found in enumerate(pool.map(work, blocks), start=1):
+            tell(done / len(blocks))
+            yield found
