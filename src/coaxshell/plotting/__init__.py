@@ -5,6 +5,7 @@ from __future__ import annotations
 from coaxshell.plotting.bare_histories import figure_bare_histories
 from coaxshell.plotting.comparison import figure_comparison, plot_comparison
 from coaxshell.plotting.curves import figure_curves, plot_curves
+from coaxshell.plotting.cuts import figure_cuts
 from coaxshell.plotting.energy import figure_energy, plot_energy
 from coaxshell.plotting.field import plot_field
 from coaxshell.plotting.field_scales import PRESSURE_UNITS, check_units
@@ -20,6 +21,7 @@ from coaxshell.plotting.sensitivity import figure_sensitivity, plot_distribution
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
 from coaxshell.plotting.style import COLOURS, style
 from coaxshell.plotting.sweep import figure_sweep, plot_sweep
+from coaxshell.plotting.unrolled import plot_unrolled
 
 __all__ = [
     "COLOURS",
@@ -37,6 +39,7 @@ __all__ = [
     "figure_bare_histories",
     "figure_comparison",
     "figure_curves",
+    "figure_cuts",
     "figure_energy",
     "figure_named_curves",
     "figure_optimum",
@@ -57,6 +60,7 @@ __all__ = [
     "plot_parallel",
     "plot_sensitivity",
     "plot_sweep",
+    "plot_unrolled",
     "save_figure",
     "save_film",
     "style",
