@@ -107,13 +107,9 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize("call", [name for name in CALLS if name not in ("simulate", "direct", "prepared problem")])
-def test_no_solver_takes_three_dimensions_for_two(call):
-    with pytest.raises(
-        cx.InputError,
-        match=r"dimensions: (no case is possible: )?3 is solved by single runs only; use dimensions=2, or simulate each system$",
-    ):
-        CALLS[call](BARE, **QUICK, dimensions=3)
+def test_what_is_prepared_has_two_dimensions():
+    with pytest.raises(cx.InputError, match=r"^dimensions: 3 is solved by single runs only; use dimensions=2, or simulate each system$"):
+        cx.prepare(BARE, **QUICK, dimensions=3)
 
 
 @pytest.mark.parametrize("call", CALLS)

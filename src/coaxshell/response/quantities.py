@@ -413,6 +413,7 @@ _TABLE += (
         shown=("MPa", 1e-6),
         column=True,
         summary=("head", "tail", "anywhere"),
+        metrics=("anywhere", "head", "tail"),
         dimensions=3,
     ),
     Quantity(
@@ -439,6 +440,7 @@ _TABLE += (
         shown=("MPa", 1e-6),
         column=True,
         summary=("anywhere",),
+        metrics=("anywhere",),
         dimensions=3,
     ),
     Quantity(
@@ -475,6 +477,7 @@ def summary_rows(dimensions: int = 2) -> list[tuple[str, str, str]]:
     ]
 
 
-def shell_metrics() -> dict[str, tuple[Quantity, Where]]:
+def shell_metrics(dimensions: int = 3) -> dict[str, tuple[Quantity, Where]]:
     """Return what a study can ask of a shell: names such as "peak_stress_head", and what of which quantity they stand for."""
-    return {quantity.metric(where): (quantity, where) for quantity in QUANTITIES.values() for where in quantity.metrics}
+    known = (quantity for quantity in QUANTITIES.values() if quantity.dimensions <= dimensions)
+    return {quantity.metric(where): (quantity, where) for quantity in known for where in quantity.metrics}

@@ -56,11 +56,11 @@ _MORE_OF_A_SHELL = {
 }
 
 
-def shell_quantities() -> dict[str, MetricEntry]:
+def shell_quantities(dimensions: int = 2) -> dict[str, MetricEntry]:
     """Return what can be asked of a shell: the quantities of the table at their places, and what is derived from voltages and layers."""
     found = {
         name: MetricEntry(quantity.unit, _WHERE.get(where, _RMS).format(quantity.noun), quantity.roles[-1] if quantity.roles else "")
-        for name, (quantity, where) in shell_metrics().items()
+        for name, (quantity, where) in shell_metrics(dimensions).items()
     }
     return {**found, **_MORE_OF_A_SHELL}
 
@@ -167,6 +167,21 @@ def metrics_of(asked: Metrics, system: System, code: UserCode = ANYWHERE) -> tup
     return tuple(found.values())
 
 
+_IN_ALL_DIMENSIONS = ("mass", "stress_truncation", "time_window_error")
+"""What stands beside the quantities of the table in three dimensions."""
+
+
+def require_readable(metrics: Sequence[Metric], dimensions: int) -> None:
+    """Raise InputError for a metric that is not read from runs of so many dimensions."""
+    for metric in metrics:
+        if metric.function is not None:
+            continue
+        if metric.quantity in shell_metrics() and metric.quantity not in shell_metrics(dimensions):
+            raise InputError(metric.name, "is read at stations of a run in three dimensions", "use dimensions=3, or leave it out")
+        if dimensions == 3 and metric.quantity not in (*shell_metrics(), *_IN_ALL_DIMENSIONS):
+            raise InputError(metric.name, "is not read in three dimensions", "use dimensions=2, or a function of the response")
+
+
 def metric_names(system: System) -> list[str]:
     """Return the names of all metrics that a system has."""
     count = len(system.shells)
@@ -198,9 +213,9 @@ def _metric(asked: Any, name: str | None, system: System, where: str, code: User
     if listing == "fluids" or (quantity in FLUID_QUANTITIES and item in ("interior", "gap", "exterior")):
         return _of_fluid(text, label, item, quantity, system, where)
     shell = _shell(item, system)
-    if shell is None or quantity not in shell_quantities():
+    if shell is None or quantity not in shell_quantities(3):
         raise InputError(where, f"{text!r} is not a known metric", suggestion(text, metric_names(system)))
-    entry = shell_quantities()[quantity]
+    entry = shell_quantities(3)[quantity]
     lack = _lacks(system.shells[shell], entry)
     if lack is not None:
         raise InputError(where, f"{text!r} needs a shell that {lack}", suggestion(text, metric_names(system)))

@@ -17,6 +17,7 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.quantities import Quantity, Where, shell_metrics
 from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
+from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import segment_length
 
 
@@ -84,15 +85,20 @@ class MetricSource(DesignReading):
         self._head = self.system.sources[0].angle
 
     def number(self, name: str, place: str | int) -> float:
-        """Return a number by its name: the largest magnitude or RMS of a quantity of a shell, or what a method or property here gives."""
+        """Return a number by its name: the largest magnitude or RMS of a quantity of a shell, or what a method or property here gives.
+
+        With stations the largest of them all.
+        """
         entry = shell_metrics().get(name)
         if entry is None:
             return super().number(name, place)
         assert isinstance(place, int)
-        return self._largest(*entry, place)
+        return max(self._largest(*entry, place, motion) for motion in self.response.motions)
 
-    def _largest(self, quantity: Quantity, where: Where, shell: int) -> float:
-        amplitudes, time = quantity.amplitudes(self.response.motion, shell), self.solution.time
+    def _largest(self, quantity: Quantity, where: Where, shell: int, motion: WallMotion) -> float:
+        if quantity.gain is None and quantity.largest is not None:
+            return float(quantity.largest(motion.solution, shell, self._whole, 0.0).value)
+        amplitudes, time = quantity.amplitudes(motion, shell), self.solution.time
         if where == "rms":
             return root_mean_square(amplitudes, time, self._whole, self._width)
         # What the summary shows at head, tail and anywhere is never less anywhere than there.

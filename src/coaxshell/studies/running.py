@@ -11,13 +11,13 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.model.paths import within
 from coaxshell.model.system import System
-from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.solvable import require_solvable
 from coaxshell.studies.cost import case_cost, require_room
 from coaxshell.studies.evaluation import Batch, Case, Outcome, batches, evaluate, failure, forget
 from coaxshell.studies.execution import Execution
 from coaxshell.studies.executors import completed, process_pool
-from coaxshell.studies.metrics import Metric
+from coaxshell.studies.metrics import Metric, require_readable
 from coaxshell.studies.store import StudyStore
 from coaxshell.studies.user_functions import OtherCodeError
 
@@ -31,6 +31,7 @@ def run_study(
     where: str = "",
 ) -> list[Outcome]:
     """Return the outcome of every case, in order; InputError, within *where*, if none of them is possible."""
+    require_readable(metrics, resolution.dimensions)
     systems = [_solvable(item, resolution) for item in systems]
     refused = [item for item in systems if isinstance(item, InputError)]
     if len(refused) == len(systems):
@@ -143,7 +144,7 @@ def _solvable(system: System | InputError, resolution: Settings) -> System | Inp
     """Return a system, or why it cannot be solved in the dimensions asked for."""
     try:
         if isinstance(system, System):
-            require_two_dimensions(system, resolution)
+            require_solvable(system, resolution)
     except InputError as error:
         return error
     return system

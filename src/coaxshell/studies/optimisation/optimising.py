@@ -14,10 +14,10 @@ from coaxshell.model.system import System
 from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
-from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.solvable import require_solvable
 from coaxshell.studies.execution import Execution, StudyKeywords, asked
-from coaxshell.studies.metrics import ANYWHERE
+from coaxshell.studies.metrics import ANYWHERE, require_readable
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
 from coaxshell.studies.optimisation.methods import Setting, chosen, search
@@ -166,9 +166,10 @@ def problem_of(
             raise InputError(name, f"{number!r} is not allowed", f"give a whole number of {least} or more")
     if start not in ("auto", "system"):
         raise InputError("start", f"{start!r} is not allowed", 'must be "auto" or "system"')
-    require_two_dimensions(system, resolution)
+    require_solvable(system, resolution)
     space = space_of(system, variables)
     targets = targets_of(objectives, constraints, space.base, code)
+    require_readable(targets.metrics, resolution.dimensions)
     if targets.statistics and not uncertain:
         raise InputError(
             "uncertain", "is missing, and a statistic over it is asked for", "give the uncertain properties, or a plain metric"
