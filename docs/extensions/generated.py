@@ -1,4 +1,4 @@
-"""Pages that the package writes itself at every build: conformance report, commands, licences, limits, quantities."""
+"""Pages that the package writes itself at every build: conformance report, commands, licences, limits, quantities, slice or sphere."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from cli_pages import command_reference
 from licence_pages import licence_table
 from limit_pages import limit_table
 from quantity_pages import quantity_table
+from sphere_pages import sphere_report
 from sphinx.application import Sphinx
-from verification_pages import verification_report
+from verification_pages import newest_source, verification_report
 
 
 def write_pages(app: Sphinx) -> None:
@@ -20,6 +21,7 @@ def write_pages(app: Sphinx) -> None:
     for name, page in pages.items():
         _replace_if_changed(folder / f"{name}.md", page())
     verification_report(folder)
+    sphere_report(folder, newest_source())
 
 
 def _replace_if_changed(path: Path, text: str) -> None:

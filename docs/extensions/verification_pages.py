@@ -21,7 +21,7 @@ def verification_report(folder: Path) -> None:
     """Write verification.md and the report with plots into a folder, unless sources are older than they are."""
     page = folder / "verification.md"
     full = os.environ.get("COAXSHELL_DOCS_VERIFY") == "full"
-    if page.exists() and page.stat().st_mtime > _newest_source() and not full:
+    if page.exists() and page.stat().st_mtime > newest_source() and not full:
         return
     report = run(chosen(None, not full), quick=not full)
     text, html = write_report(report, folder / "report")
@@ -31,6 +31,7 @@ def verification_report(folder: Path) -> None:
     page.write_text(head + body, encoding="utf-8")
 
 
-def _newest_source() -> float:
+def newest_source() -> float:
+    """Return when the package's newest file was changed, seconds."""
     package = Path(__file__).parents[2] / "src" / "coaxshell"
     return max(path.stat().st_mtime for path in package.rglob("*.py"))
