@@ -170,3 +170,11 @@ def test_progress_ends_at_one(bare: SpatialResponse) -> None:
     bare.pressure(x=[0.0, 1.5], z=[0.0], time=1.0, progress=lambda share, _: told.append(share))
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+def test_what_does_not_fit_into_memory_is_refused_beforehand(bare: SpatialResponse, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COAXSHELL_MEMORY", "1 MB")
+    with pytest.raises(
+        InputError, match=r"^memory: the pressure at \d+ radii of \d+ axial wavenumbers and 1 instants needs about .*coarser"
+    ):
+        bare.pressure(x=np.linspace(-2, 2, 21), z=[0.0, 1.0], time=1.0)
