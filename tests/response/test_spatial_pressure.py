@@ -173,7 +173,7 @@ def test_progress_ends_at_one(bare: SpatialResponse) -> None:
 
 
 def test_what_does_not_fit_into_memory_is_refused_beforehand(bare: SpatialResponse, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COAXSHELL_MEMORY", "1 MB")
+    monkeypatch.setenv("COAXSHELL_MEMORY", "0.1 MB")
     with pytest.raises(
         InputError, match=r"^memory: the pressure at \d+ radii of \d+ axial wavenumbers and 1 instants needs about .*coarser"
     ):
