@@ -109,8 +109,9 @@ class SpatialResponse(WithoutFields, Response):
     def energy(self, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
         """Return every store, flow and loss of energy over the whole length of the shells and the closure residual, J.
 
-        As much work as a two-dimensional balance for each of some 2 c (T + S) k_max/(2 pi) axial wavenumbers, c the fastest wave in c_e:
-        take fewer instants with *every*, and watch *progress*. See :func:`coaxshell.response.energy.whole_length.whole_length_energy`.
+        About half as much work as a two-dimensional balance for each of some 2 c (T + S) k_max/(2 pi) axial wavenumbers, c the speed of
+        the fastest wave in c_e, whatever *every* is; *progress* is told how far it is.
+        See :func:`coaxshell.response.energy.whole_length.whole_length_energy`.
         """
         return whole_length.whole_length_energy(self.spatial, every, progress)
 

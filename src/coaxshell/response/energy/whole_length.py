@@ -28,7 +28,7 @@ from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.scaling import Problem
 
 _ALIKE = 10.0
-"""What a fluid may lose of its spectrum at a wavenumber, in so many of what it may lose at the usual one: a third faster."""
+"""What a fluid may lose of its spectrum at a wavenumber, in so many of what it may lose at the usual one."""
 
 
 def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
