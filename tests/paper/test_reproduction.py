@@ -125,6 +125,20 @@ def test_the_film_the_slips_and_the_estimate(tmp_path, monkeypatch):
     assert all(f">{key}</td>" in page for key in SLIPS)
 
 
+def test_slice_and_sphere_are_a_section_with_pictures(tmp_path):
+    found = reproduce(tmp_path, TINY, only=frozenset({"sphere"}), workers=1)
+    assert list(found.seconds) == ["sphere beside the slice"]
+    pages = {path.suffix: path.read_text(encoding="utf-8") for path in write(found, tmp_path)}
+    assert pages[".html"].count("data:image/png") == len(found.sphere.pictures) == 2
+    for page in pages.values():
+        assert "Slice, cylinder or sphere?" in page
+        assert "M = 6, time step 0.02, to t = 0.6" in page
+        assert "outer head" in page
+    for name, picture in found.sphere.pictures.items():
+        assert (tmp_path / "figures" / f"{name}.png").read_bytes() == picture
+        assert f"(figures/{name}.png)" in pages[".md"]
+
+
 def test_parts_are_named_once_and_chosen_by_topic():
     every = list(parts(TINY))
     assert len(every) == len(set(every)) == len({part.title for part in every})
@@ -157,7 +171,7 @@ def test_a_bad_option_is_told_in_one_line(tmp_path, monkeypatch, capsys, argumen
 def test_the_whole_paper_at_its_resolution(tmp_path):
     assert main(["reproduce", "--output", str(tmp_path), "--quiet"]) == 0
     assert (tmp_path / "report.html").stat().st_size > 1e6
-    assert len(list((tmp_path / "figures").iterdir())) == len(FIGURES)
+    assert len(list((tmp_path / "figures").iterdir())) == len(FIGURES) + 2
 
 
 def test_what_does_not_fit_side_by_side_is_refused_and_the_time_is_told(tmp_path, monkeypatch):

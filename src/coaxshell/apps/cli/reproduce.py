@@ -27,7 +27,8 @@ def reproduce(
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Where the report and the finished parts are kept; made if need be.")
     ] = FOLDER,
     only: Annotated[
-        list[str] | None, typer.Option("--only", metavar="figures|claims|slips|film|estimate", help="This part only. May be repeated.")
+        list[str] | None,
+        typer.Option("--only", metavar="figures|claims|slips|sphere|film|estimate", help="This part only. May be repeated."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="A coarse trial of everything: a minute instead of several.")] = False,
     film: Annotated[bool, typer.Option("--film/--no-film", help="Make a film of bare against hybrid.")] = True,

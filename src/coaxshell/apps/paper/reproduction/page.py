@@ -11,6 +11,7 @@ from coaxshell.apps.paper.claims import Judged
 from coaxshell.apps.paper.reproduction import texts
 from coaxshell.apps.paper.reproduction.plan import VARIANTS
 from coaxshell.apps.paper.reproduction.results import Results
+from coaxshell.apps.paper.sphere import texts as sphere
 from coaxshell.apps.verification.markdown import table
 from coaxshell.apps.verification.page import document, inlined
 from coaxshell.apps.verification.suite import circumstances
@@ -40,6 +41,7 @@ def html(results: Results) -> str:
         "figures": ("The figures", "".join(_figures(results))),
         "film": ("Film", _film(results)),
         "slips": ("The slips", _slips(results) if results.effects else ""),
+        "sphere": (sphere.TITLE, _sphere(results)),
         "times": ("Run times, and how to repeat", _times(results)),
     }
     shown = {name: entry for name, entry in sections.items() if entry[1]}
@@ -121,6 +123,19 @@ def _slips(results: Results) -> str:
     )
 
 
+def _sphere(results: Results) -> str:
+    found = results.sphere
+    if found is None:
+        return ""
+    shown = [inlined(found.pictures[name], "png", sphere.TITLE, escape(caption)) for name, caption in sphere.CAPTIONS.items()]
+    tables = [f"<p>{escape(caption)}</p>{_table(headings, _escaped(rows))}" for caption, headings, rows in found.tables]
+    use = "".join(f"<li>{escape(line)}</li>" for line in sphere.USE)
+    said = "".join(f"<p>{escape(text)}</p>" for text in (sphere.ABOUT, found.told))
+    return (
+        f"{said}{tables[0]}{tables[1]}<p>{escape(sphere.WHY)}</p>{shown[0]}<p>{escape(sphere.MAP)}</p>{shown[1]}{tables[2]}<ul>{use}</ul>"
+    )
+
+
 def _times(results: Results) -> str:
     estimate = f"<p>{escape(texts.estimate_text(results.estimate))}</p>" if results.estimate else ""
     return f"{estimate}<p>All of it again: <code>{escape(_command(results))}</code>; finished parts are taken up.</p>" + _table(
@@ -148,6 +163,8 @@ def markdown(results: Results) -> str:
         parts += ["## Film", f"[film{results.film[1]}](film{results.film[1]})"]
     if results.effects:
         parts += ["## The slips", table(texts.SLIP_HEADINGS, texts.slip_rows()), table(texts.EFFECT_HEADINGS, texts.effect_rows(results))]
+    if results.sphere:
+        parts += [f"## {sphere.TITLE}", results.sphere.markdown.replace("\n## ", "\n### ").strip()]
     parts.append("## Run times, and how to repeat")
     if results.estimate:
         parts.append(texts.estimate_text(results.estimate))
@@ -160,6 +177,8 @@ def write(results: Results, folder: Path) -> tuple[Path, ...]:
     pictures = folder / "figures"
     pictures.mkdir(parents=True, exist_ok=True)
     files = {pictures / f"figure-{figure.recipe.number}.png": figure.png for figure in results.figures}
+    if results.sphere:
+        files |= {pictures / f"{name}.png": picture for name, picture in results.sphere.pictures.items()}
     if results.film:
         files[folder / f"film{results.film[1]}"] = results.film[0]
     reports = {folder / "report.md": markdown(results).encode(), folder / "report.html": html(results).encode()}

@@ -14,6 +14,7 @@ from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.limiting_cases import limiting_systems
 from coaxshell.apps.paper.recipes import FigureRecipe
+from coaxshell.apps.paper.sphere.report import RESOLUTION as SPHERE_RESOLUTION
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.solver.cost import run_cost
@@ -54,7 +55,7 @@ class Part:
     Attributes
     ----------
     kind : str
-        "runs", "fields", "figure", "film", "slips" or "direct".
+        "runs", "fields", "figure", "film", "slips", "sphere" or "direct".
     about : str
         Which one: a group of runs, a system, the number of a figure.
     variant : str
@@ -70,6 +71,18 @@ class Part:
         """The part in words."""
         model = "" if self.variant == CORRECTED else f", {self.variant}"
         return f"{self.kind} {self.about}".strip() + model
+
+
+SPHERE = Part("sphere", "beside the slice")
+"""The part in three dimensions."""
+
+
+def sphere_resolution(resolution: Settings) -> Settings:
+    """Return a resolution that is no finer and no longer than that of the report on slice and sphere, which it would not change."""
+    modes = min(resolution.modes, SPHERE_RESOLUTION.modes) if isinstance(resolution.modes, int) else SPHERE_RESOLUTION.modes
+    return replace(
+        resolution.up_to(SPHERE_RESOLUTION.duration), modes=modes, time_step=max(resolution.time_step, SPHERE_RESOLUTION.time_step)
+    )
 
 
 @dataclass(frozen=True)
@@ -123,7 +136,7 @@ def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: boo
     ----------
     resolution : Settings
     only : frozenset of str
-        Of "figures", "claims", "slips", "film" and "estimate"; all if empty.
+        Of "figures", "claims", "slips", "sphere", "film" and "estimate"; all if empty.
     film : bool
         Whether a film is made.
     """
@@ -133,6 +146,8 @@ def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: boo
 
     if wanted("slips"):
         yield Part("slips", "one by one")
+    if wanted("sphere"):
+        yield SPHERE
     if film and wanted("film"):
         yield Part("film", "bare against hybrid")
     if wanted("figures"):
@@ -165,6 +180,9 @@ def part_cost(part: Part, resolution: Settings) -> Cost:
     if part.kind == "slips":
         each = _runs([systems.preset(name) for name in ("bare", "absorbers", "active", "hybrid")], resolution)
         return Cost(each.memory, _SLIPS * each.seconds)
+    if part.kind == "sphere":
+        at = sphere_resolution(resolution)
+        return _runs([systems.preset("bare")], replace(at, dimensions=3)).then(_runs([systems.preset("bare")] * 3, at))
     if part.kind == "film":
         return _runs([systems.preset(name) for name in ("bare", "hybrid")], resolution).then(_FILM)
     if part.kind == "fields":

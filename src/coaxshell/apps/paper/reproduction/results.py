@@ -13,8 +13,9 @@ from coaxshell.apps.paper.claims.claim import Verdict
 from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.recipes import FigureRecipe
-from coaxshell.apps.paper.reproduction.plan import VARIANTS, Part
+from coaxshell.apps.paper.reproduction.plan import SPHERE, VARIANTS, Part
 from coaxshell.apps.paper.reproduction.work import picture, runs_of
+from coaxshell.apps.paper.sphere.texts import CAPTIONS
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
 
@@ -55,6 +56,16 @@ class Estimate:
 
 
 @dataclass(frozen=True)
+class SphereSection:
+    """What slice and sphere differ by: Markdown, the tables with captions and headings, the resolution in words, pictures as PNG bytes."""
+
+    markdown: str
+    tables: list[tuple[str, list[str], list[list[str]]]]
+    told: str
+    pictures: Mapping[str, bytes]
+
+
+@dataclass(frozen=True)
 class Results:
     """Everything that the report tells.
 
@@ -74,6 +85,7 @@ class Results:
     resumed : int
         Parts that were there already.
     workers : int
+    sphere : SphereSection or None
     """
 
     resolution: Settings
@@ -87,6 +99,7 @@ class Results:
     elapsed: float = 0.0
     resumed: int = 0
     workers: int = 1
+    sphere: SphereSection | None = None
 
     def tally(self, variant: str) -> Counter[Verdict]:
         """Return how many claims have each verdict in a variant."""
@@ -113,6 +126,16 @@ def judged_claims(resolution: Settings, store: Store) -> tuple[Judged, ...]:
     """Return every claim with its findings in all variants, from the runs in the store."""
     variants = {name: runs_of(name, resolution, store) for name in VARIANTS}
     return tuple(judge(claim, variants) for claim in claims())
+
+
+def sphere_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> SphereSection | None:
+    """Return what slice and sphere differ by, if it was computed."""
+    piece = pieces.get(SPHERE)
+    if piece is None:
+        return None
+    arrays, values = piece
+    pictures = {name: arrays[name].tobytes() for name in CAPTIONS}
+    return SphereSection(values["markdown"], values["tables"], values["told"], pictures)
 
 
 def estimate_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> Estimate | None:

@@ -17,7 +17,7 @@ from coaxshell.apps.paper.claims import systems
 from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import Runs, key_of
 from coaxshell.apps.paper.recipes import FigureRecipe
-from coaxshell.apps.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups
+from coaxshell.apps.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups, sphere_resolution
 from coaxshell.errors import PhysicsWarning
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.solver.settings import Settings
@@ -120,6 +120,15 @@ def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
 
 
+def _sphere(job: Job, store: Store) -> Piece:
+    from coaxshell.apps.paper.sphere.report import report
+
+    made = report(sphere_resolution(job.resolution))
+    pictures = {name: picture(figure) for name, figure in made.figures().items()}
+    tables = [[caption, list(headings), [list(row) for row in rows]] for caption, headings, rows in made.tables]
+    return pictures, {"markdown": made.markdown("figures/"), "tables": tables, "told": made.told}
+
+
 def _direct(job: Job, store: Store) -> Piece:
     """Measure the processor time of both engines on a sample of Figure 9's runs, each run on its own."""
     from coaxshell.response import simulate
@@ -139,6 +148,7 @@ _WORK: dict[str, Callable[[Job, Store], Piece]] = {
     "figure": _figure,
     "film": _film,
     "slips": _slips,
+    "sphere": _sphere,
     "direct": _direct,
 }
 

@@ -69,14 +69,18 @@ class Report:
             (texts.DISTANCE_CAPTION, texts.DISTANCE_HEADINGS, self.distance_rows),
         ]
 
+    @property
+    def told(self) -> str:
+        """The resolution in words."""
+        at = self.resolution
+        return f"Computed with M = {at.modes}, time step {at.time_step:g}, to t = {at.duration:g}; the map with M = 30, time step 0.008."
+
     def markdown(self, folder: str = "") -> str:
         """Return the report as Markdown text without its title; its pictures lie in a folder beside it."""
-        at = self.resolution
-        told = f"Computed with M = {at.modes}, time step {at.time_step:g}, to t = {at.duration:g}; the map with M = 30, time step 0.008."
         shown = [f"![{caption}]({folder}{name}.png)" for name, caption in texts.CAPTIONS.items()]
         peaks, differences, distances = (f"{caption}\n\n{table(headings, rows)}" for caption, headings, rows in self.tables)
         use = "\n".join(f"- {line}" for line in texts.USE)
-        pieces = [texts.ABOUT, told, peaks, differences, texts.WHY, shown[0], "## The map", texts.MAP, shown[1], distances]
+        pieces = [texts.ABOUT, self.told, peaks, differences, texts.WHY, shown[0], "## The map", texts.MAP, shown[1], distances]
         return "\n\n".join([*pieces, "## What to use when", use]) + "\n"
 
     def figures(self) -> dict[str, Figure]:
