@@ -113,13 +113,8 @@ def circles(arrows: dict[str, set[str]]) -> list[list[str]]:
     return sorted(map(sorted, groups))
 
 
-REMAINING = [  # forces of absorbers are shared out where the dimensionless problem is made, and typed by it
-    [f"coaxshell.solver.{name}" for name in ("interface.absorbers", "point_forces", "scaling")],
-]
-
-
 def test_no_two_files_need_each_other():
-    assert [one for one in circles(arrows_between_files()) if one not in REMAINING] == []
+    assert circles(arrows_between_files()) == []
 
 
 def test_the_search_for_circles_finds_them():

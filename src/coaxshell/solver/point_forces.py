@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import FloatArray
 
-if TYPE_CHECKING:
-    from coaxshell.solver.interface.absorbers import AbsorberSet
 
-    PointForceShares = Callable[[AbsorberSet, Modes], FloatArray]
-    """From absorbers and modes to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1)."""
+class PlacedForces(Protocol):
+    """Places around a wall where line forces act, as a set of absorbers knows them."""
+
+    @property
+    def multiplicity(self) -> FloatArray:
+        """2 for a place that stands for itself and its mirror image, else 1: shape (N,)."""
+        ...
+
+    def shapes(self, modes: Modes) -> FloatArray:
+        """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
+        ...
 
 
-def point_force_shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
-    """Return cos(m theta_n)/(beta pi), sin for the sines, for an absorber that stands for two twice as much: (parities, N, M + 1)."""
+PointForceShares = Callable[[PlacedForces, Modes], FloatArray]
+"""From places and modes to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1)."""
+
+
+def point_force_shares(places: PlacedForces, modes: Modes) -> FloatArray:
+    """Return cos(m theta_n)/(beta pi), sin for the sines, for a place that stands for two twice as much: (parities, N, M + 1)."""
     beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
-    shares: FloatArray = absorbers.shapes(modes) * absorbers.multiplicity[:, None] / beta_pi
+    shares: FloatArray = places.shapes(modes) * places.multiplicity[:, None] / beta_pi
     return shares

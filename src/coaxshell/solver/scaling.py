@@ -7,7 +7,6 @@ the outer radius.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import SourceGeometry, source_geometry
@@ -16,14 +15,11 @@ from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.solver.point_forces import point_force_shares
+from coaxshell.solver.point_forces import PointForceShares, point_force_shares
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
 from coaxshell.structure.shell_model import ControlGains, ShellModel
 from coaxshell.structure.thin_wall import ThinWall
-
-if TYPE_CHECKING:
-    from coaxshell.solver.point_forces import PointForceShares
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,14 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.point_forces import PlacedForces
 from coaxshell.solver.scaling import Problem
 
 
 def missing_projection(problem: Problem) -> Problem:
     """Return the problem without 1/(beta pi): every absorber pulls pi times (order 0: 2 pi times) as hard as its own mass feels."""
 
-    def shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
+    def shares(absorbers: PlacedForces, modes: Modes) -> FloatArray:
         beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
         found: FloatArray = problem.point_force_shares(absorbers, modes) * beta_pi
         return found
@@ -30,8 +31,9 @@ def outside_sum(problem: Problem, which: int) -> Problem:
     axis, whose series has cosines only, this is half there and half at its mirror image.
     """
 
-    def shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
+    def shares(absorbers: PlacedForces, modes: Modes) -> FloatArray:
         own = absorbers.shapes(modes)
+        assert isinstance(absorbers, AbsorberSet)
         angle = float(absorbers.every_angle[which])
         there = np.stack([modes.projection(angle, parity)[:, 0] for parity in range(absorbers.parities)])
         beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
@@ -44,7 +46,7 @@ def outside_sum(problem: Problem, which: int) -> Problem:
 def cosine_only(problem: Problem) -> Problem:
     """Return the problem with cosines only: an absorber off the axis acts as two of half its strength at +theta_n and -theta_n."""
 
-    def shares(absorbers: AbsorberSet, modes: Modes) -> FloatArray:
+    def shares(absorbers: PlacedForces, modes: Modes) -> FloatArray:
         found = problem.point_force_shares(absorbers, modes).copy()
         found[1:] = 0.0
         return found
