@@ -59,7 +59,8 @@ demo: $(STAMP_DEMO)
 	@$(BIN)/coaxshell run hybrid --compare bare --quiet --force --output $(DEMO)/hybrid.nc --figure $(DEMO)/stress.png > $(DEMO)/reductions.txt
 	@cat $(DEMO)/reductions.txt
 	@echo "  stress at head and tail, and pressure at four instants: half a minute"
-	@$(BIN)/coaxshell figure 3 --quiet --force --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png
+	@$(BIN)/coaxshell figure 3 --quiet --force --from $(DEMO)/bare.nc --output $(DEMO)/figure-3.png 2> $(DEMO)/.told || \
+	  { cat $(DEMO)/.told >&2; exit 1; }
 	@$(BIN)/coaxshell snapshots $(DEMO)/bare.nc --compare $(DEMO)/hybrid.nc --times 0.5,1.2,2,3.1 --columns 2 --quiet --force \
 	  --output $(DEMO)/fields.png 2> $(DEMO)/.told || { cat $(DEMO)/.told >&2; exit 1; }
 	@echo "  a film of 100 frames: a minute"

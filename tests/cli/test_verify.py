@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -38,7 +39,7 @@ def test_a_failing_row_exits_with_1(run, monkeypatch):
         yield within("a thing", "nowhere", "0", 2.0, 1.0)
 
     failing = registry.Check("failing", "Failing", "It fails.", work, True)
-    monkeypatch.setattr(registry, "checks", lambda: (failing,))
+    monkeypatch.setattr(import_module("coaxshell.apps.verification.checks"), "checks", lambda: (failing,))
     outcome = run("verify", "--only", "failing", "--output", "there", "--quiet")
     assert outcome.code == 1
     assert outcome.files == ["report.html", "report.md", "there"]

@@ -88,7 +88,7 @@ def test_what_is_not_there_is_refused_by_name(response: SpatialResponse, flat: c
         (lambda: response.plot(station=0.3), r"station: 0\.3 m is none of the run's"),
         (lambda: plot_history(flat, station=0.7), "station: 0.7 belongs to three dimensions"),
         (lambda: export_paraview(response, tmp_path / "paraview"), "response: is of three dimensions"),
-        (lambda: response.pressure(x=0.0, y=0.0, time=0.5), "pressure: is of runs in two dimensions only"),
+        (lambda: response.intensity(x=0.0, y=0.0, time=0.5), "intensity: is of runs in two dimensions only"),
         (response.thin(2).energy, "response: holds 11 instants where its run had 21"),
         (response.absorber_force, "absorbers: this system has none"),
     ):

@@ -18,6 +18,7 @@ from coaxshell.model import (
     Piezoelectric,
     PlaneShock,
     PlaneWave,
+    PointAbsorber,
     Sampled,
     Shell,
     SphericalShock,
@@ -88,6 +89,8 @@ def _reference() -> Iterator[str]:
         yield f"    {name:<24} {meaning}"
     yield "[absorbers]: a ring of equal absorbers between two shells; or [[absorbers]], one table each, with an angle instead of count"
     yield from _entries(AbsorberRing)
+    yield "  in three dimensions [[absorbers]], each at a point of the axis:"
+    yield from _entries(PointAbsorber)
     yield "[control]: piezoelectric feedback from each shell's sensor layer to its actuator layer"
     yield from _entries(PDControl)
 
