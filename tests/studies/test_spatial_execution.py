@@ -23,8 +23,7 @@ QUICK = {"duration": 2.0, "time_step": 2e-2, "modes": 10, "dimensions": 3, "stat
 
 @pytest.fixture(autouse=True)
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(blocks, "_BLOCK_ELEMENTS", 8 * 11)
-    monkeypatch.setattr(blocks, "_FEWEST", 8)
+    monkeypatch.setattr(blocks, "BLOCK_NODES", 8)
 
 
 def run(execution: cx.Execution | None = None, name: str = "bare") -> SpatialResponse:
@@ -42,8 +41,7 @@ def assert_same(one: SpatialResponse, other: SpatialResponse) -> None:
 @pytest.fixture(scope="module")
 def threaded() -> SpatialResponse:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(blocks, "_BLOCK_ELEMENTS", 8 * 11)
-        patch.setattr(blocks, "_FEWEST", 8)
+        patch.setattr(blocks, "BLOCK_NODES", 8)
         return run()
 
 

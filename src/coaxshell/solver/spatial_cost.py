@@ -7,6 +7,7 @@ from dataclasses import replace
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.solver.axial.blocks import BLOCK_NODES
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
 from coaxshell.solver.run_size import Size
 from coaxshell.solver.scaling import dimensionless
@@ -14,8 +15,8 @@ from coaxshell.solver.settings import Settings
 
 _FIELDS = 9
 """Transforms kept at each station: three displacements, four derivatives along the axis, potentials of two layers."""
-_BLOCK = 18e6
-"""Bytes that a thread works with, for each shell."""
+_WORKING = 40.0
+"""Arrays of orders and nodes of a block that a thread works with, for each shell."""
 
 
 def sampling_of(system: System, settings: Settings, highest_order: int) -> AxialSampling:
@@ -29,6 +30,6 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     stations, amplitudes = len(settings.stations), size.shells * size.source_parities
     kept = stations * amplitudes * (_FIELDS * (size.plane + size.history) + 6.0 * size.plane)
     return Cost(
-        kept + size.shells * (6.0 * size.plane + WORKERS * _BLOCK),
+        kept + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
         0.1 + pairs * (0.3e-6 * size.shells + 2e-9 * _FIELDS * stations * amplitudes),
     )

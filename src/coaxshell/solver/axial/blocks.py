@@ -19,9 +19,8 @@ from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import Progress
 
-_BLOCK_ELEMENTS = 8 * 1024
-"""Order-node pairs of a block, 128 kB a complex array: a few dozen of them stay in a processor's cache."""
-_FEWEST = 32
+BLOCK_NODES = 600
+"""Nodes of a block: NumPy lets other threads run only beside its loops of more than 500 numbers, and those over nodes are the shortest."""
 
 Found = dict[str, npt.NDArray[Any]]
 """Arrays by name."""
@@ -64,9 +63,8 @@ def alike(work: Work, block: slice) -> Found:
         return work(block)
 
 
-def node_blocks(grid: LaplaceGrid, max_order: int) -> list[slice]:
-    """Return consecutive slices of the Laplace nodes, each of about the same size."""
+def node_blocks(grid: LaplaceGrid) -> list[slice]:
+    """Return consecutive slices of the Laplace nodes, two at least, each of about the same size, the same on every machine."""
     count = grid.nodes.size
-    blocks = max(WORKERS, round(count / max(_FEWEST, _BLOCK_ELEMENTS // (max_order + 1))))
-    edges = np.linspace(0, count, blocks + 1).astype(int)
+    edges = np.linspace(0, count, max(2, round(count / BLOCK_NODES)) + 1).astype(int)
     return [slice(int(a), int(b)) for a, b in pairwise(edges)]

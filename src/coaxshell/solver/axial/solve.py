@@ -115,7 +115,7 @@ def _linked(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, progre
     """Return what the point absorbers do, None if there are none."""
     if not problem.system.point_absorbers:
         return None
-    blocks = node_blocks(grid, sampling.max_order)
+    blocks = node_blocks(grid)
     return solve_points(point_structure(problem, grid, sampling, point_layout(problem), blocks, on, progress), progress)
 
 
@@ -130,7 +130,7 @@ def _summed(
 ) -> tuple[dict[str, ComplexArray], FloatArray]:
     """Return the transforms of the motion at all stations, and its mean squares along the axis, from those of blocks of nodes in turn."""
     stations = np.array(settings.stations) / problem.scales.length
-    blocks = node_blocks(grid, sampling.max_order)
+    blocks = node_blocks(grid)
     work = partial(station_sums, problem, grid, sampling, stations, forces)
     spectra: dict[str, ComplexArray] = {}
     squares: FloatArray = np.zeros(1)

@@ -20,7 +20,7 @@ from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities, superposed
 from coaxshell.solver.scaling import Problem
 
-_TOGETHER = 16
+_TOGETHER = 4
 """Wavenumbers whose amplitudes are added up at once, by a matrix product."""
 
 
