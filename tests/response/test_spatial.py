@@ -108,9 +108,13 @@ def test_two_dimensions_have_no_stations_and_no_axial_stress() -> None:
         lambda: flat.stress("inner", component="axial"),
         lambda: flat.displacement("inner", component="axial"),
         lambda: flat.history("inner", quantity="von_mises_stress"),
+        lambda: flat.pressure(x=0.0, y=0.0, z=0.0, time=0.5),
     ):
         with pytest.raises(InputError, match="three dimensions"):
             read()
+    for draw in (lambda: cx.plotting.figure_cuts(flat, 0.5), lambda: cx.plotting.plot_unrolled(flat, "outer", 0.5)):
+        with pytest.raises(InputError, match="response: is of a run in two dimensions"):
+            draw()
 
 
 def test_auto_chooses_orders_and_wavenumbers() -> None:

@@ -95,11 +95,23 @@ def test_what_is_read_of_them():
         (lambda: cx.PointAbsorber(z=0, mass=0), "undetermined"),
         (lambda: cx.PointAbsorber(z="3 kg", mass=1), "z"),
         (lambda: BARE.replace(absorbers=[cx.PointAbsorber(z=0, mass=1, inner_shell=1)]), "no shell outside"),
+        (lambda: BARE.replace(absorbers=[cx.PointAbsorber(z=0, mass=1, footprint=50)]), r"absorbers\[0\]\.footprint: 50 m is more than"),
+        (lambda: cx.prepare(BARE, duration=1, time_step=0.1, modes=4).simulate([cx.PointAbsorber(z=0, mass=1)]), "dimensions=3"),
+        (lambda: run([cx.PointAbsorber(z=1e6, mass=1)]), "absorbers: an axial period"),
+        (lambda: cx.absorber_ring(3, z=[], mass=1), "z: there is none"),
+        (lambda: cx.absorber_ring(3, z=[0.5, 0.5], mass=1), "z: .* names a position twice"),
+        (lambda: cx.absorber_ring(3, z=0, angle=3, mass=1), "angle: belongs to a single absorber"),
     ],
 )
 def test_what_does_not_fit_is_refused(make, match):
     with pytest.raises(InputError, match=match):
         make()
+
+
+def test_rings_stand_where_numbers_of_any_kind_say():
+    for z in (0.5, "50 cm", np.float64(0.5), np.array(0.5), [0.5], np.array([0.5]), iter([0.5])):
+        ring = cx.absorber_ring(3, z=z, offset=10, mass=1)
+        assert [(one.z, one.angle) for one in ring] == [(0.5, 10), (0.5, 130), (0.5, 250)]
 
 
 def test_toml_holds_them_without_loss(tmp_path):

@@ -5,6 +5,7 @@ Those of two dimensions are lines along the axis, with their properties per metr
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Annotated, Any, Self, overload
 
@@ -12,8 +13,9 @@ from pydantic import model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RING
-from coaxshell.model.base import Described
+from coaxshell.model.base import Described, shown
 from coaxshell.model.units import Angle, Count, Length, Position, quantity
+from coaxshell.numerics.scalars import plain
 
 LineMass = Annotated[float, quantity("line mass", least=0)]
 LineDamping = Annotated[float, quantity("line damping", least=0)]
@@ -153,7 +155,20 @@ def absorber_ring(count: int, *, z: Any = None, **properties: Any) -> AbsorberRi
     """
     if z is None:
         return AbsorberRing(count=count, **properties)
+    if "angle" in properties:
+        raise InputError("angle", "belongs to a single absorber", "for rings give offset, the angle of the first absorber of each")
     ring = AbsorberRing(count=count, offset=properties.pop("offset", 0.0), mass=1.0)
-    places = z if isinstance(z, list | tuple) or hasattr(z, "tolist") else [z]
+    places = _places(z)
     RING.check(ring.count * len(places), "count")
     return tuple(PointAbsorber(angle=angle, z=place, **properties) for place in places for angle in ring.angles)
+
+
+def _places(z: Any) -> list[Any]:
+    """Return the axial positions of rings as a list; InputError if there is none, or one stands there twice."""
+    given = plain(z)
+    listed = list(given) if isinstance(given, Iterable) and not isinstance(given, str | bytes | Mapping) else [given]
+    if not listed:
+        raise InputError("z", "there is none", "give the axial position of a ring, or a list of them, or leave z out for line absorbers")
+    if len(set(map(str, listed))) < len(listed):
+        raise InputError("z", f"{shown(listed)} names a position twice", "give each axial position once")
+    return listed

@@ -22,7 +22,7 @@ from coaxshell.plotting.field_scales import (
 )
 from coaxshell.plotting.frames import WALL_ANGLES, FieldView, Frames, instants
 from coaxshell.plotting.style import new_figure, style
-from coaxshell.plotting.unrolled import along_stations
+from coaxshell.plotting.unrolled import along_stations, require_stations
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,6 +71,7 @@ def figure_cuts(
     InputError
         The time is outside the run, the run has no such station, or the unit is unknown.
     """
+    require_stations(response)
     view = view or FieldView()
     chosen = response.at(response.stations[0] if station is None else station)
     index = int(instants(response, [time])[0])

@@ -20,6 +20,7 @@ from coaxshell.plotting.style import new_figure, style
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from coaxshell.response import Response
     from coaxshell.response.spatial import SpatialResponse
 
 ANGLES: FloatArray = np.arange(-180.0, 181.0, 2.0)
@@ -67,6 +68,7 @@ def plot_unrolled(
     InputError
         There is one station alone, the shell or the component is unknown, or the time is outside the run.
     """
+    require_stations(response)
     number = response.system.shell_index(shell)
     index = int(instants(response, [time])[0])
     z, stress = along_stations(response, number, ANGLES, index, component)
@@ -90,6 +92,12 @@ def plot_unrolled(
             told = unit.label.replace("hoop", "von Mises" if component == "von_mises" else component)
             add_colour_bar(ax.inset_axes((1.04, 0.0, 0.04, 1.0)), limit, DrawnUnit(told, unit.per_pascal), STRESS_COLOURS)
     return ax
+
+
+def require_stations(response: Response) -> None:
+    """Raise InputError for a run in two dimensions."""
+    if response.stations is None:
+        raise InputError("response", "is of a run in two dimensions", "run with dimensions=3 and a grid of stations")
 
 
 def along_stations(

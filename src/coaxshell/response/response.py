@@ -233,14 +233,20 @@ class Response:
         return self._read(station, lambda motion: histories.actuator_voltage(motion.solution, number, angle, segment))
 
     def pressure(
-        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PressureOptions]
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        **options: Unpack[fields.PressureOptions],
     ) -> xr.DataArray:
         """Return the acoustic pressure, Pa, dims (time, y, x) or (time, radius, angle).
 
         Give *x* and *y* or *radius* and *angle* (degrees), lengths in units of a, and *time* in transits;
         *part* is "total", "incident", "diffracted", "radiated" or "scattered", *front* "sharp" or, for pictures, "matched".
-        See :func:`coaxshell.response.fields.evaluate.pressure`.
+        A *z* belongs to three dimensions. See :func:`coaxshell.response.fields.evaluate.pressure`.
         """
+        if z is not None:
+            raise InputError("z", f"{shown(z)} belongs to three dimensions", "leave it out, or run with dimensions=3")
         return fields.pressure(self._spectra, x, y, **options)
 
     def velocity(

@@ -122,8 +122,9 @@ def solve_prepared(
     Raises
     ------
     InputError
-        If an absorber does not fit the system or the force law cannot be marched at this step.
+        If an absorber does not fit the system, or two dimensions, or the force law cannot be marched at this step.
     """
+    require_two_dimensions(problem.system, settings)
     with numerical_failures(structure.grid):
         return _solved(structure, problem, settings, progress, stopwatch or Stopwatch())
 

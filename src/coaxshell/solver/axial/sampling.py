@@ -131,7 +131,9 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
         found = f"an axial period of {period * length:.3g} m asks for {waves:.2g} axial wavenumbers, at most {MOST_WAVES:,} are solved"
         if given is not None:
             raise InputError("axial_period", found, "use a shorter one")
-        raise InputError("stations", found, "use nearer stations, a shorter run, or fewer axial_modes")
+        farthest = max(abs(z) for z in settings.stations) / length < max(map(abs, held), default=0.0)
+        where, nearer = ("absorbers", "absorbers with a nearer z") if farthest else ("stations", "nearer stations")
+        raise InputError(where, found, f"use {nearer}, a shorter run, or fewer axial_modes")
     return AxialSampling(period, settings.modes, highest)
 
 
