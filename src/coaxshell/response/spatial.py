@@ -13,8 +13,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
-from coaxshell.response import arguments, fields, storage
-from coaxshell.response.point_absorbers import point_absorber_displacement, point_absorber_force
+from coaxshell.response import absorbers, arguments, fields, storage
 from coaxshell.response.response import HEAD_AND_TAIL, Response
 from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
 from coaxshell.response.stations import StationMotion, Transforms, chosen_stations, joined
@@ -78,11 +77,11 @@ class SpatialResponse(WithoutFields, Response):
 
     def absorber_displacement(self) -> xr.DataArray:
         """Return the displacement of the point absorbers' masses, m, positive inward, dims (absorber, time)."""
-        return point_absorber_displacement(self.spatial)
+        return absorbers.absorber_displacement(self.spatial)
 
     def absorber_force(self) -> xr.DataArray:
         """Return the forces of the point absorbers on their shells, N, positive inward, dims (absorber, side, time)."""
-        return point_absorber_force(self.spatial)
+        return absorbers.absorber_force(self.spatial)
 
     def pressure(
         self,

@@ -39,7 +39,7 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     dimensions.
 
     The axial wavenumbers are solved again, for a period so long that images of the sources meet nothing of them (about twice as many as
-    a run of one station has), and each costs what a balance in two dimensions does.
+    a run of one station has), and each costs about half of what a balance in two dimensions does.
 
     Parameters
     ----------

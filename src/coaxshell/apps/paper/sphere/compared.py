@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coaxshell.apps.paper.observed import SIDES
 from coaxshell.errors import InputError
 from coaxshell.model import LineShock, PlaneShock, Shell, SphericalShock
 from coaxshell.model.places import shell_name
@@ -28,7 +29,6 @@ KINDS: Mapping[str, Callable[[SphericalShock], Source]] = MappingProxyType(
     }
 )
 """Sources of two dimensions that stand for a spherical shock, by name: the paper's slice, a line and a plane front."""
-SIDES: Mapping[str, float] = MappingProxyType({"head": 0.0, "tail": 180.0})
 
 
 def _shared(source: SphericalShock) -> dict[str, Any]:

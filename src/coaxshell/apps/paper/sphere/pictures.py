@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _DRAWN = {
     SPHERE: ("sphere, three dimensions", "black", "solid", 1.5),
-    "slice": ("slice (the paper's)", COLOURS["orange"], "solid", 1.0),
+    "slice": ("slice (the paper's)", COLOURS["orange"], "solid", 2.6),
     "line": ("line source", COLOURS["blue"], (0, (4.5, 1.5)), 1.0),
     "plane": ("plane wave", COLOURS["green"], (0, (1.2, 1.2)), 1.1),
 }
