@@ -168,4 +168,28 @@ SPATIAL = (
         "sign of the shear stress on the other side of the source's plane",
         "plotting/test_cuts.py",
     ),
+    Mutation(
+        "point-receptance",
+        "solver/axial/points.py",
+        "np.cos(k * self.distance) * (0.5 * sampling.weights[j])",
+        "np.cos(k * self.distance) * (0.5 * sampling.weights[0])",
+        "what a force at a point of a wall does there, by axial wavenumber",
+        "solver/test_point_absorbers.py",
+    ),
+    Mutation(
+        "point-forces",
+        "solver/axial/families.py",
+        "cosine, sine = (0.5 * share for share in sampling.shares(stations))",
+        "cosine, sine = (share for share in sampling.shares(stations))",
+        "what forces at points do at stations",
+        "solver/test_point_absorbers.py",
+    ),
+    Mutation(
+        "point-images",
+        "solver/axial/points.py",
+        "along = in_plane and _symmetric(listed, 1.0, -1.0)",
+        "along = _symmetric(listed, 1.0, -1.0)",
+        "which mirror images of point absorbers move alike",
+        "solver/test_point_absorbers.py",
+    ),
 )

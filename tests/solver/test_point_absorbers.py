@@ -7,8 +7,11 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial import solve as axial_solve
+from coaxshell.solver.axial.points import pair_classes, point_layout, point_sums
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.scaling import dimensionless
 
 RUN = {"duration": 2.0, "time_step": 2e-2, "modes": 12, "dimensions": 3}
 LINKS = {"mass": 20.0, "damping": 1e4, "linear_stiffness": 1e8, "footprint": 0.2}
@@ -37,10 +40,12 @@ def test_marched_forces_tend_to_the_exact_ones_at_second_order():
     assert errors[1] < errors[0] / 3
 
 
-def test_mirror_images_carried_once_do_what_all_of_them_do():
+@pytest.mark.parametrize("source", [{}, {"z": 0.2}, {"angle": 20.0}], ids=["in both planes", "beside z = 0", "beside theta = 0"])
+def test_mirror_images_carried_once_do_what_all_of_them_do(source):
+    system = BARE.replace(source=BARE.source.model_copy(update=source))
     ring = cx.absorber_ring(4, z=[-0.4, 0.4], **LINKS, cubic_stiffness=1e17)
-    nothing = cx.PointAbsorber(angle=17, z=0.13, mass=1e-9, linear_stiffness=1e-9)
-    once, all_of_them = run(ring), run((*ring, nothing))
+    nothing = cx.PointAbsorber(angle=17, z=0.13, mass=1e-9, linear_stiffness=1e-9)  # alike on no side
+    once, all_of_them = run(ring, system), run((*ring, nothing), system)
     assert off(once.stress("outer", [0, 50]), all_of_them.stress("outer", [0, 50])) < 1e-9
     assert off(once.absorber_force(), all_of_them.absorber_force()[:-1]) < 1e-9
 
@@ -106,6 +111,43 @@ def test_what_is_read_of_them():
 def test_what_does_not_fit_is_refused(make, match):
     with pytest.raises(InputError, match=match):
         make()
+
+
+def test_a_point_of_a_large_wall_moves_as_that_of_an_infinite_plate():
+    # the velocity under a force that is there from t = 0 on is 1/(8 sqrt(D rho h)) of the force, before curvature (t << R/c) is felt
+    thickness, modulus, density = 0.02, 210e9, 7800.0
+    steel = cx.Elastic(name="steel", density=density, youngs_modulus=modulus, poisson_ratio=0.3)
+    shells = [cx.Shell(radius=radius, layers=[cx.Layer(material=steel, thickness=thickness)]) for radius in (0.5, 1.0)]
+    system = cx.System(
+        shells=shells,
+        fluids=[cx.VACUUM, cx.VACUUM, cx.Fluid(density=1e-3, sound_speed=1000.0)],
+        source=cx.SphericalShock(peak_pressure=1, decay_time=1e-4, distance=3),
+        absorbers=[cx.PointAbsorber(z=0, mass=1, footprint="5 mm")],
+    )
+    problem, grid, sampling = dimensionless(system, 3), LaplaceGrid(1e-3, 50), AxialSampling(1.0, 200, 200.0)
+    layout = point_layout(problem)
+    classes = pair_classes(layout)
+    found = point_sums(problem, grid, sampling, layout, classes, slice(0, grid.nodes.size))["receptance"]
+    scales, plate = problem.scales, 1 / (8 * np.sqrt(modulus * thickness**3 / 12 / (1 - 0.3**2) * density * thickness))
+    for moved, pressed, receptance in zip(classes.moved, classes.pressed, found, strict=True):
+        mobility = grid.invert(receptance)[20:40] * scales.velocity / scales.force  # at 20 to 40 microseconds
+        if moved == pressed:
+            np.testing.assert_allclose(mobility / plate, 1.0, atol=0.035)
+        else:
+            assert not mobility.any()  # a vacuum between the shells carries nothing
+
+
+def test_the_wall_at_an_absorber_moves_as_its_links_say():
+    # without a damper f = k (q - w) on each side: what the forces do at a station is what they do to the absorber's own points
+    links = {"mass": 20.0, "linear_stiffness": 1e8, "footprint": 1e-4}
+    found = run([cx.PointAbsorber(angle=30, z=0.3, **links)], stations=[0.3, 0.5])
+    bare = run((), stations=[0.3])
+    force, moved = found.absorber_force(), found.absorber_displacement()
+    for side in ("inner", "outer"):
+        wall = moved[0] - force[0].sel(side=side) / links["linear_stiffness"]
+        told = found.displacement(side, angle=30, station=0.3)
+        assert off(told, wall) < 1e-6
+        assert off(bare.displacement(side, angle=30, station=0.3), wall) > 0.01
 
 
 def test_rings_stand_where_numbers_of_any_kind_say():
