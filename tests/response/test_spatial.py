@@ -133,3 +133,22 @@ def test_line_absorbers_and_saturation_are_refused() -> None:
 def test_no_plane_field_is_told_of_a_run_in_space(response: SpatialResponse, name: str) -> None:
     with pytest.raises(InputError, match=rf"^{name}: is of runs in two dimensions only; use dimensions=2"):
         getattr(response, name)(x=2.0, y=0.0, time=1.0)
+
+
+def test_a_line_source_is_as_in_two_dimensions_at_every_station() -> None:
+    system = cx.presets.load("active").replace(source=cx.LineShock(peak_pressure=2.5e4, decay_time=1.3e-4, distance=5))
+    settings = {"duration": 1.5, "time_step": 2e-2, "modes": 8}
+    flat, found = cx.simulate(system, **settings), cx.simulate(system, dimensions=3, stations=[-0.3, 0.7], **settings)
+
+    def same(read: object) -> None:
+        true = read(flat, {})  # type: ignore[operator]
+        for z in (-0.3, 0.7):
+            np.testing.assert_allclose(read(found, {"station": z}), true, rtol=0, atol=1e-12 * float(abs(true).max()))  # type: ignore[operator]
+
+    for shell in ("inner", "outer"):
+        same(lambda r, at, shell=shell: r.displacement(shell, [0, 40], "tangential", **at))
+        for depth in (None, "inner", "outer"):
+            same(lambda r, at, shell=shell, depth=depth: r.stress(shell, [0, 40], depth, **at))
+        same(lambda r, at, shell=shell: r.sensor_voltage(shell, [0, 40], **at))
+        same(lambda r, at, shell=shell: r.actuator_voltage(shell, [0, 40], **at))
+        same(lambda r, at, shell=shell: r.shell_acceleration(shell, [0, 40], **at))

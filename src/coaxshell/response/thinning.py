@@ -47,8 +47,7 @@ def thinned(solution: ModalSolution, every: int, window: Sequence[float] | None)
 def thinned_stations(solution: SpatialSolution, every: int, window: Sequence[float] | None) -> SpatialSolution:
     """Return a solution of three dimensions with every so many instants of a window; see :func:`thinned`."""
     kept = _kept(solution.time, every, window)
-    fields = {**solution.fields, **_potential_rates(solution)}
-    fields = {name: values[..., kept].copy() for name, values in fields.items()}
+    fields = {name: values[..., kept].copy() for name, values in solution.fields.items()}
     absorbers = {name: getattr(solution, name) for name in ("absorber_displacement", "absorber_force")}
     absorbers = {name: None if values is None else values[..., kept].copy() for name, values in absorbers.items()}
     fewer = replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None, **absorbers)
@@ -65,16 +64,6 @@ def _kept(time: FloatArray, every: int, window: Sequence[float] | None) -> slice
     if time[kept].size < 2:
         raise InputError("every", f"{every} leaves fewer than two instants", f"give at most {max(1, time[span].size - 1)}")
     return kept
-
-
-def _potential_rates(solution: SpatialSolution) -> dict[str, FloatArray]:
-    """Return the derivatives of voltages that derivative control reads, of a run that has all its instants."""
-    control = solution.problem.system.control
-    if control is None or not control.derivative or not solution.whole:
-        return {}
-    step = solution.settings.time_step
-    potentials = {name: values for name, values in solution.fields.items() if name.startswith("potential ")}
-    return {name.replace("potential", "potential_rate"): time_derivative(values, step) for name, values in potentials.items()}
 
 
 def _rates(solution: ModalSolution) -> dict[str, Any]:

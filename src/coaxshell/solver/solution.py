@@ -98,7 +98,7 @@ class AxialMotion(NamedTuple):
     potentials : tuple of ndarray
         Open-circuit voltages of the walls' piezoelectric layers, V, by their number from the inside out; 0 of walls with fewer.
     potential_rates : tuple of ndarray
-        Their derivatives by time, V per transit, where instants are missing that they would be taken from; else none.
+        Their derivatives by time, V per transit, where there is feedback; else none.
     """
 
     u: FloatArray

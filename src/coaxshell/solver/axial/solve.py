@@ -75,7 +75,7 @@ def solve_spatial(
         spectra, squares = _summed(problem, grid, sampling, settings, forces, progress, on)
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
-    histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in spectra.items()}
+    histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in (spectra | _voltage_rates(problem, grid, spectra)).items()}
     stopwatch.lap("inverse transform")
     motion = StationSpectra(grid, spectra["w"], spectra["v"])
     moved = histories["w"], histories["v"]
@@ -87,6 +87,14 @@ def solve_spatial(
     if linked is not None:
         solution = replace(solution, absorber_displacement=linked.displacement[..., keep], absorber_force=linked.force[..., keep])
     return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
+
+
+def _voltage_rates(problem: Problem, grid: LaplaceGrid, spectra: dict[str, ComplexArray]) -> dict[str, ComplexArray]:
+    """Return the transforms of the derivatives by time of piezoelectric layers' voltages, which derivative feedback reads."""
+    if all(wall.gains is None for wall in problem.shells):
+        return {}
+    voltages = {name: spectrum for name, spectrum in spectra.items() if name.startswith("potential ")}
+    return {name.replace("potential", "potential_rate"): spectrum * grid.nodes for name, spectrum in voltages.items()}
 
 
 def station_spectra(solution: SpatialSolution) -> StationSpectra:
