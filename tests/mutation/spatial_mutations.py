@@ -113,11 +113,11 @@ SPATIAL = (
     ),
     Mutation(
         "potential-rates",
-        "response/thinning.py",
-        "time_derivative(values, step) for name, values in potentials",
-        "time_derivative(values, 2.0 * step) for name, values in potentials",
-        "rates of voltages kept where instants are left out",
-        "response/test_station_files.py",
+        "solver/axial/solve.py",
+        "spectrum * grid.nodes for name, spectrum in voltages",
+        "spectrum * (2.0 * grid.nodes) for name, spectrum in voltages",
+        "rates of voltages at stations, which derivative feedback reads",
+        "response/test_spatial.py",
     ),
     Mutation(
         "length-weight",
