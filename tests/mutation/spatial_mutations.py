@@ -192,4 +192,20 @@ SPATIAL = (
         "which mirror images of point absorbers move alike",
         "solver/test_point_absorbers.py",
     ),
+    Mutation(
+        "unwanted-blocks",
+        "solver/axial/blocks.py",
+        "tally.wanted = False",
+        "tally.wanted = True",
+        "blocks of a run that was stopped are worked on to their end",
+        "solver/test_axial_blocks.py",
+    ),
+    Mutation(
+        "sent-transforms",
+        "solver/axial/solution.py",
+        'return {**vars(self), "spectra": None}',
+        "return {**vars(self)}",
+        "transforms travel with a run to other processes",
+        "solver/test_axial_blocks.py",
+    ),
 )

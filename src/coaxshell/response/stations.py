@@ -75,6 +75,10 @@ class Transforms:
     def __init__(self, spatial: SpatialSolution) -> None:
         self.spatial = spatial
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy takes over: not the transforms."""
+        return {"spatial": self.spatial}
+
     @property
     def at_hand(self) -> bool:
         """Whether they are there without solving the run again."""
@@ -100,6 +104,10 @@ class StationMotion(WallMotion):
     def __init__(self, transforms: Transforms, station: int) -> None:
         super().__init__(transforms.spatial.at(station))
         self._transforms, self._station = transforms, station
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy takes over: not the transforms."""
+        return {name: value for name, value in vars(self).items() if name not in ("for_rates", "spectra")}
 
     def has_rate(self, rate: int) -> bool:
         """Return whether derivatives of an order are there without solving the run again, which takes as long as the run."""

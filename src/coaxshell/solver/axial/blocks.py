@@ -5,8 +5,9 @@ What is found at a block are arrays by name, so that whoever maps the blocks can
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager
 from functools import partial
 from itertools import pairwise
@@ -17,10 +18,12 @@ import numpy.typing as npt
 
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.progress import Progress, ShareDone, heard_by
 
 BLOCK_NODES = 600
 """Nodes of a block: NumPy lets other threads run only beside its loops of more than 500 numbers, and those over nodes are the shortest."""
+_LOOK_SECONDS = 0.1
+"""How often it is told how far the threads are."""
 
 Found = dict[str, npt.NDArray[Any]]
 """Arrays by name."""
@@ -33,8 +36,8 @@ class BlockMap(Protocol):
     Work is a ``functools.partial`` of a function that a module has at its top, so that it can be sent; its name says what is found.
     """
 
-    def __call__(self, work: partial[Found], blocks: list[slice]) -> Iterable[Found]:
-        """Return the results as they are needed."""
+    def __call__(self, work: partial[Found], blocks: list[slice], tell: ShareDone | None = None) -> Iterable[Found]:
+        """Return the results as they are needed; *tell* is told the share of all work done, and may raise to end it."""
         ...
 
 
@@ -51,10 +54,50 @@ class Workplace(Protocol):
         ...
 
 
-def on_threads(work: partial[Found], blocks: list[slice]) -> Iterable[Found]:
-    """Map blocks on all cores of this machine."""
+def on_threads(work: partial[Found], blocks: list[slice], tell: ShareDone | None = None) -> Iterator[Found]:
+    """Map blocks on all cores of this machine; nothing works on when the results are no longer wanted."""
+    tally = _Tally(len(blocks))
     with ThreadPoolExecutor(WORKERS) as pool:
-        yield from pool.map(partial(alike, work), blocks)
+        waiting = deque(pool.submit(tally.carried_out, work, number, block) for number, block in enumerate(blocks))
+        try:
+            while waiting:
+                while wait([waiting[0]], None if tell is None else _LOOK_SECONDS).not_done:
+                    tally.told(tell)
+                yield waiting.popleft().result()
+                tally.told(tell)  # after whoever keeps it has had it
+        finally:
+            tally.wanted = False
+            for one in waiting:
+                one.cancel()
+
+
+class _UnwantedError(BaseException):
+    """The results of a block are no longer wanted."""
+
+
+class _Tally:
+    """How far each of some blocks is, and whether they are wanted: blocks hear that they are not when they next tell how far they are."""
+
+    def __init__(self, count: int) -> None:
+        self.shares, self.wanted = [0.0] * count, True
+
+    def carried_out(self, work: Work, number: int, block: slice) -> Found:
+        """Return what is found at a block, and keep count of it."""
+
+        def hear(share: float) -> None:
+            if not self.wanted:
+                raise _UnwantedError
+            self.shares[number] = share
+
+        with heard_by(hear):
+            found = alike(work, block)
+        self.shares[number] = 1.0
+        return found
+
+    def told(self, tell: ShareDone | None) -> None:
+        """Tell the share of all blocks that is done."""
+        if tell is not None:
+            tell(sum(self.shares) / len(self.shares))
 
 
 def alike(work: Work, block: slice) -> Found:

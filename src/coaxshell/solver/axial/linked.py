@@ -13,7 +13,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import KernelTable
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
-from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver.axial.blocks import BlockMap
 from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_sums
@@ -125,10 +125,8 @@ def point_structure(
     motion = np.empty((layout.carried.count, grid.nodes.size), np.complex128)
     by_class = np.empty((classes.moved.size, grid.nodes.size), np.complex128)
     work = partial(point_sums, problem, grid, sampling, layout, classes)
-    for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
+    for block, part in zip(blocks, on(work, blocks, of_stage(progress, "points of the absorbers")), strict=True):
         motion[:, block], by_class[:, block] = part["motion"], part["receptance"]
-        if progress is not None:
-            progress(done / len(blocks), "points of the absorbers")
     at_once = np.zeros(classes.moved.size)
     for (i, j), share in class_shares(problem, layout, classes, sampling.max_order).items():
         if i == j:

@@ -24,11 +24,12 @@ from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import axial_position, wave_sets
 from coaxshell.solver.axial.point_forces import WallPoints, patch
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.sums import motions_of
+from coaxshell.solver.axial.sums import motions_of, pair_count
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet
@@ -220,7 +221,10 @@ def point_sums(
     receptance = np.zeros((classes.moved.size, s.size), np.complex128)
     shares = class_shares(problem, layout, classes, sampling.max_order)
     shapes = [carried.around(problem, Modes.up_to(sampling.max_order), parity) for parity in range(source_parities(problem.system.sources))]
-    for waves in wave_sets(problem, sampling, carried.z, s):
+    sets = wave_sets(problem, sampling, carried.z, s)
+    apart = not any(waves.modes is sampling.modes for waves in sets)
+    done, whole = 0, pair_count(sets) + (sum(modes.count for modes in sampling.modes) if apart else 0)
+    for waves in sets:
         for j, modes in enumerate(waves.modes):
             system = ModalSystem(problem, s, modes)
             along = patch(0.5 * np.asarray(modes.wavenumber) * carried.side[:, None])
@@ -232,9 +236,12 @@ def point_sums(
                         motion[a] += even[a] * (shape[a, : modes.count] @ normal[shell, parity])
             if waves.modes is sampling.modes:
                 _add_receptance(receptance, system, shares, sampling, j)
-    if not any(waves.modes is sampling.modes for waves in wave_sets(problem, sampling, carried.z, s)):
-        for j, modes in enumerate(sampling.modes):
-            _add_receptance(receptance, ModalSystem(problem, s, modes), shares, sampling, j)
+            done += modes.count
+            tell_share(done / whole)
+    for j, modes in enumerate(sampling.modes if apart else ()):
+        _add_receptance(receptance, ModalSystem(problem, s, modes), shares, sampling, j)
+        done += modes.count
+        tell_share(done / whole)
     return {"motion": motion, "receptance": receptance}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -50,7 +50,8 @@ class SpatialSolution:
     absorber_force : ndarray, shape (absorbers, 2, T), or None
         Forces on the inner [0] and outer [1] of the shells they link, positive inward, in units of rho_e c_e^2 a^2.
     spectra : StationSpectra or None
-        Transforms of the motion at the stations, where they are no more than half a gigabyte.
+        Transforms of the motion at the stations, where they are no more than half a gigabyte. A copy sent to another process (pickle)
+        has none, as after :meth:`coaxshell.response.spatial.SpatialResponse.without_transforms`.
     """
 
     problem: Problem
@@ -64,6 +65,10 @@ class SpatialSolution:
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
     spectra: StationSpectra | None = field(default=None, compare=False, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy takes over: all but the transforms, the largest part of it."""
+        return {**vars(self), "spectra": None}
 
     @property
     def stations(self) -> FloatArray:

@@ -13,7 +13,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver import checks
 from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
 from coaxshell.solver.axial.left_out import estimated_errors
@@ -142,13 +142,11 @@ def _summed(
     work = partial(station_sums, problem, grid, sampling, stations, forces)
     spectra: dict[str, ComplexArray] = {}
     squares: FloatArray = np.zeros(1)
-    for done, (block, part) in enumerate(zip(blocks, on(work, blocks), strict=True), start=1):
+    for block, part in zip(blocks, on(work, blocks, of_stage(progress, "axial wavenumbers")), strict=True):
         squares = squares + part.pop(SQUARES)
         for name, values in part.items():
             whole = spectra.setdefault(name, np.zeros((*values.shape[:-1], grid.nodes.size), np.complex128))
             whole[..., block] = values
-        if progress is not None:
-            progress(done / len(blocks), "axial wavenumbers")
     return spectra, squares
 
 

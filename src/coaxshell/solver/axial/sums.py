@@ -12,6 +12,7 @@ import numpy.typing as npt
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.point_forces import PointForces
@@ -48,18 +49,27 @@ def station_sums(
     fields: dict[str, ComplexArray] = {}
     squares = np.zeros((2, shape[1], 2, shape[3]))
     layers = piezoelectric_layers(problem)
-    for waves in wave_sets(problem, sampling, stations, s, None if forces is None else forces.at(block)):
+    sets = wave_sets(problem, sampling, stations, s, None if forces is None else forces.at(block))
+    done, whole = 0, pair_count(sets)
+    for waves in sets:
         for first in range(0, len(waves.modes), _TOGETHER):
             some = range(first, min(first + _TOGETHER, len(waves.modes)))
             amplitudes = [np.zeros((3 + layers, len(some), *shape[1:]), np.complex128) for _ in waves.families]
             for place, j in enumerate(some):
                 for one, solved in zip(amplitudes, amplitudes_of(problem, waves, j, grid, block), strict=True):
                     one[:, place, :, : solved.shape[2], : waves.modes[j].count] = solved
+                done += waves.modes[j].count
+                tell_share(done / whole)
             for family, found in zip(waves.families, amplitudes, strict=True):
                 _add(fields, shape, family, waves.wavenumber, some, found)
                 under = squares[int(family.forces is not None)]
                 under += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
     return {**fields, SQUARES: squares}
+
+
+def pair_count(sets: list[WaveSet]) -> int:
+    """Return how many pairs of an order and a wavenumber some waves have, which is how long they take."""
+    return sum(modes.count for waves in sets for modes in waves.modes)
 
 
 def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
