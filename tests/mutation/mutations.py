@@ -5,6 +5,7 @@ One row a mistake that a person could make: a sign, a factor, an index, a power 
 
 from __future__ import annotations
 
+from elastic_mutations import ELASTIC
 from spatial_mutations import SPATIAL
 
 from mutation import Mutation
@@ -494,4 +495,5 @@ MUTATIONS = (
         "model/test_prefixes.py",
     ),
     *SPATIAL,
+    *ELASTIC,
 )

@@ -42,6 +42,7 @@ VESAL = "Vesal, Hasheminejad, Lissek"  # the paper that this package starts from
 BERLINCOURT = (
     "Jaffe and Berlincourt, Piezoelectric transducer materials, Proc. IEEE 53 (1965) 1372-1386; field_limit is PZT-4's, ask the maker"
 )
+LIU = "Liu, Wang, Quek, Int. J. Solids Struct. 39 (2002) 2129-2151, whose other constants are the same"
 VACUUM_PERMITTIVITY = 8.8541878128e-12  # F/m, CODATA 2018
 
 ALUMINIUM = Elastic(name="aluminium", density=2700, youngs_modulus=70e9, poisson_ratio=0.33, reference=f"{VESAL}, Table 1")
@@ -118,18 +119,20 @@ PZT4 = Piezoelectric(
     c12=71e9,
     c13=73e9,
     c66=30.5e9,
+    c44=26e9,
     e31=-4.1,
+    e15=10.5,
     permittivity_11=7.124e-9,
     permittivity_reduction="printed",
     actuator_coupling="printed",
     field_limit=590e3,
-    reference=f"{VESAL}, Table 1, with its printed reductions (Eqs. A.11 and 4)",
+    reference=f"{VESAL}, Table 1, with its printed reductions (Eqs. A.11 and 4); c44 and e15: {LIU}",
 )
 PZT4_STANDARD = PZT4.replace(
     name="PZT-4-standard",
     permittivity_reduction="standard",
     actuator_coupling="plane-stress",
-    reference=f"{VESAL}, Table 1, with the standard plane-stress reductions",
+    reference=f"{VESAL}, Table 1, with the standard plane-stress reductions; c44 and e15: {LIU}",
 )
 PZT5A = Piezoelectric(
     name="PZT-5A",
@@ -145,7 +148,9 @@ PZT5A = Piezoelectric(
     c12=75.4e9,
     c13=75.2e9,
     c66=22.6e9,
+    c44=21.1e9,
     e31=-5.4,
+    e15=12.3,
     permittivity_11=916 * VACUUM_PERMITTIVITY,
     reference=BERLINCOURT,
 )
@@ -163,7 +168,9 @@ PZT5H = Piezoelectric(
     c12=79.5e9,
     c13=84.1e9,
     c66=23.0e9,
+    c44=23.0e9,
     e31=-6.5,
+    e15=17.0,
     permittivity_11=1700 * VACUUM_PERMITTIVITY,
     reference=BERLINCOURT,
 )

@@ -50,8 +50,12 @@ class Piezoelectric(Described):
     """Axial-radial stiffness (Pa); needed in three dimensions alone."""
     c66: Modulus | None = None
     """Axial-hoop shear stiffness (Pa); needed in three dimensions alone."""
+    c44: Modulus | None = None
+    """Shear stiffness along the radius, on axis and hoop alike (Pa); needed of elastic solids alone."""
     e31: ChargePerArea | None = None
     """Axial piezoelectric stress constant (C/m^2); needed in three dimensions alone."""
+    e15: ChargePerArea | None = None
+    """Shear piezoelectric stress constant, on axis and hoop alike (C/m^2); needed of elastic solids alone."""
     permittivity_11: Permittivity | None = None
     """Axial permittivity (F/m); needed in three dimensions alone."""
     permittivity_reduction: Literal["standard", "printed"] = "standard"

@@ -1,0 +1,205 @@
+"""Eigenbasis of a wall of solid layers in vacuo, one for each mode, from which every answer to loads on its faces is a sum.
+
+With K(m, k) and the diagonal mass M of the points, both real and independent of s, K x = omega^2 M x gives real shapes, x'M x = 1, and
+
+    (K + M s^2)^-1 = sum over shapes of x x'/(omega^2 + s^2).
+
+K = A'A is never formed: its rows A are the strains at the points times sqrt(weight) L', C = L L', and the potentials of piezoelectric
+layers with grounded faces, statically condensed. Shapes and frequencies are the right singular vectors and the singular values of
+A M^(-1/2): eigenvalues of K would lose the low ones of thin walls (1 mm, m = 2: omega^2 = -5.5 instead of 17.75).
+
+Orders that need about the same degrees share a mesh; beyond a run's own orders samples of few high ones are asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, degree, strains, wall_mesh
+from coaxshell.structure.solid import AXIAL, HOOP, PLANE, RADIAL, RADIAL_AXIAL, RADIAL_HOOP, STRAINS, SolidLayer
+
+STEP = 4
+"""Degrees that orders of one mesh may differ by."""
+
+
+@dataclass(frozen=True, eq=False)
+class OrdersBasis:
+    """Shapes of some consecutive orders, which share a mesh.
+
+    Attributes
+    ----------
+    members : slice
+        Their places among the orders of the modes.
+    orders : ndarray, shape (orders,)
+    wavenumber : float
+        k.
+    mesh : WallMesh
+    squares : ndarray, shape (orders, shapes)
+        omega^2, ascending; exactly 0 of rigid motions.
+    shapes : ndarray, shape (orders, shapes, 2 or 3, points)
+        u_r, u_theta and, where there is an axial wavenumber, u_z.
+    """
+
+    members: slice
+    orders: FloatArray
+    wavenumber: float
+    mesh: WallMesh
+    squares: FloatArray
+    shapes: FloatArray
+
+    @property
+    def faces(self) -> FloatArray:
+        """u_r of the inner and of the outer face, shape (orders, 2, shapes)."""
+        return np.stack([self.shapes[:, :, 0, 0], self.shapes[:, :, 0, -1]], axis=1)
+
+
+def displacements(wavenumber: float) -> int:
+    """Return how many displacements take part: two where nothing changes along the axis, where u_z goes by itself, else three."""
+    return 2 if wavenumber == 0.0 else 3
+
+
+def involved(wavenumber: float) -> tuple[int, ...]:
+    """Return the strains that take part."""
+    return PLANE if wavenumber == 0.0 else tuple(range(STRAINS))
+
+
+def rigid_motions(order: float, wavenumber: float) -> int:
+    """Return how many motions of a mode strain nothing: rotation and translation of the section, of orders 0 and 1 at k = 0."""
+    return int(wavenumber == 0.0 and order in (0.0, 1.0))
+
+
+def elastic_basis(layers: Sequence[SolidLayer], modes: Modes, frequency: float) -> tuple[OrdersBasis, ...]:
+    """Return the shapes of all orders of some modes.
+
+    Parameters
+    ----------
+    layers : sequence of SolidLayer
+        Dimensionless.
+    modes : Modes
+        Of a real wavenumber.
+    frequency : float
+        Up to which waves are resolved, radians per transit.
+    """
+    assert isinstance(modes.wavenumber, (int, float))
+    wavenumber = float(modes.wavenumber)
+    needed = np.array([[degree(layer, m, wavenumber, frequency) for layer in layers] for m in modes.orders])
+    steps = np.ceil(needed / STEP).astype(int)
+    edges = [0, *(1 + np.flatnonzero(np.any(np.diff(steps, axis=0), axis=1))), modes.count]
+    found = []
+    for start, stop in pairwise(edges):
+        members = slice(int(start), int(stop))
+        mesh = wall_mesh(layers, [int(p) for p in needed[members].max(axis=0)])
+        found.append(orders_basis(mesh, members, modes.orders[members], wavenumber))
+    return tuple(found)
+
+
+def orders_basis(mesh: WallMesh, members: slice, orders: FloatArray, wavenumber: float) -> OrdersBasis:
+    """Return the shapes of some orders on a mesh; ``members`` are their places among the orders of the modes."""
+    root = np.sqrt(mesh.mass)
+    rows = strain_rows(mesh, orders, wavenumber) / root
+    stacked = rows.reshape(*rows.shape[:2], -1)
+    _, values, vectors = np.linalg.svd(stacked, full_matrices=False)
+    values, vectors = values[:, ::-1], vectors[:, ::-1]
+    for row, order in zip(values, orders, strict=True):
+        row[: rigid_motions(float(order), wavenumber)] = 0.0
+    shapes = vectors.reshape(*vectors.shape[:2], *rows.shape[2:]) / root
+    return OrdersBasis(members, orders, wavenumber, mesh, values**2, shapes)
+
+
+def strain_rows(mesh: WallMesh, orders: FloatArray, wavenumber: float) -> FloatArray:
+    """Return the rows A of K = A'A, shape (orders, rows, displacements, points)."""
+    taking, count, rows = list(involved(wavenumber)), displacements(wavenumber), []
+    for part in mesh.layers:
+        local = layer_strains(part, orders, wavenumber)
+        root = np.linalg.cholesky(part.layer.matrix[np.ix_(taking, taking)]).T
+        scaled = np.einsum("ij,mjqcp->miqcp", root, local[:, taking]) * np.sqrt(part.weights)[:, None, None]
+        found = [scaled.reshape(orders.size, -1, *scaled.shape[3:])]
+        if part.layer.coupling is not None:
+            found.append(PotentialOfLayer(part, orders, wavenumber).rows)
+        for each in found:
+            wide = np.zeros((*each.shape[:2], count, mesh.radius.size))
+            wide[..., part.nodes] = each
+            rows.append(wide)
+    return np.concatenate(rows, axis=1)
+
+
+def layer_strains(part: LayerMesh, orders: FloatArray, wavenumber: float) -> FloatArray:
+    """Return the strains at the points of a layer, shape (orders, 6, points, displacements, points)."""
+    local = strains(orders, wavenumber, part.radius, part.derivative, np.eye(part.radius.size))
+    return local[:, :, :, : displacements(wavenumber)]
+
+
+class PotentialOfLayer:
+    """The potential of a piezoelectric layer between grounded faces under displacements at its points.
+
+    Stationary enthalpy, with E = (-Phi', (m/r) Phi, k Phi), gives G Phi = Q u at the points between the faces,
+
+        G = int mu33 Phi'^2 + (mu22 (m/r)^2 + mu11 k^2) Phi^2,      Q = int Phi' (e33 eps_r + e32 eps_theta + e31 eps_z)
+                                                                        - Phi e15 ((m/r) gamma_r_theta + k gamma_rz),
+
+    and adds Q'G^-1 Q to K.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (orders, p - 1, displacements, points)
+        L^-1 Q, G = L L'.
+    """
+
+    def __init__(self, part: LayerMesh, orders: FloatArray, wavenumber: float) -> None:
+        layer, local = part.layer, layer_strains(part, orders, wavenumber)
+        assert layer.coupling is not None
+        assert layer.permittivity is not None
+        e, mu, weights, inside = np.array(layer.coupling), layer.permittivity, part.weights, slice(1, -1)
+        slope = part.derivative[:, inside]
+        per_radius = orders[:, None] / part.radius
+        along = weights * (mu[1] * per_radius**2 + mu[2] * wavenumber**2)
+        electric = np.einsum("qi,q,qj->ij", slope, mu[0] * weights, slope) + np.zeros((orders.size, 1, 1))
+        places = np.arange(part.radius.size - 2)
+        electric[:, places, places] += along[:, inside]
+        radial = np.einsum("j,mjqcp->mqcp", e[0, [RADIAL, HOOP, AXIAL]], local[:, [RADIAL, HOOP, AXIAL]])
+        around = per_radius[:, :, None, None] * e[1, RADIAL_HOOP] * local[:, RADIAL_HOOP]
+        around = around + wavenumber * e[2, RADIAL_AXIAL] * local[:, RADIAL_AXIAL]
+        charge = np.einsum("qi,q,mqcp->micp", slope, weights, radial) - (weights[:, None, None] * around)[:, inside]
+        self._root = np.linalg.cholesky(electric)
+        flat = charge.reshape(*charge.shape[:2], -1)
+        self.rows: FloatArray = np.linalg.solve(self._root, flat).reshape(charge.shape)
+
+    @property
+    def values(self) -> FloatArray:
+        """Return Phi at the points of the layer per displacement there, shape (orders, points, displacements, points)."""
+        flat = self.rows.reshape(*self.rows.shape[:2], -1)
+        inner = np.linalg.solve(np.swapaxes(self._root, 1, 2), flat).reshape(self.rows.shape)
+        return np.pad(inner, ((0, 0), (1, 1), (0, 0), (0, 0)))
+
+
+def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Return sums over the shapes of weight/(omega^2 + s^2), shape (orders, rows, nodes), by matrix products of real numbers.
+
+    With x + i y = s^2, a = omega^2 + x and G = 1/(a^2 + y^2), the sum is sum (weight a) G - i y sum weight G.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (orders, rows, shapes)
+    squares : ndarray, shape (orders, shapes)
+        omega^2.
+    s : ndarray, shape (nodes,)
+    """
+    rows = weights.shape[1]
+    both = np.concatenate([weights, weights * squares[:, None]], axis=1)
+    x, y = (s * s).real, (s * s).imag
+    y2, found = y * y, np.empty((weights.shape[0], rows, s.size), np.complex128)
+    for m, square in enumerate(squares):
+        term = square[:, None] + x
+        term *= term
+        term += y2
+        np.reciprocal(term, out=term)
+        plain, stiff = np.split(both[m] @ term, 2)
+        found[m].real = stiff + x * plain
+        found[m].imag = -y * plain
+    return found
