@@ -129,12 +129,6 @@ def test_line_absorbers_and_saturation_are_refused() -> None:
         cx.simulate("hybrid", duration=1.0, time_step=2e-2, modes=8, dimensions=3)
 
 
-@pytest.mark.parametrize("name", ["pressure_rms", "velocity", "intensity"])
-def test_no_plane_field_is_told_of_a_run_in_space(response: SpatialResponse, name: str) -> None:
-    with pytest.raises(InputError, match=rf"^{name}: is of runs in two dimensions only; use dimensions=2"):
-        getattr(response, name)(x=2.0, y=0.0, time=1.0)
-
-
 def test_a_line_source_is_as_in_two_dimensions_at_every_station() -> None:
     system = cx.presets.load("active").replace(source=cx.LineShock(peak_pressure=2.5e4, decay_time=1.3e-4, distance=5))
     settings = {"duration": 1.5, "time_step": 2e-2, "modes": 8}

@@ -20,7 +20,6 @@ from coaxshell.response.stations import StationMotion, Transforms, chosen_statio
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned_stations
 from coaxshell.response.wall_motion import WallMotion
-from coaxshell.response.without_fields import WithoutFields
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_stations
@@ -31,7 +30,7 @@ else:
     whole_length = Late("coaxshell.response.energy.whole_length")
 
 
-class SpatialResponse(WithoutFields, Response):
+class SpatialResponse(Response):
     """Hold the solution of a three-dimensional run and read it in SI, at all of its stations or at some.
 
     What reads a shell takes *station*: an axial position of the run or several of them, in m or as text ("70 cm"), all of them by
@@ -90,13 +89,47 @@ class SpatialResponse(WithoutFields, Response):
         z: npt.ArrayLike | None = None,
         **options: Unpack[fields.SpatialPressureOptions],
     ) -> xr.DataArray:
-        """Return the acoustic pressure, Pa, on a cut: dims (time, y, x) at one z, or (time, z, x) at one y.
+        """Return the acoustic pressure, Pa, on a cut or in a volume: dims (time, y, x) at one z, or (time, z, x) at one y.
 
-        All lengths in units of a, z too, unlike the stations' (m); *radius* and *angle* (degrees) may stand for x and y. *time* in
-        transits; *part* is "total", "incident", "diffracted", "radiated" or "scattered". The waves of the run are solved once more.
+        All lengths in units of a, z too, unlike the stations' (m); *radius* and *angle* (degrees) may stand for x and y, with several z
+        they make a volume, dims (time, z, radius, angle). *time* in transits; *part* is "total", "incident", "diffracted", "radiated" or
+        "scattered". The waves of the run are solved once more.
         See :func:`coaxshell.response.fields.spatial_pressure.spatial_pressure`.
         """
         return fields.spatial_pressure(self.spatial, x, y, z, **options)
+
+    def velocity(
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        **options: Unpack[fields.SpatialPartOptions],
+    ) -> xr.DataArray:
+        """Return the particle velocity, m/s, with a dimension component of three, on the same cuts as the pressure.
+
+        See :func:`coaxshell.response.fields.spatial_pressure.spatial_velocity`.
+        """
+        return fields.spatial_velocity(self.spatial, x, y, z, **options)
+
+    def intensity(
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        **options: Unpack[fields.SpatialFieldOptions],
+    ) -> xr.DataArray:
+        """Return the acoustic intensity p v, W/m^2, with a dimension component of three, on the same cuts as the pressure.
+
+        See :func:`coaxshell.response.fields.spatial_pressure.spatial_intensity`.
+        """
+        return fields.spatial_intensity(self.spatial, x, y, z, **options)
+
+    def pressure_rms(self, region: str | int, radius: float | None = None, **options: Unpack[fields.SpatialRmsOptions]) -> xr.DataArray:
+        """Return the RMS of the total pressure over the cross-section of a region at one *z* (in a, 0 unless given), Pa, dims (time,).
+
+        See :func:`coaxshell.response.fields.spatial_rms.spatial_pressure_rms`.
+        """
+        return fields.spatial_pressure_rms(self.spatial, region, radius, **options)
 
     def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> SpatialSummary:  # type: ignore[override]
         """Return peaks, RMS, error estimates and warnings of every station, and the largest over all of them; print it for a table.

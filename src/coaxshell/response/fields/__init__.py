@@ -3,17 +3,31 @@
 from coaxshell.response.fields.evaluate import intensity, pressure, velocity
 from coaxshell.response.fields.request import FieldOptions, PartOptions, PressureOptions, RmsOptions
 from coaxshell.response.fields.rms import pressure_rms
-from coaxshell.response.fields.spatial_pressure import SpatialPressureOptions, spatial_pressure
+from coaxshell.response.fields.spatial_pressure import (
+    SpatialFieldOptions,
+    SpatialPartOptions,
+    SpatialPressureOptions,
+    spatial_intensity,
+    spatial_pressure,
+    spatial_velocity,
+)
+from coaxshell.response.fields.spatial_rms import SpatialRmsOptions, spatial_pressure_rms
 
 __all__ = [
     "FieldOptions",
     "PartOptions",
     "PressureOptions",
     "RmsOptions",
+    "SpatialFieldOptions",
+    "SpatialPartOptions",
     "SpatialPressureOptions",
+    "SpatialRmsOptions",
     "intensity",
     "pressure",
     "pressure_rms",
+    "spatial_intensity",
     "spatial_pressure",
+    "spatial_pressure_rms",
+    "spatial_velocity",
     "velocity",
 ]

@@ -28,6 +28,8 @@ class Grid:
         (radius, angle), (y, x) or (z, x), the slow one first.
     across : str
         Name of the slow axis of a Cartesian grid.
+    levels : ndarray, optional
+        Axial positions, in a, of a volume, which has these points at each of them.
     """
 
     polar: bool
@@ -35,6 +37,7 @@ class Grid:
     radius: FloatArray
     angle: FloatArray
     across: str = "y"
+    levels: FloatArray | None = None
 
     @property
     def radii(self) -> FloatArray:
@@ -47,9 +50,15 @@ class Grid:
         return list(np.arange(self.radius.size).reshape(self.axes[0].size, self.axes[1].size))
 
     @property
-    def dims(self) -> tuple[str, str]:
+    def dims(self) -> tuple[str, ...]:
         """Names of the dimensions."""
-        return ("radius", "angle") if self.polar else (self.across, "x")
+        across = ("radius", "angle") if self.polar else (self.across, "x")
+        return across if self.levels is None else ("z", *across)
+
+    @property
+    def along(self) -> tuple[FloatArray, ...]:
+        """Coordinates along the dimensions."""
+        return self.axes if self.levels is None else (self.levels, *self.axes)
 
 
 def grid_of(x: object, y: object, radius: object, angle: object) -> Grid:
@@ -83,8 +92,8 @@ def labelled(
     units: str,
     sign: str,
 ) -> xr.DataArray:
-    """Return values (times, points) or (times, 2, points) as a labelled array, dims (time, component, y, x) or (..., radius, angle)."""
-    shape = tuple(array.size for array in grid.axes)
+    """Return values (times, points) or (times, components, points) as a labelled array, dims (time, component, y, x) or (..., angle)."""
+    shape = tuple(array.size for array in grid.along)
     components = values.shape[1:-1]
     values = values.reshape(when.shape + components + shape)
     dims = (("time",) if when.ndim else ()) + (("component",) if components else ()) + grid.dims
@@ -97,13 +106,18 @@ def labelled(
         "time_resolution": asked.resolution,
     }
     if first_bad(values) is not None:
-        along = [("time", np.atleast_1d(when)), *(("component", np.arange(2)) for _ in components), *zip(grid.dims, grid.axes, strict=True)]
+        along = [
+            ("time", np.atleast_1d(when)),
+            *(("component", np.arange(count)) for count in components),
+            *zip(grid.dims, grid.along, strict=True),
+        ]
         require_finite(
             values.reshape(np.atleast_1d(when).shape + components + shape), name, along, "look for extreme layers, fluids or sources"
         )
     found = coordinates(scales, grid, when)
     if components:
-        found["component"] = xr.Variable("component", ["radius", "angle"] if grid.polar else ["x", "y"])
+        names = ["radius", "angle", "z"] if grid.polar else ["x", "y", "z"]
+        found["component"] = xr.Variable("component", names[: components[0]])
     return xr.DataArray(values, dims=dims, coords=found, name=name, attrs=attributes)
 
 
@@ -111,7 +125,7 @@ def coordinates(scales: Scales, grid: Grid, when: FloatArray) -> dict[str, xr.Va
     """Return the coordinates of a field: times in transits and seconds, places in a and metres."""
     found = instants_of(scales, when)
     length = scales.length
-    for name, values in zip(grid.dims, grid.axes, strict=True):
+    for name, values in zip(grid.dims, grid.along, strict=True):
         if name == "angle":
             found[name] = xr.Variable(name, values, {"units": "degree", "long_name": "angle from the source direction"})
             continue

@@ -122,7 +122,7 @@ class Transfer:
 
     def __init__(self, region: Region, slopes: WallSlopes, nodes: ComplexArray, modes: Modes) -> None:
         assert region.fluid is not None
-        self.region, self.max_order = region, modes.max_order
+        self.region, self.max_order, self.s = region, modes.max_order, nodes
         radial = RadialBasis(Modes.up_to(modes.max_order + 1, modes.wavenumber), nodes)  # one more: slopes need the next order
         self.kappa = radial.modes.kappa(region.fluid.slowness, nodes)
         self._inner = radial(region.fluid.slowness, region.inner) if region.index > 0 else None
@@ -162,6 +162,17 @@ class Transfer:
                     [(m / column * here + factor * higher) * (amplitude[:, None, m] * weight) for amplitude, here, higher, factor in parts]
                 ),
             )
+
+    def both(self, radii: FloatArray, *, slope: bool) -> Iterator[tuple[int, ComplexArray, ComplexArray | None]]:
+        """Yield (m, transforms of the pressure, those of dp/dr if the *slope* is asked for), as :meth:`pressure` does, in one go."""
+        column = np.maximum(radii, CENTRE)[:, None]
+        for m, parts in self._shapes(radii):
+            level = _total([here * amplitude[:, None, m] for amplitude, here, *_ in parts])
+            if not slope:
+                yield m, level, None
+                continue
+            steep = [factor * higher * amplitude[:, None, m] for amplitude, _, higher, factor in parts]
+            yield m, level, _total([m / column * level, *steep])
 
     def _shapes(self, radii: FloatArray) -> Iterator[tuple[int, list[tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray]]]]:
         """Yield (m, [(A, J_m, I_{m+1}(kr)/I_m(k r_b), k), (B, E_m, E_{m+1}, -k K_{m+1}(k r_a)/K_m(k r_a))])."""
@@ -204,7 +215,10 @@ class Transfer:
 
 
 def _total(parts: list[ComplexArray]) -> ComplexArray:
-    return parts[0] if len(parts) == 1 else parts[0] + parts[1]
+    total = parts[0]
+    for part in parts[1:]:
+        total = total + part
+    return total
 
 
 Quantity = Literal["pressure", "slope", "radial", "angular"]

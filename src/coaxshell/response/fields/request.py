@@ -70,7 +70,7 @@ def when_of(time: npt.ArrayLike | None, last: float, scales: Scales) -> FloatArr
     return instants(time, last)
 
 
-_HELD = {1: 1.0, 2: 4.0, 3: 6.0}
+_HELD = {1: 1.0, 2: 4.0, 3: 6.0, 4: 9.0}
 """Arrays of the result's size that stand side by side, by the number of quantities that it is made of."""
 
 
@@ -86,7 +86,7 @@ def require_room(name: str, place: Sequence[object], when: FloatArray, quantitie
     when : ndarray
         Instants.
     quantities : int
-        From which it is made: 1 for the pressure, 2 for the velocity, 3 for the intensity.
+        From which it is made: 1 for the pressure, 2 for the velocity, 3 for the intensity; one more of the latter two in space.
     """
     sizes: list[int] = [np.asarray(axis).size for axis in place if axis is not None]
     points = math.prod(sizes)

@@ -15,6 +15,7 @@ from coaxshell.response.fields.incident import Incident
 from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.modal_field import modal_field
 from coaxshell.response.fields.request import Domain, FieldRequest, default_instants, domain_of, mode_filter, request, when_of
+from coaxshell.response.fields.spatial_incident import SpatialIncident
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
@@ -60,7 +61,15 @@ def pressure_rms(
     domain = domain_of(spectra.problem, region, radius)
     when = when_of(default_instants(spectra.grid.time) if time is None else time, float(spectra.grid.time[-1]), spectra.problem.scales)
     square = _mean_square(spectra, asked, domain, np.atleast_1d(when))
-    values = np.sqrt(np.maximum(square, 0.0)) * spectra.problem.scales.pressure
+    return labelled_rms(spectra.problem, asked, domain, when, square, region)
+
+
+def labelled_rms(
+    problem: Problem, asked: FieldRequest, domain: Domain, when: FloatArray, square: FloatArray, region: str | int
+) -> xr.DataArray:
+    """Return the root of mean squares (dimensionless), Pa, with what they are of."""
+    part, filter = asked.part, asked.filter
+    values = np.sqrt(np.maximum(square, 0.0)) * problem.scales.pressure
     attributes = {
         "units": "Pa",
         "long_name": f"RMS of the {'' if part == 'total' else part + ' '}pressure, {region}",
@@ -73,7 +82,7 @@ def pressure_rms(
     }
     dims = ("time",) if when.ndim else ()
     return xr.DataArray(
-        values.reshape(when.shape), dims=dims, coords=instants_of(spectra.problem.scales, when), name="pressure_rms", attrs=attributes
+        values.reshape(when.shape), dims=dims, coords=instants_of(problem.scales, when), name="pressure_rms", attrs=attributes
     )
 
 
@@ -82,7 +91,7 @@ def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, ti
     radii, weights = domain.rule(asked.resolution)
     field = modal_field(spectra, band(spectra.grid, asked.resolution), domain.region, asked.part)
     weight = mode_filter(asked.filter, spectra.modes.max_order)[:, None]
-    points = scipy.fft.next_fast_len(max(720, 4 * weight.size), real=True) if domain.region.exterior else 0
+    points = points_around(weight.size) if domain.region.exterior else 0
     block = max(1, int(asked.memory / 4 / (8 * times.size * (4 * weight.size + 3 * points))))
     _require_room(spectra, times.size, min(block, radii.size))
     total = np.zeros(times.size)
@@ -94,7 +103,8 @@ def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, ti
             for r, amplitudes in zip(share, modal, strict=True):
                 total += r * mean_square(amplitudes)
         if domain.region.exterior and asked.part in ("total", "incident"):
-            total += share @ _with_incident(spectra.problem, here, times, modal, points)
+            x, y = on_circles(here, points)
+            total += share @ with_incident(Incident(spectra.problem, x, y, float(times.max())), here.size, times, modal, points)
         if asked.progress is not None:
             asked.progress(min(1.0, (start + block) / radii.size), "mean square")
     return total
@@ -110,16 +120,27 @@ def _require_room(spectra: SolvedSpectra, instants: int, circles: int) -> None:
         )
 
 
-def _with_incident(problem: Problem, radii: FloatArray, times: FloatArray, modal: FloatArray | None, points: int) -> FloatArray:
-    """Return what the incident waves add to the mean squares on circles, (radii, times): their own, and twice the product with the field.
+def points_around(orders: int) -> int:
+    """Return at how many points of a circle the incident waves are taken, so that their product with so many orders is exact."""
+    return int(scipy.fft.next_fast_len(max(720, 4 * orders), real=True))
+
+
+def on_circles(radii: FloatArray, points: int) -> tuple[FloatArray, FloatArray]:
+    """Return x and y of so many points on each circle."""
+    theta = 2.0 * np.pi * np.arange(points) / points
+    return np.outer(radii, np.cos(theta)).ravel(), np.outer(radii, np.sin(theta)).ravel()
+
+
+def with_incident(
+    incident: Incident | SpatialIncident, circles: int, times: FloatArray, modal: FloatArray | None, points: int
+) -> FloatArray:
+    """Return what the incident waves add to the mean squares on circles, (circles, times): their own, and twice the product with the field.
 
     The product needs only the orders of the field, from an FFT of the incident waves around each circle.
     """
-    theta = 2.0 * np.pi * np.arange(points) / points
-    incident = Incident(problem, np.outer(radii, np.cos(theta)).ravel(), np.outer(radii, np.sin(theta)).ravel(), float(times.max()))
-    added = np.empty((radii.size, times.size))
+    added = np.empty((circles, times.size))
     for i, instant in enumerate(times):
-        waves = incident.pressure(float(instant)).reshape(radii.size, points)
+        waves = incident.pressure(float(instant)).reshape(circles, points)
         added[:, i] = np.einsum("rp,rp->r", waves, waves) / points
         if modal is not None:
             spectrum = scipy.fft.rfft(waves, axis=1)[:, : modal.shape[2]] * (2.0 / points)

@@ -16,7 +16,7 @@ from coaxshell.solver.scaling import Problem
 
 
 class SpatialIncident:
-    """The pressure of all incident waves at points (x, y, z), in units of a; in rho_e c_e^2.
+    """All incident waves at points (x, y, z), in units of a; pressures in rho_e c_e^2, velocities in c_e.
 
     Parameters
     ----------
@@ -45,17 +45,28 @@ class SpatialIncident:
         place: tuple[FloatArray, FloatArray, FloatArray],
         latest: float,
         smooth: LaplaceGrid | None,
-    ) -> tuple[SpatialField, float]:
+    ) -> tuple[SpatialField, tuple[float, float], float]:
         x, y, z = place
-        cos, sin = np.cos(np.radians(source.angle)), np.sin(np.radians(source.angle))
+        cos, sin = float(np.cos(np.radians(source.angle))), float(np.sin(np.radians(source.angle)))
         geometry = cast("SpatialGeometry", problem.sources[number])  # all of three dimensions are
         from_source = z - axial_position(source) / problem.scales.length
         pulse = time_function(problem, source, smooth)
-        return geometry.spatial_field(pulse, cos * x + sin * y, cos * y - sin * x, from_source, latest), source.delay / problem.scales.time
+        field = geometry.spatial_field(pulse, cos * x + sin * y, cos * y - sin * x, from_source, latest)
+        return field, (cos, sin), source.delay / problem.scales.time
 
     def pressure(self, time: float) -> FloatArray:
         """Return the pressure at an instant, shape (points,)."""
         total = np.zeros(self._size)
-        for field, delay in self._waves:
+        for field, _, delay in self._waves:
             total += field.pressure(time - delay)
+        return total
+
+    def velocity(self, time: float) -> FloatArray:
+        """Return the particle velocity along x, y and z at an instant, shape (3, points)."""
+        total = np.zeros((3, self._size))
+        for field, (cos, sin), delay in self._waves:
+            along, across, axial = field.velocity(time - delay)
+            total[0] += cos * along - sin * across
+            total[1] += sin * along + cos * across
+            total[2] += axial
         return total

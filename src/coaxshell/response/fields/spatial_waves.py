@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -37,6 +37,14 @@ _FEWEST_NODES = 8
 
 Found = TypeVar("Found")
 
+SpatialQuantity = Literal["pressure", "radial", "angular", "axial"]
+"""Pressure, and the particle velocity outward, towards increasing angle and along z; all dimensionless."""
+
+
+def share(waves: WaveSet, family: Family, quantity: SpatialQuantity) -> npt.NDArray[np.number]:
+    """Return how a quantity of a family goes along the axis: e, or k o = -de/dz of the axial velocity; shaped as the family's e."""
+    return np.asarray(waves.wavenumber * family.odd) if quantity == "axial" else family.even
+
 
 @dataclass(frozen=True, eq=False)
 class Drive:
@@ -57,11 +65,10 @@ class Drive:
     incident: ComplexArray
 
     def added_up(self, shares: npt.NDArray[np.number]) -> Drive:
-        """Return the families, each times its share, (families, 1 or nodes), as one."""
-        weight = shares[:, None, None]
-        return Drive(
-            self.radial, np.sum(self.normal * weight, axis=1, keepdims=True), np.sum(self.incident * weight, axis=0, keepdims=True)
-        )
+        """Return sums of the families in the place of these, each family times its share in a sum: (sums, families, 1 or nodes)."""
+        weight = shares[:, :, None, None]
+        normal = np.stack([np.sum(self.normal * each, axis=1) for each in weight], axis=1)
+        return Drive(self.radial, normal, np.stack([np.sum(self.incident * each, axis=0) for each in weight]))
 
     def transfer(self, region: Region, part: str) -> Transfer | None:
         """Return the field of a region, its families and parities in one dimension; None where the part vanishes."""
@@ -73,6 +80,8 @@ class Drive:
 @dataclass(frozen=True, eq=False)
 class SpatialWaves:
     """The waves of a run as a field at some axial positions and instants needs them.
+
+    A pressure p e(z) makes the particle velocity -grad(p e)/(rho s): slope and derivative around by e, p itself by k o.
 
     Attributes
     ----------
@@ -131,6 +140,11 @@ class SpatialWaves:
         modes, top = waves.modes[j], self.sampling.max_order
         along = 0.0 if np.iscomplexobj(modes.wavenumber) else float(np.asarray(modes.wavenumber)) / self.sampling.highest
         return filter_weight(self.filter, np.hypot(modes.orders, along * top) / (top + 1.0))
+
+    @property
+    def families(self) -> int:
+        """How many ways the waves of one wavenumber have to go along the axis, at most."""
+        return max(len(waves.families) for waves in self.sets(slice(0, 1)))
 
     def inverse(self, times: FloatArray) -> FloatArray:
         """Return the matrix of direct sums under the band's window, shape (2 nodes, T)."""

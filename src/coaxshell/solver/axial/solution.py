@@ -10,6 +10,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
@@ -52,6 +53,9 @@ class SpatialSolution:
     spectra : StationSpectra or None
         Transforms of the motion at the stations, where they are no more than half a gigabyte. A copy sent to another process (pickle)
         has none, as after :meth:`coaxshell.response.spatial.SpatialResponse.without_transforms`.
+    forces : list of PointForces
+        Transforms of the forces of the point absorbers, one or none: those of the run, or, of one from a file, once they are solved again.
+        Shared by the solutions of one run.
     """
 
     problem: Problem
@@ -65,10 +69,11 @@ class SpatialSolution:
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
     spectra: StationSpectra | None = field(default=None, compare=False, repr=False)
+    forces: list[PointForces] = field(default_factory=list, compare=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms, the largest part of it."""
-        return {**vars(self), "spectra": None}
+        return {**vars(self), "spectra": None, "forces": []}
 
     @property
     def stations(self) -> FloatArray:

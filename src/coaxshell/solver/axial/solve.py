@@ -85,6 +85,7 @@ def solve_spatial(
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
     if linked is not None:
+        solution.forces.append(linked.forces)
         solution = replace(solution, absorber_displacement=linked.displacement[..., keep], absorber_force=linked.force[..., keep])
     return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
 
@@ -109,9 +110,13 @@ def station_spectra(solution: SpatialSolution) -> StationSpectra:
 
 
 def forces_of(solution: SpatialSolution) -> PointForces | None:
-    """Return the transforms of the forces of a finished run's point absorbers, solved again; None if there are none."""
-    linked = _linked(solution.problem, laplace_grid(solution.settings), solution.sampling, None, on_threads)
-    return None if linked is None else linked.forces
+    """Return the transforms of the forces of a finished run's point absorbers, solved again if it was loaded; None without absorbers."""
+    if not solution.forces:
+        linked = _linked(solution.problem, laplace_grid(solution.settings), solution.sampling, None, on_threads)
+        if linked is None:
+            return None
+        solution.forces.append(linked.forces)
+    return solution.forces[0]
 
 
 def laplace_grid(settings: Settings) -> LaplaceGrid:
