@@ -18,7 +18,7 @@ from coaxshell.apps.cli.app import application
 from coaxshell.apps.cli.progress import progress
 
 COMMANDS = (
-    *("run", "presets", "init", "info", "record", "figure", "snapshots", "animate", "export", "verify", "response-function"),
+    *("run", "presets", "init", "info", "record", "spectrum", "figure", "snapshots", "animate", "export", "verify", "response-function"),
     *("sweep", "optimise", "sensitivity", "reproduce", "studio"),
 )
 
@@ -48,7 +48,7 @@ def test_no_help_has_what_a_terminal_takes_for_markup(command):
 
 METAVARS = {
     *("FILE", "FOLDER", "SCENARIO", "SOURCE", "NAME", "UNIT", "ADDRESS", "PATH=VALUE"),
-    *("N", "TIME", "ANGLE", "LENGTH", "PRESSURE", "FACTOR", "RATIO", "ERROR"),
+    *("N", "TIME", "ANGLE", "LENGTH", "PRESSURE", "FACTOR", "RATIO", "ERROR", "FREQUENCY"),
 }
 
 
@@ -68,7 +68,7 @@ def test_version(run):
 def test_unknown_command(refused):
     message = refused("solve")
     assert "'solve'" in message
-    assert "allowed: run, presets, init, info, record, plot, figure" in message
+    assert "allowed: run, presets, init, info, record, plot, spectrum, figure" in message
 
 
 def test_unknown_option(refused):

@@ -6,6 +6,7 @@ One row a mistake that a person could make: a sign, a factor, an index, a power 
 from __future__ import annotations
 
 from elastic_mutations import ELASTIC
+from reading_mutations import READING
 from spatial_mutations import SPATIAL
 
 from mutation import Mutation
@@ -470,30 +471,7 @@ MUTATIONS = (
         "kernels of another structure for a case of a study",
         "studies/test_evaluation.py",
     ),
-    Mutation(
-        "shell-mass",
-        "studies/reading.py",
-        "math.pi * (outside**2 - inside**2)",
-        "math.pi * (outside - inside) ** 2",
-        "mass of a shell",
-        "studies/test_metrics.py",
-    ),
-    Mutation(
-        "metric-rms",
-        "studies/reading.py",
-        "np.trapezoid(values**2, time)",
-        "np.trapezoid(values, time)",
-        "RMS pressure over time in a study",
-        "studies/test_metrics.py",
-    ),
-    Mutation(
-        "reduction",
-        "model/prefixes.py",
-        "ratio = value / reference",
-        "ratio = reference / value",
-        "smaller or larger than which run",
-        "model/test_prefixes.py",
-    ),
     *SPATIAL,
+    *READING,
     *ELASTIC,
 )

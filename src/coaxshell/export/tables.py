@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -41,9 +42,14 @@ def export_csv(response: Response, path: str | Path) -> Path:
     InputError
         The file is not a .csv or cannot be written.
     """
+    known_suffix(Path(path), (".csv",))
+    return write_csv(history_table(response), path)
+
+
+def write_csv(table: Mapping[str, npt.NDArray[np.float64]], path: str | Path) -> Path:
+    """Write columns by their names as CSV; InputError if the file is not a .csv or cannot be written."""
     target = Path(path)
     known_suffix(target, (".csv",))
-    table = history_table(response)
     with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(table)

@@ -18,6 +18,7 @@ from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_fr
 from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
 from coaxshell.plotting.sensitivity import figure_sensitivity, plot_distribution, plot_sensitivity
+from coaxshell.plotting.shock_spectra import figure_shock_spectra, plot_four_coordinates
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
 from coaxshell.plotting.style import COLOURS, style
 from coaxshell.plotting.sweep import figure_sweep, plot_sweep
@@ -45,6 +46,7 @@ __all__ = [
     "figure_optimum",
     "figure_pressure_rms",
     "figure_sensitivity",
+    "figure_shock_spectra",
     "figure_snapshots",
     "figure_sweep",
     "mark_peak",
@@ -54,6 +56,7 @@ __all__ = [
     "plot_distribution",
     "plot_energy",
     "plot_field",
+    "plot_four_coordinates",
     "plot_front",
     "plot_history",
     "plot_named_curves",

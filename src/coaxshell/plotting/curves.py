@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 
     from coaxshell.response import Response
 
-_COLOURS = ("blue", "orange", "green", "purple", "grey")
-_DASHES: tuple[Any, ...] = ("solid", (0, (5.0, 1.6)), (0, (1.5, 1.5)), "dashdot")
+COLOUR_NAMES = ("blue", "orange", "green", "purple", "grey")
+"""Of angles."""
+DASHES: tuple[Any, ...] = ("solid", (0, (5.0, 1.6)), (0, (1.5, 1.5)), "dashdot")
+"""Of runs and stations."""
 Curves = dict[tuple[str, float], History]
 
 
@@ -59,12 +61,12 @@ def figure_curves(
     """
     runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
     angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
-    sections = _sections(runs, station)
+    sections = sections_of(runs, station)
     if all(section.station is None for section in sections.values()) and _of_space(quantity):
         raise InputError("quantity", f"{quantity!r} belongs to three dimensions", "run with dimensions=3")
     for where, count, most in (
-        ("station" if len(sections) > len(runs) else "responses", len(sections), len(_DASHES)),
-        ("angle", len(angles), len(_COLOURS)),
+        ("station" if len(sections) > len(runs) else "responses", len(sections), len(DASHES)),
+        ("angle", len(angles), len(COLOUR_NAMES)),
     ):
         if not 1 <= count <= most:
             raise InputError(where, f"{count} cannot be drawn", f"give 1 to {most}, so that they can be told apart")
@@ -96,8 +98,8 @@ def plot_curves(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Axes:
     longest = 0.0
     for (run, angle), curve in curves.items():
         shown = curve if in_transits else History(curve.time * curve.milliseconds, curve.values, 1.0)
-        colour = COLOURS[_COLOURS[angles.index(angle)]]
-        ax.plot(shown.time, shown.values, color=colour, linestyle=_DASHES[runs.index(run)], linewidth=1.1)
+        colour = COLOURS[COLOUR_NAMES[angles.index(angle)]]
+        ax.plot(shown.time, shown.values, color=colour, linestyle=DASHES[runs.index(run)], linewidth=1.1)
         mark_peak(shown, ax, color=colour)
         longest = max(longest, float(shown.time[-1]))
     ax.axhline(0.0, color=COLOURS["grey"], linewidth=0.6, zorder=1)
@@ -105,27 +107,27 @@ def plot_curves(curves: Curves, ax: Axes, *, in_transits: bool = True) -> Axes:
     return ax
 
 
-class _Section(NamedTuple):
+class Section(NamedTuple):
     """What one kind of line shows: a run, and its station in three dimensions."""
 
     response: Response
     station: float | None
 
 
-def _sections(runs: Mapping[str, Response], station: Any) -> dict[str, _Section]:
+def sections_of(runs: Mapping[str, Response], station: Any) -> dict[str, Section]:
     """Return the runs, one in three dimensions once for each of its stations, by the names of the legend."""
-    found: dict[str, _Section] = {}
+    found: dict[str, Section] = {}
     for name, response in runs.items():
         if response.stations is None:
-            found[name] = _Section(response, None)
+            found[name] = Section(response, None)
             continue
-        chosen = _spread(response.stations, max(1, len(_DASHES) // len(runs)))
+        chosen = _spread(response.stations, max(1, len(DASHES) // len(runs)))
         if station is not None:
             from coaxshell.response.stations import chosen_stations
 
             chosen = [response.stations[i] for i in chosen_stations(response.stations, station)[0]]
         for z in chosen:
-            found[f"{name}, z = {z:g} m" if name and len(runs) > 1 else f"z = {z:g} m"] = _Section(response, float(z))
+            found[f"{name}, z = {z:g} m" if name and len(runs) > 1 else f"z = {z:g} m"] = Section(response, float(z))
     return found
 
 
@@ -146,7 +148,7 @@ def _spread(stations: FloatArray, most: int) -> list[float]:
 
 
 def _panels(
-    runs: Mapping[str, _Section], quantity: str, shells: Sequence[int | str] | int | str | None, angles: Sequence[float]
+    runs: Mapping[str, Section], quantity: str, shells: Sequence[int | str] | int | str | None, angles: Sequence[float]
 ) -> dict[str, Curves]:
     """Return the curves of each shell by its name within a sentence."""
     panels: dict[str, Curves] = {}
@@ -171,7 +173,7 @@ def _legend(names: Sequence[str], angles: Sequence[float]) -> list[Any]:
     from matplotlib.lines import Line2D
 
     grey = COLOURS["grey"]
-    lines = [Line2D([], [], color=COLOURS[colour], label=f"{angle:g}°") for colour, angle in zip(_COLOURS, angles, strict=False)]
-    kinds = [Line2D([], [], color=grey, linestyle=dash, label=name) for dash, name in zip(_DASHES, names, strict=False)]
+    lines = [Line2D([], [], color=COLOURS[colour], label=f"{angle:g}°") for colour, angle in zip(COLOUR_NAMES, angles, strict=False)]
+    kinds = [Line2D([], [], color=grey, linestyle=dash, label=name) for dash, name in zip(DASHES, names, strict=False)]
     circle = Line2D([], [], color=grey, marker="o", markerfacecolor="none", linestyle="none", label="largest magnitude")
     return [*lines, *kinds, circle]

@@ -17,6 +17,7 @@ from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage
+from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
 from coaxshell.response.summary import Summary, response_card, summarise
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
@@ -192,6 +193,25 @@ class Response:
         """
         number = self._index(shell)
         return self._read(station, lambda motion: histories.shell_acceleration(motion, number, angle, component))
+
+    def shock_spectrum(
+        self,
+        shell: int | str,
+        angle: npt.ArrayLike = HEAD_AND_TAIL,
+        frequency: npt.ArrayLike | None = None,
+        *,
+        station: Any = None,
+        **options: Unpack[SpectrumOptions],
+    ) -> xr.DataArray:
+        """Return the shock response spectrum of points of a shell at natural frequencies (Hz), dims (frequency, angle).
+
+        The largest answer of an oscillator that the shell carries: *kind* "pseudo-velocity", "absolute-acceleration" or
+        "relative-displacement", of a *quality_factor* (10), *extreme* "maximax", "positive" or "negative", *during* the run ("primary"),
+        after it ("residual") or "overall", under the "normal" or "tangential" *component* of the shell's motion.
+        See :func:`coaxshell.response.shock_spectrum.shock_spectrum`.
+        """
+        number = self._index(shell)
+        return self._read(station, lambda motion: shock_spectrum(motion, number, angle, frequency, **options))
 
     def history(
         self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress", *, station: Any = None

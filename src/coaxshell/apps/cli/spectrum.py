@@ -1,0 +1,70 @@
+"""``coaxshell spectrum``: shock response spectra of the shells of any run."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from coaxshell.apps.cli import options
+from coaxshell.apps.cli.output import Outputs, echo, write_figure
+from coaxshell.apps.cli.running import Request, answers, tell_all_warnings, with_resolution
+
+
+@with_resolution
+def spectrum(
+    context: typer.Context,
+    source: options.SourceArgument,
+    shell: Annotated[
+        list[str] | None,
+        typer.Option("--shell", metavar="NAME", help="inner, outer or a number from 0 inside. May be repeated.", show_default="all"),
+    ] = None,
+    angle: Annotated[str, typer.Option("--angle", metavar="ANGLE,...", help="Degrees from the source, as in 0,90,180.")] = "0,180",
+    frequency: Annotated[
+        str | None,
+        typer.Option(
+            "--frequency", metavar="FREQUENCY,...", help="Natural frequencies in Hz, as in 100,200,500.", show_default="chosen from the run"
+        ),
+    ] = None,
+    quality: Annotated[str, typer.Option("--quality", metavar="RATIO", help="Q = 1/(2 zeta) of the oscillators.")] = "10",
+    compare: options.CompareOption = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where to; .png, .pdf, .svg or .csv.", show_default="spectrum.png")
+    ] = None,
+    *,
+    request: Request,
+    force: options.ForceOption = False,
+    quiet: options.QuietOption = False,
+) -> None:
+    """Draw or tabulate the shock response spectra of a run.
+
+    What small equipment on the shells feels: the largest pseudo-velocity of oscillators by their natural frequency, at some angles and the
+    largest all around, on four-coordinate paper. The run is a saved one, or a preset or a .toml file that is solved; with --compare,
+    two of them. A .csv holds displacement, pseudo-velocity and acceleration.
+    """
+    from coaxshell.apps.cli.comparison import run_labels
+    from coaxshell.export import export_spectra_csv
+    from coaxshell.plotting import FIGURE_SUFFIXES, figure_shock_spectra
+    from coaxshell.response.shock_spectrum import frequencies_of, quality_of
+
+    target = Outputs(force).file(output or Path("spectrum.png"), "--output", (*FIGURE_SUFFIXES, ".csv"))
+    angles = [options.number("--angle", each) for each in angle.split(",")]
+    frequencies = None if frequency is None else [options.number("--frequency", each) for each in frequency.split(",")]
+    as_options = partial(
+        options.named_as_options, shell="shell", shells="shell", responses="compare", frequency="frequency", quality_factor="quality"
+    )
+    factor = options.number("--quality", quality)
+    with as_options():
+        frequencies_of(frequencies)
+        quality_of(factor)
+    responses = answers(context, [source, *([compare] if compare else [])], request, quiet=quiet, dimensions=3)
+    named = dict(zip(run_labels(*responses) if compare else ("",), responses, strict=True))
+    with as_options():
+        if target.suffix == ".csv":
+            export_spectra_csv(named, target, shell, angles, None, frequencies, factor)
+        else:
+            write_figure(figure_shock_spectra(named, shell, angles, None, frequencies, factor), target, "--output")
+    tell_all_warnings(responses)
+    echo(f"wrote {target}")

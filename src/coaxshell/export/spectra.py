@@ -1,0 +1,73 @@
+"""Shock response spectra as CSV: one row a natural frequency, a column a run, shell, angle, station and quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.export.tables import write_csv
+from coaxshell.model import Shell
+from coaxshell.model.places import shell_name
+from coaxshell.response.shock_spectrum import Kind
+
+if TYPE_CHECKING:
+    from coaxshell.response import Response
+
+_KINDS: tuple[Kind, ...] = ("pseudo-velocity", "absolute-acceleration", "relative-displacement")
+
+
+def export_spectra_csv(
+    responses: Mapping[str, Response] | Response,
+    path: str | Path,
+    shells: Sequence[int | str] | int | str | None = None,
+    angle: Sequence[float] | float = (0.0, 180.0),
+    station: Any = None,
+    frequency: Sequence[float] | None = None,
+    quality_factor: float = 10.0,
+) -> Path:
+    """Write the shock response spectra of one run or several as CSV, names and units in the first row.
+
+    Parameters
+    ----------
+    responses : Response, or mapping of name to Response
+        Of several, all have the same natural frequencies, those chosen for the first unless given.
+    path : str or Path
+    shells, angle, station, frequency, quality_factor
+        As for :func:`coaxshell.plotting.figure_shock_spectra`.
+
+    Raises
+    ------
+    InputError
+        The file is not a .csv or cannot be written, no shell is elastic, or an argument that the spectrum refuses.
+    """
+    runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
+    angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
+    table: dict[str, npt.NDArray[np.float64]] = {}
+    for name, response in runs.items():
+        walls = response.system.shells
+        wanted = [i for i, wall in enumerate(walls) if isinstance(wall, Shell)] if shells is None else np.atleast_1d(shells).tolist()
+        for index in (response.system.shell_index(shell) for shell in wanted):
+            for kind in _KINDS:
+                found = response.shock_spectrum(index, angles, frequency, station=station, kind=kind, quality_factor=quality_factor)
+                if not table:
+                    table["natural frequency (Hz)"] = found["frequency"].to_numpy()
+                    frequency = found["frequency"].to_numpy().tolist()
+                words = f"{kind.replace('-', ' ')} ({found.attrs['units']})"
+                for place, values in _places(found):
+                    table[" ".join(filter(None, [name, shell_name(index, len(walls)), place, words]))] = values
+    if not table:
+        raise InputError("shells", "no run has an elastic one of these", "choose others")
+    return write_csv(table, path)
+
+
+def _places(found: Any) -> list[tuple[str, npt.NDArray[np.float64]]]:
+    """Return the spectra of an array by angle, and by station in three dimensions."""
+    by_angle = [(f"{float(angle):g} deg", found.sel(angle=angle)) for angle in found["angle"]]
+    if "station" not in found.dims:
+        return [(place, one.to_numpy()) for place, one in by_angle]
+    return [(f"{place} z = {float(z):g} m", one.sel(station=z).to_numpy()) for place, one in by_angle for z in one["station"]]
