@@ -1,8 +1,9 @@
 """Paths from a distant source to points near the axis, without the cancellation of R - S: smooth up to a plane wave's infinite distance.
 
-With e = 1/R0 for the source at R0 (0 for a plane wave), S = R0 - 1, h = sin^2(theta/2) and rho = R/R0 = sqrt((1 - e)^2 + 4 e h), at r = 1
+With e = 1/R0 for the source at R0 (0 for a plane wave), b the distance of the head point from the axis, S = R0 - b, h = sin^2(theta/2) and
+rho = R/R0 = sqrt((1 - e b)^2 + 4 e b h), at r = b
 
-    R - S = 4 h/(rho + 1 - e),    S/R = (1 - e)/rho,    dR/dr = (e - cos theta)/rho,    1/R = e/rho.
+    R - S = 4 b h/(rho + 1 - e b),    S/R = (1 - e b)/rho,    dR/dr = (e b - cos theta)/rho,    1/R = e/rho.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from coaxshell.numerics.arrays import FloatArray
 
 
 class SurfaceRays(NamedTuple):
-    """What a front from the source does at points of the surface r = 1.
+    """What a front from the source does at points of the surface on which the head point lies.
 
     Attributes
     ----------
@@ -35,13 +36,13 @@ class SurfaceRays(NamedTuple):
     curvature: FloatArray
 
 
-def surface_rays(theta: FloatArray, distance: float | None) -> SurfaceRays:
-    """Return the rays from a source at a distance from the axis (None: a plane wave) to angles (radians) of the surface r = 1."""
+def surface_rays(theta: FloatArray, distance: float | None, head: float = 1.0) -> SurfaceRays:
+    """Return the rays from a source at a distance from the axis (None: a plane wave) to angles (radians) of the surface r = head."""
     near = 0.0 if distance is None else 1.0 / distance
-    half = np.sin(0.5 * theta) ** 2
-    relative = np.sqrt((1.0 - near) ** 2 + 4.0 * near * half)
-    path = 4.0 * half / (relative + (1.0 - near))
-    return SurfaceRays(path, (1.0 - near) / relative, (near - np.cos(theta)) / relative, near / relative)
+    lateral, half = near * head, np.sin(0.5 * theta) ** 2
+    relative = np.sqrt((1.0 - lateral) ** 2 + 4.0 * lateral * half)
+    path = 4.0 * head * half / (relative + (1.0 - lateral))
+    return SurfaceRays(path, (1.0 - lateral) / relative, (lateral - np.cos(theta)) / relative, near / relative)
 
 
 def front_angle(since: FloatArray, distance: float | None) -> FloatArray:
@@ -51,9 +52,9 @@ def front_angle(since: FloatArray, distance: float | None) -> FloatArray:
     return np.asarray(2.0 * np.arcsin(np.sqrt(np.clip(half, 0.0, 1.0))), dtype=np.float64)
 
 
-def path_to(distance: float, x: FloatArray, y: FloatArray, nearest: float) -> FloatArray:
-    """Return R - S from a source at (distance, 0), S = distance - 1, to points; no nearer to it than ``nearest``."""
+def path_to(distance: float, x: FloatArray, y: FloatArray, nearest: float, head: float = 1.0) -> FloatArray:
+    """Return R - S from a source at (distance, 0), S = distance - head, to points; no nearer to it than ``nearest``."""
     near = 1.0 / distance
     range_ = np.hypot(near * x - 1.0, near * y)
-    path = (near * (x * x + y * y - 1.0) + 2.0 * (1.0 - x)) / (range_ + (1.0 - near))
-    return np.asarray(np.where(distance * range_ < nearest, nearest - (distance - 1.0), path), dtype=np.float64)
+    path = (near * (x * x + y * y - head * head) + 2.0 * (head - x)) / (range_ + (1.0 - near * head))
+    return np.asarray(np.where(distance * range_ < nearest, nearest - (distance - head), path), dtype=np.float64)

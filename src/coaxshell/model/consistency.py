@@ -54,7 +54,7 @@ def _sources(system: SystemParts) -> None:
     for number, (source, distance) in enumerate(zip(system.sources, system.source_distances, strict=True)):
         where = f"source[{number}]" if several else "source"
         if isinstance(source, UnderwaterExplosion):
-            thickness = system.shells[-1].thickness / 2
+            thickness = radius - system.head_radius
             if source.stand_off <= thickness:
                 raise InputError(
                     f"{where}.stand_off", f"{source.stand_off!r} m is within the wall", f"must be greater than {thickness:g} m"

@@ -15,6 +15,7 @@ from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.units import Length
 
 Role = Literal["core", "sensor", "actuator", "passive"]
+Wetted = Literal["mid-surface", "faces"]
 
 
 class Layer(Described):
@@ -70,6 +71,8 @@ class Shell(Described):
     """Radius of the mid-surface (m)."""
     layers: Annotated[tuple[Layer, ...], Field(min_length=1)]
     """The layers, innermost (z < 0) first."""
+    wetted: Wetted = "mid-surface"
+    """Where the fluids meet the wall: "mid-surface", as in the paper, or its true "faces", which is more exact for thick walls."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -101,6 +104,11 @@ class Shell(Described):
     def outer_radius(self) -> float:
         """Radius of the outer face, radius + thickness/2 (m)."""
         return self.radius + self.thickness / 2
+
+    @property
+    def wetted_radii(self) -> tuple[float, float]:
+        """Radii of the surfaces that the fluids inside and outside wet (m)."""
+        return (self.inner_radius, self.outer_radius) if self.wetted == "faces" else (self.radius, self.radius)
 
     @property
     def core(self) -> Layer:

@@ -120,6 +120,11 @@ class SystemParts(Described):
         return self.shells[-1].radius
 
     @property
+    def head_radius(self) -> float:
+        """Distance of the head point from the axis (m): the radius of the surface that the exterior fluid wets."""
+        return self.shells[-1].wetted_radii[1]
+
+    @property
     def transit_time(self) -> float:
         """Seconds in an acoustic transit a/c_e of the outermost radius in the fluid outside, the unit of time of a run."""
         return self.reference_radius / self.exterior.sound_speed
@@ -133,12 +138,12 @@ class SystemParts(Described):
 
     @property
     def source_distances(self) -> tuple[float | None, ...]:
-        """Distance of each source from the axis (m); None for a plane wave. Stand-offs start at the reference radius."""
+        """Distance of each source from the axis (m); None for a plane wave. Stand-offs start at the head point."""
         return tuple(self.source_distance(source) for source in self.sources)
 
     def source_distance(self, source: Source) -> float | None:
         """Return the distance of a source from the axis (m); None for a plane wave."""
-        return source_distance(source, self.reference_radius)
+        return source_distance(source, self.head_radius)
 
     @property
     def controlled_shells(self) -> tuple[int, ...]:

@@ -38,6 +38,11 @@ class RigidShell(Described):
         """The radius itself (m)."""
         return self.radius
 
+    @property
+    def wetted_radii(self) -> tuple[float, float]:
+        """The radius itself, on both sides (m)."""
+        return self.radius, self.radius
+
 
 def as_shell(value: Any) -> Shell | RigidShell:
     """Return a shell from an instance or a mapping; ``rigid = true`` makes it a rigid one."""

@@ -123,9 +123,13 @@ def _source(source: Source, beside: Path | None, *, hashed: bool = False) -> dic
     return {**data, "pulse": storing.table(source.pulse, *(storing.write(source.pulse, beside) if beside is not None else ()))}
 
 
+_USUAL: dict[str, Any] = {"absorbers": [], "wetted": "mid-surface"}
+"""What descriptions leave out where it is as usual, so that they are written as before there was anything else."""
+
+
 def _pruned(value: Any) -> Any:
     if isinstance(value, dict):
-        kept = {key: _pruned(item) for key, item in value.items() if item is not None and not (key == "absorbers" and item == [])}
+        kept = {key: _pruned(item) for key, item in value.items() if item is not None and not (key in _USUAL and item == _USUAL[key])}
         return {"type": kept["type"], **kept} if "type" in kept else kept  # the kind reads best in front
     return [_pruned(item) for item in value] if isinstance(value, list) else value
 

@@ -1,7 +1,7 @@
 """The coupled modal system: shells and fluids at each order m and Laplace node s (theory manual, section "Coupled modal system").
 
-Per shell, with the tangential equation eliminated, Z_i W_i = p_out - p_in + F_i; per fluid, wall pressures per wall
-acceleration. Together an n x n tridiagonal system for the normal displacements of all shells,
+Per shell, with the tangential equation eliminated, Z_i W_i = p_out r_out/R - p_in r_in/R + F_i, r_in and r_out the radii that the fluids
+wet; per fluid, wall pressures per wall acceleration. Together an n x n tridiagonal system for the normal displacements of all shells,
 
     lower_i W_{i-1} + diagonal_i W_i + upper_i W_{i+1} = load_i,
 
@@ -53,17 +53,18 @@ def fluid_matrix(problem: Problem, radial: RadialBasis) -> FluidMatrix:
         if fluid is None:
             continue
         sides = [j for j in (i - 1, i) if 0 <= j < count]
-        walls = [radial(fluid.slowness, problem.shells[j].radius) for j in sides]
+        walls = [radial(fluid.slowness, problem.shells[j].wetted[int(j < i)]) for j in sides]
         density = [fluid.density * fluid.wall_motion_factor(j, radial) for j in sides]
+        load = [problem.shells[j].leverage[int(j < i)] for j in sides]
         if i == 0:
-            matrix.diagonal[0] = matrix.diagonal[0] + density[0] * walls[0].disc
+            matrix.diagonal[0] = matrix.diagonal[0] + density[0] * load[0] * walls[0].disc
         elif i == count:
-            matrix.diagonal[-1] = matrix.diagonal[-1] - density[0] * walls[0].exterior
+            matrix.diagonal[-1] = matrix.diagonal[-1] - density[0] * load[0] * walls[0].exterior
         else:
             gap = annulus(*walls)
-            matrix.diagonal[i - 1] = matrix.diagonal[i - 1] - density[0] * gap.aa
-            matrix.diagonal[i] = matrix.diagonal[i] + density[1] * gap.bb
-            matrix.upper[i - 1], matrix.lower[i] = -density[1] * gap.ab, density[0] * gap.ba
+            matrix.diagonal[i - 1] = matrix.diagonal[i - 1] - density[0] * load[0] * gap.aa
+            matrix.diagonal[i] = matrix.diagonal[i] + density[1] * load[1] * gap.bb
+            matrix.upper[i - 1], matrix.lower[i] = -density[1] * load[0] * gap.ab, density[0] * load[1] * gap.ba
     return matrix
 
 
@@ -105,7 +106,7 @@ class ModalSystem:
         problem = self.problem
         if self._shared is None:
             return fluid_matrix(problem, self.radial)
-        key = ("fluids", problem.fluids, tuple(shell.radius for shell in problem.shells), self.modes.key, self.s.tobytes())
+        key = ("fluids", problem.fluids, tuple((shell.radius, shell.wetted) for shell in problem.shells), self.modes.key, self.s.tobytes())
         fluids: FluidMatrix = self._shared.get_or_make(key, lambda: fluid_matrix(problem, self.radial))
         return fluids
 
@@ -146,6 +147,12 @@ class ModalSystem:
             if i + 1 < count:
                 answer[i] = answer[i] - self._inward[i] * answer[i + 1]
         return answer
+
+    def solve_outside(self, pressure: ComplexArray) -> list[ComplexArray]:
+        """Return W of every shell under a pressure on the surface that the exterior fluid wets: r_out/R of it loads the outermost shell."""
+        last = len(self.shells) - 1
+        leverage = self.problem.shells[last].leverage[1]
+        return self.solve(last, pressure if leverage == 1.0 else leverage * pressure)
 
     @property
     def diagonal(self) -> list[ComplexArray]:

@@ -1,4 +1,4 @@
-"""What two dimensions can solve; whatever solves in two asks here first."""
+"""What two dimensions, and their direct engine, can solve; whatever solves so asks here first."""
 
 from __future__ import annotations
 
@@ -23,3 +23,11 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
             if value != 0.0:
                 problem = f"{_WORDS[name].format(value)} of a run in two dimensions"
                 raise InputError(f"{where}.{name}", problem, f"use dimensions=3, or {name} = 0")
+
+
+def require_mid_surfaces(system: System) -> None:
+    """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know."""
+    for number, shell in enumerate(system.shells):
+        if len(set(shell.wetted_radii)) == 2:
+            problem = "'faces' is not known to the direct engine, the paper's scheme at the mid-surfaces"
+            raise InputError(f"shells[{number}].wetted", problem, 'use engine="spectral", or wetted = "mid-surface"')

@@ -106,7 +106,7 @@ class SurfaceLoads:
 
 
 def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-    """Return the modal pressure and slope dp/dr at r = 1 of all incident waves, each (1 or 2, M + 1, nodes).
+    """Return the modal pressure and slope dp/dr at the outermost surface of all incident waves, each (1 or 2, M + 1, nodes).
 
     *basis* holds the modes at all nodes of the grid.
     """
@@ -114,7 +114,7 @@ def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis)
 
 
 def incident_of(groups: list[SourceGroup], parities: int, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-    """Return modal pressure and slope dp/dr at r = 1 of the waves of some sources, each (parities, orders, nodes), at all nodes."""
+    """Return modal pressure and slope dp/dr on the outermost surface by some sources, each (parities, orders, nodes), at all nodes."""
     waves = [group.geometry.incident(grid, basis) for group in groups]
     pressure, slope = (
         np.stack(superposed(parities, basis.modes, ((wave[which], group) for wave, group in zip(waves, groups, strict=True))))

@@ -9,8 +9,8 @@ like 1/s. Its two leading terms are inverted in closed form,
 
     s C_ii(s) = (1/M)/(s + b) + O(1/s^3),    b = (R_out + R_in + c)/M,
 
-R the specific impedances rho c of the fluids, M and c mass and damping with which the wall answers at once
-(:meth:`coaxshell.structure.shell_model.ShellModel.leading`: its own, and the derivative feedback's); the rest is smooth enough for
+R the specific impedances rho c of the fluids times r/R, r the radius that each wets, M and c mass and damping with which the wall answers
+at once (:meth:`coaxshell.structure.shell_model.ShellModel.leading`: its own, and the derivative feedback's); the rest is smooth enough for
 the inverse FFT. Off-diagonal kernels start smoothly, after the transit of the gap.
 """
 
@@ -27,8 +27,13 @@ from coaxshell.solver.scaling import Problem
 def initial_decay(problem: Problem, index: int, max_order: int) -> FloatArray:
     """Return b, shape (M + 1, 1): the rate at which fluids, derivative feedback and its own losses slow a shell just after an impulse."""
     wall = problem.shells[index].leading(Modes.up_to(max_order))
-    resistance = sum(fluid.density / fluid.slowness for fluid in problem.fluids[index : index + 2] if fluid is not None)
-    return (np.full((max_order + 1, 1), resistance) + wall.damping) / wall.mass
+    return (np.full((max_order + 1, 1), resistance(problem, index)) + wall.damping) / wall.mass
+
+
+def resistance(problem: Problem, index: int) -> float:
+    """Return the load on W by which the fluids on the faces of a shell resist its velocity at once: the sum of rho c r/R."""
+    pairs = zip(problem.fluids[index : index + 2], problem.shells[index].leverage, strict=True)
+    return sum(fluid.density / fluid.slowness * leverage for fluid, leverage in pairs if fluid is not None)
 
 
 def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArray) -> FloatArray:

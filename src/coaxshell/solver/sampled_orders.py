@@ -79,7 +79,7 @@ class SampledOrders:
         modal = ModalSystem(problem, nodes, modes, shared=shared)
         excited = np.zeros((count, orders.size, nodes.size))
         for load in SurfaceLoads(problem, grid.sparser(NODES.step), modes, shared)(modal.radial, slice(0, nodes.size)):
-            excited += np.abs(np.stack(modal.solve(count - 1, load))) ** 2
+            excited += np.abs(np.stack(modal.solve_outside(load))) ** 2
         strain = [np.abs(orders[:, None] * wall.tangential - 1.0) ** 2 for wall in modal.shells]
         weight = standing_for(orders)
         weight[-1] += 0.5 * orders[-1]  # those above the last

@@ -108,6 +108,11 @@ class Problem:
     dimensions: int = 2
 
     @property
+    def head(self) -> float:
+        """Radius of the surface that the exterior fluid wets, on which the head point lies: 1 unless it is the true face of a wall."""
+        return self.shells[-1].wetted[1]
+
+    @property
     def open_loop(self) -> Problem:
         """The problem without feedback."""
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
@@ -127,7 +132,8 @@ def dimensionless(system: System, dimensions: int = 2) -> Problem:
 def _geometry(system: System, source: Source, dimensions: int) -> SourceGeometry:
     distance = system.source_distance(source)
     inclination = getattr(source, "inclination", 0.0) if dimensions == 3 else 0.0
-    return source_geometry(source.geometry, None if distance is None else distance / system.reference_radius, dimensions, inclination)
+    a = system.reference_radius
+    return source_geometry(source.geometry, None if distance is None else distance / a, dimensions, inclination, system.head_radius / a)
 
 
 def _wall(system: System, index: int, scales: Scales) -> ShellModel:
@@ -135,7 +141,7 @@ def _wall(system: System, index: int, scales: Scales) -> ShellModel:
     if isinstance(shell, RigidShell):
         return RigidWall(radius=shell.radius / scales.length)
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
-    return ThinWall.of(in_units, _gains(system, index))
+    return ThinWall.of(in_units, _gains(system, index), wetted_faces=shell.wetted == "faces")
 
 
 def _gains(system: System, index: int) -> ControlGains | None:

@@ -121,7 +121,7 @@ class StructureSpectra:
         def work(block: slice) -> None:
             modal = ModalSystem(problem, grid.nodes[block], modes, shared=self.shared)
             for parity, load in enumerate([] if loads is None else loads(modal.radial, block)):
-                moved = modal.solve(count - 1, load)
+                moved = modal.solve_outside(load)
                 for shell, (w, v) in enumerate(zip(moved, modal.tangential(moved), strict=True)):
                     normal[shell, parity, :, block], tangential[shell, parity, :, block] = w, v
             if units:

@@ -123,8 +123,8 @@ def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) ->
     for region, fluid in enumerate(problem.fluids):
         if fluid is None:
             continue
-        outer = radial(fluid.slowness, problem.shells[region].radius) if region < count else None
-        inner = radial(fluid.slowness, problem.shells[region - 1].radius) if region else None
+        outer = radial(fluid.slowness, problem.shells[region].wetted[0]) if region < count else None
+        inner = radial(fluid.slowness, problem.shells[region - 1].wetted[1]) if region else None
         if inner is None and outer is not None:
             yield region, region, fluid.density * outer.disc * acceleration[region]
         elif outer is None and inner is not None:

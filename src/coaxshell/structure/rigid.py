@@ -9,7 +9,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.structure.shell_model import ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness
+from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator, WallStiffness
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +27,11 @@ class RigidWall(ShellModel):
         """Return an infinite impedance and V = 0."""
         shape = modes.count, s.size
         return WallOperator(np.full(shape, np.inf + 0j), np.zeros(shape, np.complex128))
+
+    def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
+        """Return zeros."""
+        still = np.zeros((modes.count, s.size), np.complex128)
+        return FaceReceptance(still, still, still)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return zeros: nothing resonates."""

@@ -6,6 +6,9 @@ the net inward pressure on it by its impedance Z, and every other quantity is re
 
     Z W = p,      V = (V/W) W,      U = (U/W) W,      a quantity = gain.v V + gain.w W + gain.u U.
 
+The fluids inside and outside wet it at the radii r_i and r_o, where their pressures act per unit of the area of its reference surface, of
+radius R: p = p_o r_o/R - p_i r_i/R. A wall whose faces move differently answers by receptances instead (:class:`FaceReceptance`).
+
 In the first parities w = W cos m theta cos kz, v = V sin m theta cos kz and u = U cos m theta sin kz (axial); the others share all of it.
 
 A wall of another theory is a subclass of :class:`ShellModel`; nothing else needs to know of it.
@@ -131,6 +134,30 @@ class Leading(NamedTuple):
     damping: FloatArray | float
 
 
+@dataclass(frozen=True)
+class FaceReceptance:
+    """How both faces of one wall answer inward loads on them, feedback included; arrays of shape (orders, nodes), or numbers.
+
+        w_i = H_ii r_i q_i + H_io r_o q_o,      w_o = H_io r_i q_i + H_oo r_o q_o,
+
+    q_i = -p_i the inward load on the inner face, q_o = p_o that on the outer one. H is symmetric, and for a thin wall nearly of rank one:
+    it must never be inverted.
+
+    Attributes
+    ----------
+    inner, across, outer : ndarray
+        H_ii, H_io and H_oo.
+    characteristic : ndarray or float
+        A function of s that vanishes at the poles of H with feedback and is free of poles but for those that it has without feedback too:
+        of a thin wall its impedance. What feedback makes of it counts in the search for unstable poles.
+    """
+
+    inner: ComplexArray
+    across: ComplexArray
+    outer: ComplexArray
+    characteristic: ComplexArray | float = 1.0
+
+
 class WallStiffness(NamedTuple):
     """Entries of the symmetric stiffness of a wall on (V, W), each of the shape of the orders."""
 
@@ -186,7 +213,7 @@ class ShellModel(ABC):
     Attributes
     ----------
     radius : float
-        R/a, of the surface that the fluids wet.
+        R/a, of its reference surface: the mid-surface of a thin wall.
     mass : float
         I/(rho_e a), by which it resists at once; infinite if it does not move.
     gains : ControlGains or None
@@ -207,6 +234,28 @@ class ShellModel(ABC):
     def moves(self) -> bool:
         """Whether it moves at all."""
         return True
+
+    @property
+    def wetted(self) -> tuple[float, float]:
+        """Radii r_i and r_o, in a, of the surfaces that the fluids inside and outside wet: the reference surface unless said otherwise."""
+        return self.radius, self.radius
+
+    @property
+    def leverage(self) -> tuple[float, float]:
+        """Load on W per pressure on the inner and on the outer wetted surface, r_i/R and r_o/R; exactly 1 on the reference surface."""
+        inner, outer = self.wetted
+        return inner / self.radius, outer / self.radius
+
+    @property
+    def faces_move_alike(self) -> bool:
+        """Whether one normal displacement W serves both faces, as of all thin walls."""
+        return True
+
+    def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
+        """Return how its faces answer loads on them, feedback included; of a wall with one W of rank one, 1/(R Z)."""
+        impedance = self.operator(modes, s).impedance
+        both = np.reciprocal(self.radius * impedance)
+        return FaceReceptance(both, both, both, impedance)
 
     @abstractmethod
     def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:

@@ -23,14 +23,15 @@ __all__ = [
 ]
 
 
-def source_geometry(kind: str, distance: float | None, dimensions: int = 2, inclination: float = 0.0) -> SourceGeometry:
+def source_geometry(kind: str, distance: float | None, dimensions: int = 2, inclination: float = 0.0, head: float = 1.0) -> SourceGeometry:
     """Return the geometry of a kind of source, "plane", "line" or "spherical", at a distance from the axis in units of a.
 
     A source of any kind at no distance is a plane wave from infinitely far away. A spherical one is a slice through its wave in two
-    dimensions, the wave itself in three. A plane one may be inclined there, in degrees.
+    dimensions, the wave itself in three. A plane one may be inclined there, in degrees. ``head`` is the radius of the surface that the
+    exterior fluid wets, on which the head point lies.
     """
     if distance is None:
-        return PlaneGeometry(inclination)
+        return PlaneGeometry(inclination, head)
     if kind == "line":
-        return LineGeometry(distance)
-    return SphericalGeometry(distance) if dimensions == 2 else SphericalFrontGeometry(distance)
+        return LineGeometry(distance, head)
+    return SphericalGeometry(distance, head) if dimensions == 2 else SphericalFrontGeometry(distance, head)

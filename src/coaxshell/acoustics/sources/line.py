@@ -1,6 +1,6 @@
 """A true two-dimensional line source, exact in space and time.
 
-With R the distance from it, S = R0 - 1 and x = t - (R - S) the time since the front (all dimensionless),
+With R the distance from it, S = R0 - b, b the radius on which the head point lies, and x = t - (R - S) the time since the front,
 
     p = sqrt(S/R) [f + q_0],        v = sqrt(S/R) [f + q_1] away from the source,
 
@@ -32,47 +32,48 @@ class LineGeometry:
     """True two-dimensional line source at distance R0, K_0(kappa R)/K_0(kappa S): an exact solution of the wave equation."""
 
     distance: float
+    head: float = 1.0
     along_rays = False
 
     def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
-        """Return L_m = -eps_m K_m(kappa R0)/(K_0(kappa S) kappa K_m'(kappa)), from Graf's addition theorem (DLMF 10.44.3)."""
+        """Return L_m = -eps_m K_m(kappa R0)/(K_0(kappa S) kappa b K_m'(kappa b)), from Graf's addition theorem (DLMF 10.44.3)."""
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
-            surface = basis.surface
-            return -modes.neumann * self._across(surface) * surface.exterior
+            surface = basis(1.0, self.head)
+            return -modes.neumann / self.head * self._across(surface) * surface.exterior
 
         return load
 
     def _across(self, surface: RadialFunctions) -> ComplexArray:
-        """Return K_m(kappa R0)/(K_m(kappa) K_0(kappa S)), shape (orders, nodes); exponentials cancel: R0 = 1 + S."""
-        near, far = surface.kappa, RadialFunctions(surface.kappa, self.distance, surface.orders, surface.sparse)
-        to_head = br.kve(0, near * (self.distance - 1.0))
+        """Return K_m(kappa R0)/(K_m(kappa b) K_0(kappa S)), shape (orders, nodes); exponentials cancel: R0 = b + S."""
+        far = RadialFunctions(surface.kappa, self.distance, surface.orders, surface.sparse)
+        to_head = br.kve(0, surface.kappa * (self.distance - self.head))
         if surface.sparse:
             return far.k_sample.over(surface.k_sample) / to_head
-        order_zero = br.kve(0, far.argument) / (br.kve(0, near) * to_head)
+        order_zero = br.kve(0, far.argument) / (br.kve(0, surface.argument) * to_head)
         return surface.keep(br.running_product(order_zero, far.k_ratios / surface.k_ratios))
 
     def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-        """Return the modal pressure and slope at r = 1 of a unit pulse."""
+        """Return the modal pressure and slope at r = b of a unit pulse."""
         return incident_of_regular(self, grid, basis)
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> LineField:
         """Return the wave at points up to an instant."""
-        return LineField(pulse, self.distance, x, y, latest)
+        return LineField(pulse, self.distance, x, y, latest, self.head)
 
     def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> UniformField:
         """Return the wave at points in space, alike at all z."""
         x, y, _ = np.broadcast_arrays(x, y, z)
-        return UniformField(LineField(pulse, self.distance, x, y, latest))
+        return UniformField(LineField(pulse, self.distance, x, y, latest, self.head))
 
 
 class LineField:
     """A true two-dimensional line source: the pulse itself with its front, plus a tabulated wake."""
 
-    def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray, latest: float) -> None:
-        self._pulse, self._start = pulse, distance - 1.0
+    def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray, latest: float, head: float = 1.0) -> None:
+        self._pulse, self._start = pulse, distance - head
         self._range, self._ray = rays(distance, x, y)
-        self._path, self._spread = path_to(distance, x, y, NEAREST), np.sqrt(self._start / self._range)
+        self._path, self._spread = path_to(distance, x, y, NEAREST, head), np.sqrt(self._start / self._range)
         self._wakes: dict[int, Callable[[float, FloatArray], FloatArray]] = {}
         self._latest = latest
 

@@ -1,6 +1,8 @@
 """A plane wave travelling towards theta = 180 degrees, or inclined to the cross-section by alpha towards +z:
 
-    p = f(x),    v = f(x) along the direction of travel,    x = t - [(1 - r cos theta) cos alpha + z sin alpha].
+    p = f(x),    v = f(x) along the direction of travel,    x = t - [(b - r cos theta) cos alpha + z sin alpha],
+
+b the radius of the surface on which the head point lies.
 
 Its trace runs along z at 1/sin alpha. In the Laplace domain everything goes with e^{-s z sin alpha}, an axial wavenumber for each node,
 
@@ -24,16 +26,19 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 
 @dataclass(frozen=True)
 class PlaneGeometry:
-    """Plane wave, e^{-kappa(1 - r cos theta)} in the plane z = 0.
+    """Plane wave, e^{-kappa(b - r cos theta)} in the plane z = 0.
 
     Attributes
     ----------
     inclination : float
         alpha, degrees by which its direction of travel leaves the cross-section towards +z, between -90 and 90. Its modes are then those
         of the wavenumber -i s sin alpha.
+    head : float
+        b, in units of a.
     """
 
     inclination: float = 0.0
+    head: float = 1.0
     distance = None
     along_rays = True
 
@@ -43,47 +48,47 @@ class PlaneGeometry:
         return math.sin(math.radians(self.inclination))
 
     def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
-        """Return L_m = -eps_m e^{-kappa}/(kappa K_m'(kappa)), from the Wronskian I_m K_m' - I_m' K_m = -1/kappa."""
+        """Return L_m = -eps_m e^{-kappa b}/(kappa b K_m'(kappa b)), from the Wronskian I_m K_m' - I_m' K_m = -1/(kappa b)."""
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
-            surface = basis.surface
-            return -modes.neumann * _inverse_k(surface) * surface.exterior
+            surface = basis(1.0, self.head)
+            return -modes.neumann / self.head * _inverse_k(surface) * surface.exterior
 
         return load
 
     def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-        """Return the modal pressure and slope at r = 1 of a unit pulse."""
+        """Return the modal pressure and slope at r = b of a unit pulse."""
         return incident_of_regular(self, grid, basis)
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> PlaneField:
         """Return the wave at points of the plane z = 0."""
-        return PlaneField(pulse, x, y, self.inclination)
+        return PlaneField(pulse, x, y, self.inclination, self.head)
 
     def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> SpatialPlaneField:
         """Return the wave at points in space."""
-        return SpatialPlaneField(pulse, x, y, z, self.inclination)
+        return SpatialPlaneField(pulse, x, y, z, self.inclination, self.head)
 
 
 def _inverse_k(surface: RadialFunctions) -> ComplexArray:
-    """Return e^{-kappa}/K_m(kappa), shape (orders, nodes)."""
+    """Return e^{-kappa b}/K_m(kappa b), shape (orders, nodes)."""
     if surface.sparse:
         return np.asarray(np.exp(-surface.k_sample.exponent) / surface.k_sample.mantissa, dtype=np.complex128)
-    return surface.keep(br.running_product(1.0 / br.kve(0, surface.kappa), 1.0 / surface.k_ratios))
+    return surface.keep(br.running_product(1.0 / br.kve(0, surface.argument), 1.0 / surface.k_ratios))
 
 
 class PlaneField:
     """A plane wave travelling towards -x, in the plane z = 0."""
 
-    def __init__(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, inclination: float = 0.0) -> None:
+    def __init__(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, inclination: float = 0.0, head: float = 1.0) -> None:
         self._pulse, self._across = pulse, math.cos(math.radians(inclination))
-        self._path = (1.0 - x) * self._across
+        self._path = (head - x) * self._across
 
     def pressure(self, time: float) -> FloatArray:
-        """Return f(t - (1 - x) cos alpha)."""
+        """Return f(t - (b - x) cos alpha)."""
         return self._pulse.history(time - self._path)
 
     def velocity(self, time: float) -> tuple[FloatArray, FloatArray]:
-        """Return -cos alpha f(t - (1 - x) cos alpha) and 0."""
+        """Return -cos alpha f(t - (b - x) cos alpha) and 0."""
         along = self._across * self.pressure(time)
         return -along, np.zeros_like(along)
 
@@ -91,12 +96,14 @@ class PlaneField:
 class SpatialPlaneField:
     """A plane wave in space, which travels along (-cos alpha, 0, sin alpha)."""
 
-    def __init__(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, inclination: float = 0.0) -> None:
+    def __init__(
+        self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, inclination: float = 0.0, head: float = 1.0
+    ) -> None:
         self._pulse, self._ray = pulse, (-math.cos(math.radians(inclination)), math.sin(math.radians(inclination)))
-        self._path = (1.0 - x) * -self._ray[0] + z * self._ray[1] + 0.0 * y
+        self._path = (head - x) * -self._ray[0] + z * self._ray[1] + 0.0 * y
 
     def pressure(self, time: float) -> FloatArray:
-        """Return f(t - (1 - x) cos alpha - z sin alpha)."""
+        """Return f(t - (b - x) cos alpha - z sin alpha)."""
         return self._pulse.history(time - self._path)
 
     def velocity(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:

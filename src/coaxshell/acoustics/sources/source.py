@@ -1,9 +1,9 @@
-"""What a source must tell: the modal load of a unit pulse on the surface r = 1, and the wave itself where nothing stands in its way.
+"""What a source must tell: its modal load on the outermost surface, r = b, and the wave itself where nothing stands in its way.
 
-Each geometry is normalised so that the free-field pressure at the head (r = 1, theta = 0) is the pulse itself, whose front
-arrives there at t = 0. In the Laplace domain the load of a pulse f, incident plus rigidly scattered, is f(s) L_m(s); the rigid
-scattering cancels the incident normal velocity, p_d = s B_m K_m/(kappa K_m'), B_m the modal radial velocity of the incident wave at
-r = 1. At an axial wavenumber k the free field at the head is the pulse times cos kz.
+Each geometry is normalised so that the free-field pressure at the head (r = b, theta = 0; b = 1 unless true faces are wetted) is
+the pulse itself, whose front arrives there at t = 0. In the Laplace domain the load of a pulse f, incident plus rigidly scattered, is
+f(s) L_m(s); the rigid scattering cancels the incident normal velocity, p_d = s B_m K_m/(kappa K_m'), B_m the modal radial velocity of the
+incident wave at r = b. At an axial wavenumber k the free field at the head is the pulse times cos kz.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class TimeFunction:
 
 
 class FreeField(Protocol):
-    """An incident wave at points: the source lies on the positive x axis, its front reaches x = 1, y = 0 at t = 0.
+    """An incident wave at points: the source lies on the positive x axis, its front reaches the head at t = 0.
 
     Velocities are in units of c_e, pressures in rho_e c_e^2.
     """
@@ -73,6 +73,11 @@ class SourceGeometry(Hashable, Protocol):
         ...
 
     @property
+    def head(self) -> float:
+        """Distance of the head point from the axis, in units of a: the radius b of the surface that the exterior fluid wets."""
+        ...
+
+    @property
     def along_rays(self) -> bool:
         """Whether the wave is its pulse carried along rays, so that its load in time is an integral over the wetted arc."""
         ...
@@ -82,7 +87,7 @@ class SourceGeometry(Hashable, Protocol):
         ...
 
     def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-        """Return the modal pressure and slope dp/dr at r = 1 of a unit pulse without any scattering, at all nodes of a grid."""
+        """Return the modal pressure and slope dp/dr at the head's radius of a unit pulse without any scattering, at all nodes of a grid."""
         ...
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> FreeField:
@@ -121,11 +126,11 @@ class UniformField:
 
 
 def incident_of_regular(geometry: SourceGeometry, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-    """Return the modal pressure P0 and slope dp0/dr at r = 1 of a wave that is regular inside r = 1, each (orders, nodes).
+    """Return the modal pressure P0 and slope dp0/dr at r = b of a wave that is regular inside r = b, each (orders, nodes).
 
     It has P0 = D dp0/dr with D = I_m/(kappa I_m'), and its load is L = P0 - E dp0/dr with E = K_m/(kappa K_m'), so dp0/dr = L/(D - E).
     """
-    surface = basis.surface
+    surface = basis(1.0, geometry.head)
     slope = geometry.prepare(grid, basis.modes)(basis, slice(0, grid.nodes.size)) / (surface.disc - surface.exterior)
     return surface.disc * slope, slope
 

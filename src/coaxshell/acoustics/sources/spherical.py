@@ -1,6 +1,7 @@
 """The paper's wave, a slice through a spherical one (Eq. 2).
 
-With R the distance from the source, S = R0 - 1, x = t - (R - S) the time since the front and F the integral of the pulse f,
+With R the distance from the source, S = R0 - b, b the radius on which the head point lies, x = t - (R - S) the time since the front and F
+the integral of the pulse f,
 
     p = (S/R) f(x),        v = (S/R) [f(x) + F(x)/R] away from the source (afterflow).
 
@@ -26,6 +27,7 @@ class SphericalGeometry:
     """A slice through a spherical wave, (S/R) e^{-s(R - S)} with R the distance from the source."""
 
     distance: float
+    head: float = 1.0
     along_rays = True
 
     def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
@@ -33,30 +35,30 @@ class SphericalGeometry:
         pressure, acceleration = self.projections(grid, modes)
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
-            return pressure[:, nodes] + acceleration[:, nodes] * basis.surface.exterior
+            return pressure[:, nodes] + acceleration[:, nodes] * basis(1.0, self.head).exterior
 
         return load
 
     def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-        """Return the modal pressure and slope at r = 1 of a unit pulse."""
+        """Return the modal pressure and slope at r = b of a unit pulse."""
         pressure, acceleration = self.projections(grid, basis.modes)
         return pressure, -acceleration
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> SphericalField:
         """Return the wave at points."""
-        return SphericalField(pulse, self.distance, x, y)
+        return SphericalField(pulse, self.distance, x, y, self.head)
 
     def projections(self, grid: LaplaceGrid, modes: Modes) -> tuple[ComplexArray, ComplexArray]:
-        """Return the modal pressure and radial acceleration s v0 at r = 1 of a unit pulse, each (orders, nodes).
+        """Return the modal pressure and radial acceleration s v0 at r = b of a unit pulse, each (orders, nodes).
 
         v0 = (S/R) dR/dr [1 + 1/(sR)] e^{-s(R - S)}, of which the second term is the afterflow. The projections
         (1/(beta pi)) * integral of (...) cos(m theta) are taken by the trapezoidal rule in theta, exact to rounding once it
         resolves the highest frequency because the integrand is periodic and band limited: its bandwidth is
-        |s| max|dR/dtheta| + m = |s| + M.
+        |s| max|dR/dtheta| + m = |s| b + M.
         """
-        points = int(1.05 * (grid.nyquist + float(modes.max_order))) + 64
+        points = int(1.05 * (grid.nyquist * self.head + float(modes.max_order))) + 64
         theta = np.pi * (np.arange(points) + 0.5) / points
-        rays = surface_rays(theta, self.distance)
+        rays = surface_rays(theta, self.distance, self.head)
         amplitude = rays.spread / points
         cosines = np.cos(theta[:, None] * modes.orders) * modes.neumann.T
         shapes = np.stack([amplitude, amplitude * rays.slope, amplitude * rays.slope * rays.curvature], axis=1)
@@ -73,10 +75,10 @@ class SphericalGeometry:
 class SphericalField:
     """The paper's wave, a slice through a spherical one (Eq. 2)."""
 
-    def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray) -> None:
+    def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray, head: float = 1.0) -> None:
         self._pulse = pulse
         self._range, self._ray = rays(distance, x, y)
-        self._path, self._spread = path_to(distance, x, y, NEAREST), (distance - 1.0) / self._range
+        self._path, self._spread = path_to(distance, x, y, NEAREST, head), (distance - head) / self._range
 
     def pressure(self, time: float) -> FloatArray:
         """Return (S/R) f(x)."""

@@ -28,8 +28,9 @@ def modal_spectra(system: System, grid: LaplaceGrid, modes: Modes) -> ComplexArr
     distance = system.source_distance(source)
     assert distance is not None
     modal = ModalSystem(problem, grid.nodes, modes)
-    unit = SphericalFrontGeometry(distance / problem.scales.length).prepare(grid, modes)(modal.radial, slice(0, grid.nodes.size))
-    normal = modal.solve(len(problem.shells) - 1, unit * source_spectrum(problem, source, grid.nodes))
+    geometry = SphericalFrontGeometry(distance / problem.scales.length, problem.head)
+    unit = geometry.prepare(grid, modes)(modal.radial, slice(0, grid.nodes.size))
+    normal = modal.solve_outside(unit * source_spectrum(problem, source, grid.nodes))
     axial = [wall.axial * w if wall.axial is not None else 0 * w for wall, w in zip(modal.shells, normal, strict=True)]
     return np.array([normal, modal.tangential(normal), axial])
 

@@ -163,9 +163,9 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     fluid = problem.fluids[region]
     if fluid is None:
         return None
-    walls = (region,) if region == 0 else (region - 1, region)
-    band = band_of(motion, walls)
-    inner, outer = problem.shells[region - 1].radius if region else 0.0, problem.shells[region].radius
+    inner, outer = problem.shells[region - 1].wetted[1] if region else 0.0, problem.shells[region].wetted[0]
+    walls = {region: outer} if region == 0 else {region - 1: inner, region: outer}
+    band = band_of(motion, tuple(walls))
     sampler = Sampler(motion.grid, motion.every)
     width = max(16, _BLOCK_ELEMENTS // motion.modes.count)
     blocks = [_block(motion, fluid, walls, band.window, part) for part in sampler.blocks(band.window.size, width)]
@@ -184,10 +184,10 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     return FluidEnergy(*total)
 
 
-def _block(motion: Motion, fluid: FluidRegion, walls: tuple[int, ...], window: FloatArray, nodes: slice) -> _Block:
-    """Return what the fields at a block of nodes share: functions and weighted slopes at the walls."""
+def _block(motion: Motion, fluid: FluidRegion, walls: dict[int, float], window: FloatArray, nodes: slice) -> _Block:
+    """Return what the fields at a block of nodes share: functions and weighted slopes at the walls, given with their wetted radii."""
     radial = RadialBasis(motion.modes, motion.grid.nodes[nodes])
-    at_walls = [radial(fluid.slowness, motion.problem.shells[wall].radius) for wall in walls]
+    at_walls = [radial(fluid.slowness, radius) for radius in walls.values()]
     # Slope of Pi at a wall: rho s w.
     slopes = [fluid.density * motion.normal_velocity[wall, :, :, nodes] * window[nodes] for wall in walls]
     inner, outer = at_walls[0], at_walls[-1]

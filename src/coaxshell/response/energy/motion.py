@@ -20,7 +20,7 @@ from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
 Incident = Callable[[RadialBasis], tuple[ComplexArray, ComplexArray]]
-"""From the radial functions at all nodes to the modal pressure of the undisturbed waves at r = 1 and its slope."""
+"""From the radial functions at all nodes to the modal pressure of the undisturbed waves at the outermost surface and its slope."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class Motion:
     every : int
         Stores are taken at every such instant of the grid.
     incident : callable
-        The waves as if nothing were there, at r = 1.
+        The waves as if nothing were there, at the outermost surface.
     links : LinkMotion or None
         Of the absorbers, if there are any.
     actuation : ndarray, shape (shells, parities, M + 1, T), or None

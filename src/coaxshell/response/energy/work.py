@@ -42,7 +42,7 @@ def surface_pressures(motion: Motion) -> SurfacePressures:
     """Return the three parts of the pressure on the outermost surface."""
     s = motion.grid.nodes
     radial = RadialBasis(motion.modes, s)
-    surface = radial.surface
+    surface = radial(1.0, motion.problem.head)
     incident, slope = motion.incident(radial)
     return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * motion.normal[-1])
 
@@ -58,7 +58,7 @@ class SurfaceWork:
     ----------
     grid : LaplaceGrid
     weight : ndarray, shape (M + 1,)
-        Integral over the surface of cos^2(m theta): beta pi R.
+        Integral over the surface of cos^2(m theta): beta pi times its radius.
     velocity : ndarray, shape (parities, M + 1, nodes)
         Transforms of the velocity, in the direction in which the pressures push.
     """

@@ -109,7 +109,7 @@ class CutField:
     def _of_sources(self) -> tuple[np.ndarray, SpatialIncident]:
         """Return the incident waves outside the outermost shell, at which points of a section: exact, (z, points)."""
         cut, grid = self.cut, self.cut.grid
-        at = np.flatnonzero(grid.radius >= 1.0)
+        at = np.flatnonzero(grid.radius >= self._problem.head)
         radius, angle = grid.radius[at], np.radians(grid.angle[at])
         z, x = (each.ravel() for each in np.meshgrid(cut.z, radius * np.cos(angle), indexing="ij"))
         y = np.tile(radius * np.sin(angle), cut.z.size)

@@ -77,7 +77,7 @@ def add_incident(
     results: list[FloatArray], spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
 ) -> None:
     """Add the incident waves, exact in space, and in time too unless fronts are to match the scattered part's, outside the shells."""
-    outside = np.flatnonzero(grid.radius >= 1.0)
+    outside = np.flatnonzero(grid.radius >= spectra.problem.head)
     cos, sin = np.cos(np.radians(grid.angle[outside])), np.sin(np.radians(grid.angle[outside]))
     smooth = band(spectra.grid, asked.resolution) if asked.front == "matched" else None
     incident = Incident(spectra.problem, grid.radius[outside] * cos, grid.radius[outside] * sin, float(times.max()), smooth)

@@ -67,7 +67,7 @@ def region_slopes(
     normal : ndarray, shape (shells, parities, orders, nodes)
         W.
     incident : callable
-        Gives the slope of the incident wave at r = 1, shape (1 or 2, orders, nodes).
+        Gives the slope of the incident wave at the outermost surface, shape (1 or 2, orders, nodes).
     radial : RadialBasis
         Of the same orders and nodes.
     """

@@ -195,7 +195,7 @@ SMEAR = 20
 
 @dataclass(frozen=True)
 class Region:
-    """One fluid between two mid-surfaces.
+    """One fluid between the surfaces of walls that it wets.
 
     Attributes
     ----------
@@ -229,22 +229,30 @@ class Members(NamedTuple):
 
 def regions(problem: Problem) -> tuple[Region, ...]:
     """Return the fluid regions from the inside out."""
-    edges = [0.0, *(shell.radius for shell in problem.shells), np.inf]
+    inner = [0.0, *(shell.wetted[1] for shell in problem.shells)]
+    outer = [*(shell.wetted[0] for shell in problem.shells), np.inf]
     last = len(problem.fluids) - 1
-    return tuple(Region(i, edges[i], edges[i + 1], fluid, i == last) for i, fluid in enumerate(problem.fluids))
+    return tuple(Region(i, inner[i], outer[i], fluid, i == last) for i, fluid in enumerate(problem.fluids))
 
 
 def split(problem: Problem, radius: FloatArray) -> list[Members]:
-    """Return the regions that hold some of the radii; walls have no thickness, and a radius on a mid-surface lies outside of it."""
-    edges = np.array([shell.radius for shell in problem.shells])
-    index = np.searchsorted(edges, radius, side="right")
-    return [Members(region, np.flatnonzero(index == region.index)) for region in regions(problem) if np.any(index == region.index)]
+    """Return the regions that hold some of the radii.
+
+    A wall wetted at its mid-surface has no thickness, and a radius on it lies outside of it; what lies between wetted faces is in no fluid.
+    """
+    found = []
+    for region in regions(problem):
+        wall_follows = region.index < len(problem.shells) and len(set(problem.shells[region.index].wetted)) == 2
+        within = (radius >= region.inner) & ((radius <= region.outer) if wall_follows else (radius < region.outer))
+        if within.any():
+            found.append(Members(region, np.flatnonzero(within)))
+    return found
 
 
 def reach(problem: Problem, times: FloatArray, resolution: float) -> float:
-    """Return the radius beyond which there is no scattered wave yet at any of the times: 1 + t after the first front, and its smear."""
+    """Return the radius beyond which there is no scattered wave yet at any of the times: t beyond the head, and the first front's smear."""
     first = min(source.delay for source in problem.system.sources) / problem.scales.time
-    return float(1.0 + times.max() - first + SMEAR * resolution)
+    return float(problem.head + times.max() - first + SMEAR * resolution)
 
 
 EXTERIOR_RADIUS = 3.0

@@ -57,7 +57,7 @@ class Drive:
     normal : ndarray, shape (shells, families, parities, orders, nodes)
         W.
     incident : ndarray, shape (families, parities, orders, nodes)
-        Slope of the incident wave at r = 1.
+        Slope of the incident wave at the outermost surface.
     """
 
     radial: RadialBasis

@@ -1,6 +1,6 @@
 """How far a spherical shock is felt along the axis, and when: by whichever wave gets there first.
 
-A front from a point at the distance S + 1 from the axis, fired at t = -S, runs along the head line of the wall (r = 1) to z at
+A front from a point at the distance S from the head, fired at t = -S, runs along the head line of the wall to z at
 t = sqrt(S^2 + z^2) - S. A wave of speed c > 1 (in c_e), in another fluid or in a wall, leaves it behind: from
 
     z_0 = S/sqrt(c^2 - 1)    on it arrives at z at    t = (z + S sqrt(c^2 - 1))/c - S,

@@ -55,7 +55,7 @@ class WaveMotion:
     _grid: LaplaceGrid
 
     def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
-        """Return modal pressure and slope dp/dr at r = 1 of the waves as if nothing were there, each (parities, orders, nodes)."""
+        """Return modal pressure and slope dp/dr on the outermost surface as if nothing were there, each (parities, orders, nodes)."""
         parities = source_parities(self._problem.system.sources)
         found = [np.stack(incident_of(family.groups, parities, self._grid, basis)) for family in self._families]
         pressure, slope = _superposed(self._shares, found)

@@ -170,7 +170,7 @@ def spherical_fronts(problem: Problem) -> list[Front]:
     """Return the fronts of the spherical sources of a problem."""
     length, time = problem.scales.length, problem.scales.time
     return [
-        Front(getattr(source, "z", 0.0) / length, geometry.distance - 1.0, source.delay / time)
+        Front(getattr(source, "z", 0.0) / length, geometry.distance - geometry.head, source.delay / time)
         for source, geometry in zip(problem.system.sources, problem.sources, strict=True)
         if isinstance(geometry, SphericalFrontGeometry)
     ]

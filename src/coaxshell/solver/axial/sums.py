@@ -83,15 +83,13 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
 
 def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
     """Return W, V, U and potentials of a wave under the loads of a family, (3 + layers, shells, parities, orders, nodes)."""
-    modes, last = system.modes, len(problem.shells) - 1
-    layers, motions = piezoelectric_layers(problem), []
+    modes, layers, motions = system.modes, piezoelectric_layers(problem), []
     units = [(group.geometry.prepare(grid, modes)(system.radial, block), group) for group in family.groups]
     on_outermost = superposed(family.parities, modes, units) if units else []
     forces = {} if family.forces is None else family.forces.loads(problem, modes, odd=family.odd_forces)
     for parity in range(family.parities):
-        loads = [(last, on_outermost[parity])] if units else []
-        loads += [(shell, pressures[parity]) for shell, pressures in forces.items()]
-        each = [system.solve(shell, load) for shell, load in loads]
+        each = [system.solve_outside(on_outermost[parity])] if units else []
+        each += [system.solve(shell, pressures[parity]) for shell, pressures in forces.items()]
         normal = [np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)]
         motion = [normal, system.tangential(normal), system.axial(normal)]
         motions.append(np.array([*motion, *_potentials(problem, modes, layers, *motion)]))

@@ -13,7 +13,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
 from coaxshell.solver.cost import require_room
-from coaxshell.solver.dimensions import require_two_dimensions
+from coaxshell.solver.dimensions import require_mid_surfaces, require_two_dimensions
 from coaxshell.solver.direct.engine import march_directly
 from coaxshell.solver.direct.result import DirectResult
 from coaxshell.solver.estimates import ORDERS_FACTOR
@@ -40,10 +40,11 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     Raises
     ------
     InputError
-        If the feedback or the step is unstable, or a source lies off the plane.
+        If the feedback or the step is unstable, a source lies off the plane, or the fluids wet true faces.
     """
     stopwatch = Stopwatch()
     require_two_dimensions(system, settings)
+    require_mid_surfaces(system)
     problem = dimensionless(system)
     grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
     require_room(problem, settings)

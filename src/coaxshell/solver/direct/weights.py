@@ -12,7 +12,7 @@ from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import fluid_matrix
-from coaxshell.solver.kernels import exponential_weights
+from coaxshell.solver.kernels import exponential_weights, resistance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 
@@ -40,7 +40,7 @@ def fluid_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray) -> Fl
     map_node_blocks(node_blocks(grid, orders.size - 1), work, None, "response functions")
     weights = np.empty((count, count, orders.size, grid.time.size))
     for i in range(count):
-        impedance = sum(fluid.density / fluid.slowness for fluid in problem.fluids[i : i + 2] if fluid is not None)
+        impedance = resistance(problem, i)
         for j in range(count):
             front = impedance if i == j else 0.0
             weights[i, j] = front_weights(grid, spectrum[i, j], np.full((orders.size, 1), front))

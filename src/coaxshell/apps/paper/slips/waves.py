@@ -11,7 +11,7 @@ from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.scaling import Problem
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ReversedDiffraction(SphericalGeometry):
     """The wave whose diffracted part has the wrong sign: its velocity is doubled at the shell instead of cancelled (B.3 with B.7)."""
 
@@ -22,7 +22,7 @@ class ReversedDiffraction(SphericalGeometry):
         return -self.carried.acceleration(front, afterflow, s)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PrintedPotential(SphericalGeometry):
     """The wave with the velocity of the printed potential, -(lambda p S/R) e^{-x/lambda} H(x).
 
@@ -44,7 +44,7 @@ class PrintedPotential(SphericalGeometry):
 def reversed_diffraction(problem: Problem) -> Problem:
     """Return the problem with psi_d = +B Xi_e and Xi_e = K_m/(s K_m') as printed: the diffracted pressure changes its sign."""
     waves = (_spherical(geometry) for geometry in problem.sources)
-    return replace(problem, sources=tuple(ReversedDiffraction(wave.distance, wave) for wave in waves))
+    return replace(problem, sources=tuple(ReversedDiffraction(wave.distance, wave.head, carried=wave) for wave in waves))
 
 
 def printed_potential(problem: Problem, impulse: bool) -> Problem:
@@ -54,7 +54,7 @@ def printed_potential(problem: Problem, impulse: bool) -> Problem:
         wave = _spherical(geometry)
         if not isinstance(source.pulse, Exponential):
             raise InputError("source", "has no decay time, and the printed potential is that of a decaying exponential", "give a shock")
-        sources.append(PrintedPotential(wave.distance, source.pulse.decay_time / problem.scales.time, impulse))
+        sources.append(PrintedPotential(wave.distance, wave.head, decay=source.pulse.decay_time / problem.scales.time, impulse=impulse))
     return replace(problem, sources=tuple(sources))
 
 

@@ -115,7 +115,7 @@ def reciprocity(system: System, k: float) -> float:
     """
     problem, modes = dimensionless(system), Modes.up_to(20, k)
     modal = ModalSystem(problem, S, modes)
-    moved = modal.solve(len(problem.shells) - 1, SphericalFrontGeometry(DISTANCE).prepare(GRID, modes)(modal.radial, EVERYWHERE))
+    moved = modal.solve_outside(SphericalFrontGeometry(DISTANCE).prepare(GRID, modes)(modal.radial, EVERYWHERE))
     kappa, m = _kappa(k), modes.column
     radiated = _at_source(m, k) / (m * kve(m, kappa) - kappa * kve(m + 1, kappa))
     found = []
@@ -133,7 +133,7 @@ def reciprocity_outside(system: System, k: float) -> float:
     scattered = []
     for source, point in (places, places[::-1]):
         geometry, start = SphericalFrontGeometry(source), source - 1.0
-        moved = modal.solve(len(problem.shells) - 1, geometry.prepare(GRID, modes)(modal.radial, EVERYWHERE))[-1]
+        moved = modal.solve_outside(geometry.prepare(GRID, modes)(modal.radial, EVERYWHERE))[-1]
         slope = S**2 * moved - geometry.incident(GRID, modal.radial)[1]
         scattered.append(slope * exterior_field(modal.radial(1.0, point), modal.radial.surface).pressure / start * np.exp(-S * start))
     size = np.abs(scattered[0]).max(axis=-1, keepdims=True)

@@ -60,7 +60,7 @@ def _ours(ka: FloatArray) -> tuple[FloatArray, FloatArray]:
     surface = modal.radial.surface
     load = PlaneGeometry().prepare(LaplaceGrid(0.1, 8), modal.modes)(modal.radial, slice(None))
     slope = load / (surface.disc - surface.exterior)  # of the incident wave
-    moved = s * s * modal.solve(0, load)[0]
+    moved = s * s * modal.solve_outside(load)[0]
     away = surface.exterior * outgoing(modal.radial(1.0, FAR), surface) * (np.sqrt(2 * FAR) * np.exp(SHIFT * FAR))
     return np.abs((-slope * away).sum(axis=0)), np.abs(((moved - slope) * away).sum(axis=0))
 

@@ -33,7 +33,7 @@ class Region(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Matrices of one order and the place of the potential at r = 1 outside."""
+    """Matrices of one order and the place of the potential at the outermost surface outside."""
 
     mass: FloatArray
     damping: FloatArray
@@ -60,14 +60,18 @@ class Assembly:
         walls = tuple(Wall.of(shell) for shell in system.shells if isinstance(shell, Shell))
         if len(walls) != len(system.shells):
             raise NotImplementedError("the independent solver has no rigid shells")
-        edges = [0.0, *(w.radius / a for w in walls), 1.0 + duration / 2 + MARGIN]
+        inner = [0.0, *(w.wetted[1] / a for w in walls)]
+        outer = [*(w.wetted[0] / a for w in walls), inner[-1] + duration / 2 + MARGIN]
         regions = tuple(
-            Region(fluid.density / rho, c / fluid.sound_speed, elements(edges[j], edges[j + 1], element))
-            if isinstance(fluid, Fluid)
-            else None
+            Region(fluid.density / rho, c / fluid.sound_speed, elements(inner[j], outer[j], element)) if isinstance(fluid, Fluid) else None
             for j, fluid in enumerate(system.fluids)
         )
         return cls(system, a, a / c, rho * c**2, walls, regions, wavenumber)
+
+    @property
+    def head(self) -> float:
+        """Radius of the surface that the exterior fluid wets, in a."""
+        return self.walls[-1].wetted[1] / self.length
 
     @property
     def saturates(self) -> bool:
@@ -94,7 +98,7 @@ class Assembly:
         stiffness[rows, rows] = rho * (radial.radial + m * m * radial.angular + self.wavenumber**2 * radial.mass)
         for i, point, sign in ((j - 1, rows.start, 1), (j, rows.stop - 1, -1)):  # outside of shell j - 1, inside of shell j
             if 0 <= i < n:
-                radius = self.walls[i].radius / self.length
+                radius = self.walls[i].wetted[int(sign > 0)] / self.length
                 damping[point, n + i] = -sign * rho * radius
                 damping[n + i, point] = sign * rho * radius
         if radial.nodes[0] == 0 and m > 0:  # the potential of order m vanishes on the axis

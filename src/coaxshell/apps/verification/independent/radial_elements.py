@@ -87,7 +87,7 @@ class RadialElements:
         return int(self._m.shape[0])
 
     def load(self, time: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-        """Return g(t) and its rows: incident pressure on the outer shell, minus its normal velocity into the scattered wave."""
+        """Return g(t) and its rows, per angle: incident pressure on the outer shell, minus its normal velocity into the scattered wave."""
         n, g = len(self.assembly.walls), np.zeros((2, len(self.blocks), len(time)))
         for source, distance in zip(self.system.sources, self.system.source_distances, strict=True):
             late = np.asarray(time) - source.delay / self.assembly.transit
@@ -95,19 +95,24 @@ class RadialElements:
             for row, (parity, m) in enumerate(self.blocks):
                 turn = shape(parity, m, np.radians(source.angle))
                 for k, wave in enumerate(waves):
-                    g[k, row] += turn * wave[m]
+                    g[k, row] += turn * wave[m] * self.assembly.head
         return g.reshape(-1, len(time)), np.concatenate([self._starts + 2 * n - 1, self._starts + self._exterior])
 
     def _incident(self, source: Source, distance: float | None, time: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return modal pressure and radial velocity of a source about its own axis, each of shape (orders, T)."""
-        units = self.assembly.transit, self.assembly.pressure
-        far = None if distance is None else distance / self.assembly.length
+        """Return modal pressure and radial velocity of a source about its own axis, each of shape (orders, T).
+
+        Lengths and times are handed on in units of the outermost surface's radius, so that it is r = 1.
+        """
+        head = self.assembly.head
+        units, time = (self.assembly.transit * head, self.assembly.pressure), time / head
+        far = None if distance is None else distance / self.assembly.length / head
         if source.geometry == "line" or (far is None and self.wavenumber is not None):
             raise NotImplementedError(f"the independent solver has no {source.geometry} source here")
         orders = range(self.modes + 1)
         if far is None or self.wavenumber is None:
             return incident(source.pulse, far, orders, time, *units)
-        return incident_sphere(source.pulse, far, self.wavenumber, orders, time, *units)
+        pressure, velocity = incident_sphere(source.pulse, far, head * self.wavenumber, orders, time, *units)
+        return head * pressure, head * velocity  # integrals along z, in a
 
     def solve(self, time_step: float, steps: int) -> Self:
         """Integrate by Gauss's method of two stages (order 4) and keep V, W, U of every block: ``v``, ``w``, ``u`` (shells, blocks, T)."""

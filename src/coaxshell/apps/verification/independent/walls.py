@@ -93,9 +93,10 @@ class PiezoLayer:
 
 @dataclass
 class Wall:
-    """One shell in SI: mass per area, points through the thickness, piezoelectric layers, modulus and Poisson's ratio of the core."""
+    """One shell in SI: radii of mid-surface and wetted surfaces, mass per area, points through the wall, piezoelectric layers, the core."""
 
     radius: float
+    wetted: tuple[float, float]
     inertia: float = 0.0
     core: float = 0.0
     poisson: float = 0.0
@@ -105,7 +106,7 @@ class Wall:
     @classmethod
     def of(cls, shell: Shell) -> Wall:
         """Return the wall of a shell."""
-        wall, z = cls(shell.radius), -shell.thickness / 2
+        wall, z = cls(shell.radius, shell.wetted_radii), -shell.thickness / 2
         for layer in shell.layers:
             t, x = layer.thickness, layer.material
             q = moduli(x)

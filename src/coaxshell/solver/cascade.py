@@ -1,0 +1,172 @@
+"""Coupling of walls whose two faces move differently: from the inside out, face by face (theory manual, section "Coupled system").
+
+Each wall answers inward loads q on its faces, at the radii r_i and r_o that the fluids wet, by its receptances H
+(:class:`coaxshell.structure.shell_model.FaceReceptance`), and moves by d when no load is on them,
+
+    w_i = H_ii r_i q_i + H_io r_o q_o + d_i,      w_o = H_io r_i q_i + H_oo r_o q_o + d_o.
+
+Seen from its inner face all that lies within is an impedance, p_i = zeta w_i + P, and seen from its outer face wall and inside together are
+a receptance, w_o = y r_o q_o + e,
+
+    y = H_oo - H_io^2 r_i zeta/(1 + H_ii r_i zeta),      e = d_o - H_io r_i [P + zeta (d_i - H_ii r_i P)/(1 + H_ii r_i zeta)].
+
+A gap between this face (a) and the next wall's inner one (b), p = g (aa w_a + ab w_b), (ba w_a + bb w_b), g = rho s^2, makes of it the next
+
+    zeta = g bb + g^2 ba ab y r_o/(1 - g aa y r_o),      P = g ba e/(1 - g aa y r_o).
+
+H is nearly of rank one where a wall is thin; it is never inverted. A thin wall, a rigid one and one of any other theory stand side by side.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.operators import annulus
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.solver.scaling import Problem
+
+Entry = ComplexArray | float
+
+
+class FaceMotion(NamedTuple):
+    """Displacements of the faces of one wall and the loads on them, all positive inward, each (orders, nodes).
+
+    Attributes
+    ----------
+    inner, outer : ndarray
+        w_i and w_o.
+    load_inner, load_outer : ndarray
+        q_i and q_o: of the fluids, and what is given on a face.
+    """
+
+    inner: ComplexArray
+    outer: ComplexArray
+    load_inner: ComplexArray
+    load_outer: ComplexArray
+
+
+class _Fluid(NamedTuple):
+    """Pressures of one fluid per displacement of its faces, g aa and so on; 0 where there is none, or no such face."""
+
+    aa: Entry = 0.0
+    ab: Entry = 0.0
+    ba: Entry = 0.0
+    bb: Entry = 0.0
+
+
+class CascadeSystem:
+    """All walls and fluids at some orders and a block of Laplace nodes, each wall by the receptances of its faces.
+
+    Parameters
+    ----------
+    problem : Problem
+    s : ndarray, shape (nodes,)
+    modes : Modes
+    like : CascadeSystem, optional
+        One of the same fluids, radii, nodes and modes, whose Bessel ratios are shared.
+
+    Attributes
+    ----------
+    radial : RadialBasis
+        Bessel ratios of the fluids, reused by the incident wave.
+    walls : list of FaceReceptance
+    """
+
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, like: CascadeSystem | None = None) -> None:
+        self.problem, self.s, self.modes = problem, s, modes
+        self.radial: RadialBasis = RadialBasis(modes, s) if like is None else like.radial
+        self.walls = [wall.receptance(modes, s) for wall in problem.shells]
+        self._radii = [wall.wetted for wall in problem.shells]
+        self._fluids = [self._fluid(i) for i in range(len(problem.fluids))]
+        self._factor()
+
+    def _fluid(self, region: int) -> _Fluid:
+        """Return the operator of one fluid on its faces."""
+        fluid, count = self.problem.fluids[region], len(self.problem.shells)
+        if fluid is None:
+            return _Fluid()
+        sides = [j for j in (region - 1, region) if 0 <= j < count]
+        faces = [self.radial(fluid.slowness, self.problem.shells[j].wetted[int(j < region)]) for j in sides]
+        per = [fluid.density * fluid.wall_motion_factor(j, self.radial) * (self.s * self.s) for j in sides]
+        if region == 0:
+            return _Fluid(bb=per[0] * faces[0].disc)
+        if region == count:
+            return _Fluid(aa=per[0] * faces[0].exterior)
+        gap = annulus(*faces)
+        return _Fluid(per[0] * gap.aa, per[1] * gap.ab, per[0] * gap.ba, per[1] * gap.bb)
+
+    def _factor(self) -> None:
+        """Keep zeta within each wall, y outside it, and the divisors of both."""
+        self._within: list[Entry] = [self._fluids[0].bb]
+        self._wall_divisor: list[Entry] = []
+        self._seen: list[ComplexArray] = []
+        self._gap_divisor: list[ComplexArray] = []
+        for i, (h, (inner, outer)) in enumerate(zip(self.walls, self._radii, strict=True)):
+            zeta, fluid = self._within[i], self._fluids[i + 1]
+            divisor = 1.0 + h.inner * (inner * zeta)
+            y = (h.outer - h.across * h.across * (inner * zeta) / divisor) * outer
+            gap = 1.0 - fluid.aa * y
+            self._wall_divisor.append(divisor)
+            self._seen.append(y)
+            self._gap_divisor.append(gap)
+            self._within.append(fluid.bb + fluid.ba * fluid.ab * y / gap)
+
+    def solve(self, shell: int, load: ComplexArray | float, side: int | None = None) -> list[FaceMotion]:
+        """Return the motion of the faces of every wall under an inward pressure on one of them.
+
+        Parameters
+        ----------
+        shell : int
+        load : ndarray, shape (orders, nodes), or float
+        side : 0, 1 or None
+            On its inner or its outer face; None is on the reference surface of a wall whose faces move alike, as actuators press on it.
+        """
+        h, radius = self.walls[shell], self.problem.shells[shell].radius
+        if side is None:
+            return self.solve_free(shell, h.inner * (radius * load), h.outer * (radius * load))
+        own = h.inner if side == 0 else h.outer
+        at_inner, at_outer = (own, h.across) if side == 0 else (h.across, own)
+        pressed = self._radii[shell][side] * load
+        found = self.solve_free(shell, at_inner * pressed, at_outer * pressed)
+        given = found[shell]
+        if side == 0:
+            found[shell] = given._replace(load_inner=given.load_inner + load)
+        else:
+            found[shell] = given._replace(load_outer=given.load_outer + load)
+        return found
+
+    def solve_outside(self, pressure: ComplexArray) -> list[FaceMotion]:
+        """Return the motion of all faces under a pressure on the surface that the exterior fluid wets."""
+        return self.solve(len(self.walls) - 1, pressure, side=1)
+
+    def solve_free(self, shell: int, inner: ComplexArray, outer: ComplexArray) -> list[FaceMotion]:
+        """Return the motion of all faces where one wall would move by d_i and d_o if no fluid held it, as an actuator within it does."""
+        count, still = len(self.walls), np.zeros((self.modes.count, self.s.size), np.complex128)
+        free_inner, driven, pressures = [still] * count, [still] * count, [still] * (count + 1)
+        for i in range(shell, count):
+            h, zeta, radius = self.walls[i], self._within[i], self._radii[i][0]
+            d_inner, d_outer = (inner, outer) if i == shell else (still, still)
+            free_inner[i] = d_inner - h.inner * (radius * pressures[i])
+            within = pressures[i] + zeta * free_inner[i] / self._wall_divisor[i]
+            driven[i] = d_outer - h.across * (radius * within)
+            pressures[i + 1] = self._fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
+        found: list[FaceMotion] = []
+        beyond = still  # the next wall's inner face
+        for i in reversed(range(count)):
+            h, fluid = self.walls[i], self._fluids[i + 1]
+            load = (fluid.aa * driven[i] + fluid.ab * beyond) / self._gap_divisor[i]
+            w_outer = driven[i] + self._seen[i] * load
+            w_inner = (h.across * (self._radii[i][1] * load) + free_inner[i]) / self._wall_divisor[i]
+            found.append(FaceMotion(w_inner, w_outer, -(self._within[i] * w_inner + pressures[i]), load))
+            beyond = w_inner
+        return found[::-1]
+
+    def determinant(self) -> ComplexArray:
+        """Return what vanishes at the poles of the response, shape (orders, nodes): of thin walls the tridiagonal system's determinant."""
+        total: ComplexArray = np.ones((self.modes.count, self.s.size), np.complex128)
+        for h, wall, gap in zip(self.walls, self._wall_divisor, self._gap_divisor, strict=True):
+            total = total * h.characteristic * wall * gap
+        return total

@@ -1,0 +1,202 @@
+"""Fluids at the true faces of walls: loads by similarity, Lamé's static solution, exact elastic walls, energy, three dimensions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.acoustics.sources import LineGeometry, PlaneGeometry, SourceGeometry, SphericalFrontGeometry, SphericalGeometry
+from coaxshell.apps.verification.independent import RadialElements
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.cascade import CascadeSystem
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.scaling import dimensionless
+from coaxshell.structure.rigid import RigidWall
+
+WATER = cx.Fluid(density=1000, sound_speed=1400)
+STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=210e9, poisson_ratio=0.3)
+TRANSIT = 1.0 / 1400.0
+PULSE = cx.Gaussian(peak_pressure=2.5e4, width=0.1 * TRANSIT, centre=0.6 * TRANSIT)
+SHOCK = cx.PlaneShock(peak_pressure=2.5e4, decay_time=1.314e-4)
+REFERENCE = Path(__file__).parents[1] / "reference" / "data" / "elastic_thick_plane.npz"
+
+
+def double(wetted: str, thickness: tuple[float, float] = (0.03, 0.05), source: cx.Source | None = None) -> cx.System:
+    shells = [cx.Shell(radius=r, layers=[cx.Layer(STEEL, h)], wetted=wetted) for r, h in zip((0.5, 1.0), thickness, strict=True)]
+    return cx.System(shells=shells, fluids=[WATER] * 3, source=source or cx.PlaneWave(pulse=PULSE))
+
+
+@pytest.mark.parametrize("geometry", [PlaneGeometry(0.0), LineGeometry(4.0), SphericalGeometry(4.0)])
+def test_loads_on_a_face_are_those_of_a_surface_in_units_of_its_own(geometry: SourceGeometry) -> None:
+    # Lengths and times in units of the face's radius: the same load at s b, from a source at R0/b.
+    face, modes = 1.3, Modes(np.arange(9.0))
+    grid = LaplaceGrid(0.1, 40)
+    scaled = LaplaceGrid(0.1 / face, 40)
+    own = replace(geometry) if geometry.distance is None else replace(geometry, distance=geometry.distance / face)
+    here = replace(geometry, head=face).prepare(grid, modes)(RadialBasis(modes, grid.nodes), slice(None))
+    np.testing.assert_allclose(scaled.nodes, face * grid.nodes, rtol=1e-12)
+    there = own.prepare(scaled, modes)(RadialBasis(modes, scaled.nodes), slice(None))
+    np.testing.assert_allclose(here, there, rtol=1e-9, atol=1e-12)
+
+
+def test_a_spherical_wave_along_the_axis_loads_a_face_alike() -> None:
+    face, s, k = 1.3, np.array([1.0 + 2.0j, 0.3 + 9.0j]), 2.0
+    grid = LaplaceGrid(0.1, 40)
+    here, there = Modes(np.arange(9.0), k), Modes(np.arange(9.0), k * face)
+    load = SphericalFrontGeometry(4.0, face).prepare(grid, here)(RadialBasis(here, s), slice(None))
+    own = SphericalFrontGeometry(4.0 / face).prepare(grid, there)(RadialBasis(there, face * s), slice(None))
+    np.testing.assert_allclose(load, face * own, rtol=1e-12)  # an integral along z, in units of the face's radius there
+
+
+@pytest.mark.parametrize("geometry", [PlaneGeometry(), LineGeometry(4.0), SphericalGeometry(4.0)])
+def test_the_pulse_is_the_free_field_at_the_head_of_the_face(geometry: SourceGeometry) -> None:
+    from coaxshell.acoustics.sources import TimeFunction
+    from coaxshell.numerics.arrays import FloatArray
+
+    decay = TimeFunction(lambda t: np.where(t >= 0, np.exp(-t), 0.0), lambda t: -np.expm1(-np.maximum(t, 0.0)), lambda s: 1.0 / (s + 1.0))
+    head, aside = np.array([1.3]), np.zeros(1)
+    field = replace(geometry, head=1.3).free_field(decay, head, aside, 2.0)
+    values: list[FloatArray] = [field.pressure(t) for t in (-1e-9, 1e-9, 0.7)]
+    np.testing.assert_allclose(np.concatenate(values), [0.0, 1.0, np.exp(-0.7)], rtol=1e-3, atol=1e-12)
+
+
+def lame(at: float, inner: float, outer: float, within: float, outside: float) -> float:
+    """Return the hoop stress at a radius of a thick ring under pressures on both faces (plane strain)."""
+    square = outer**2 - inner**2
+    mean = (within * inner**2 - outside * outer**2) / square
+    return mean + (within - outside) * (inner * outer / at) ** 2 / square
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_static_stress_against_the_exact_thick_ring(side: int) -> None:
+    # Thin theory: N = -p_o r_o + p_i r_i, exact for the mean over the thickness; at the mid-surface Lame's differs by (t/2R)^2/2.
+    thickness, s, modes = 0.1, np.array([1e-5 + 0j]), Modes(np.zeros(1))
+    shell = cx.Shell(radius=1.0, layers=[cx.Layer(STEEL, thickness)], wetted="faces")
+    system = cx.System(shells=[shell], fluids=[cx.VACUUM, WATER], source=cx.PlaneWave(pulse=PULSE))
+    problem = dimensionless(system)
+    moved = CascadeSystem(problem, s, modes).solve(0, np.ones((1, 1), complex), side)[0].outer[0, 0].real
+    gain = problem.shells[0].stress_gain(modes)
+    stress = gain.w[0] * moved * (1 if side == 1 else -1)  # a load on the inner face is inward, its pressure outward
+    inner, outer = shell.wetted_radii
+    exact = lame(1.0, inner, outer, *((1.0, 0.0) if side == 0 else (0.0, 1.0)))
+    assert stress == pytest.approx((inner if side == 0 else -outer) / thickness, rel=1e-4)
+    assert abs(stress / exact - 1.0) < 0.0016
+    assert (inner, outer) == pytest.approx((0.95, 1.05))
+    thin = (1.0 if side == 0 else -1.0) / thickness
+    assert abs(thin / exact - 1.0) > 0.045
+
+
+def test_a_wall_that_hardly_moves_is_a_rigid_cylinder_of_the_face_s_radius() -> None:
+    heavy = STEEL.replace(density=7.8e9, youngs_modulus=2.1e17)
+    system = double("faces").replace(
+        shells=[cx.Shell(radius=1.0, layers=[cx.Layer(heavy, 0.2)], wetted="faces")], fluids=[cx.VACUUM, WATER]
+    )
+    problem, grid, modes = dimensionless(system), LaplaceGrid(0.1, 40), Modes(np.arange(5.0))
+    modal = ModalSystem(problem, grid.nodes, modes)
+    load = problem.sources[0].prepare(grid, modes)(modal.radial, slice(None))
+    force = modal.solve_outside(load)[0] * modal.shells[0].impedance  # p r_o/R of a wall that does not give way
+    rigid = replace(problem, shells=(RigidWall(radius=1.1),))
+    expected = rigid.sources[0].prepare(grid, modes)(RadialBasis(modes, grid.nodes), slice(None))
+    np.testing.assert_allclose(force, 1.1 * expected, rtol=1e-5)
+
+
+def test_faces_tend_to_the_mid_surface_as_the_thickness() -> None:
+    s, modes = np.array([0.5 + 1.5j, 0.5 + 6.0j]), Modes(np.arange(5.0))
+    differences = []
+    for h in (0.004, 0.002, 0.001):
+        light = STEEL.replace(density=7800 * 0.01 / h, youngs_modulus=2.1e9 / h)  # the same mass and membrane stiffness
+        systems = [
+            double(w).replace(shells=[cx.Shell(radius=1.0, layers=[cx.Layer(light, h)], wetted=w)], fluids=[WATER, WATER])
+            for w in ("faces", "mid-surface")
+        ]
+        there, here = (ModalSystem(dimensionless(one), s, modes).solve_outside(np.ones((5, 2), complex))[0] for one in systems)
+        differences.append(np.abs(there / here - 1.0).max())
+    assert differences[0] < 0.05
+    np.testing.assert_allclose(np.divide(differences[:-1], differences[1:]), 2.0, rtol=0.03)
+
+
+def test_maxwell_betti_between_faces() -> None:
+    problem, s, modes = dimensionless(double("faces")), np.array([0.3 + 0.2j, 1.0 + 25.0j]), Modes(np.arange(6.0))
+    system = ModalSystem(problem, s, modes)
+    inner, outer = (system.solve(j, np.ones((6, 2), complex)) for j in (0, 1))
+    np.testing.assert_allclose(problem.shells[0].radius * outer[0], problem.shells[1].radius * inner[1], rtol=1e-12)
+
+
+def test_energy_closes_at_true_faces() -> None:
+    response = cx.simulate(double("faces", source=SHOCK), modes=12, duration=2.0, time_step=4e-3)
+    energy = response.energy(every=50)
+    assert float(np.abs(energy["closure_relative"]).max()) < 1e-6
+    assert float(energy["exterior_work"].max()) > 0.0
+
+
+def test_against_an_independent_solution_in_time() -> None:
+    system = double("faces", (0.06, 0.1))
+    response = cx.simulate(system, modes=5, duration=1.5, time_step=2e-3)
+    other = RadialElements(system, 5, 1.5).solve(1e-2, 150)
+    for shell in (0, 1):
+        expected = other.stress(shell, 60.0)
+        np.testing.assert_allclose(response.stress(shell, angle=60.0)[::5], expected, atol=3e-5 * np.abs(expected).max(), rtol=0)
+
+
+@pytest.mark.parametrize("source", [cx.LineWave(distance=4.0, pulse=PULSE), cx.PlaneWave(pulse=PULSE)])
+def test_three_dimensions_without_an_axial_wavenumber_are_two(source: cx.Source) -> None:
+    settings = {"modes": 8, "duration": 1.0, "time_step": 1e-2}
+    plane = cx.simulate(double("faces", source=source), **settings)
+    space = cx.simulate(double("faces", source=source), dimensions=3, stations=[0.0, 1.0], **settings)
+    for shell in (0, 1):
+        expected = plane.stress(shell, angle=60.0)
+        found = space.at(1.0).stress(shell, angle=60.0)[:, 0]
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+def test_small_axial_wavenumbers_tend_to_two_dimensions() -> None:
+    problem, s, orders = dimensionless(double("faces")), np.array([0.3 + 0.2j, 1.0 + 25.0j]), np.arange(6.0)
+    plane, along = (ModalSystem(problem, s, Modes(orders, k)).solve_outside(np.ones((6, 2), complex)) for k in (0.0, 1e-5))
+    for w, expected in zip(along, plane, strict=True):
+        np.testing.assert_allclose(w, expected, rtol=1e-8)
+
+
+def test_the_direct_engine_refuses_faces() -> None:
+    with pytest.raises(cx.InputError, match=r"shells\[0\].wetted.*spectral"):
+        cx.simulate(double("faces"), modes=4, duration=0.2, engine="direct")
+
+
+def errors(wetted: str) -> np.ndarray:
+    """Return the L2 errors of hoop stress and displacement against exact elastic walls, (2, shells, angles)."""
+    stored = np.load(REFERENCE)
+    response = cx.simulate(double(wetted), modes=40, duration=3.0, time_step=1e-2)
+    found = np.empty((2, 2, 3))
+    for shell in (0, 1):
+        for place, angle in enumerate((0.0, 60.0, 180.0)):
+            for row, (name, history) in enumerate((("hoop", response.stress), ("w", response.displacement))):
+                exact = stored[name][shell, 0, place]
+                found[row, shell, place] = np.linalg.norm(np.ravel(history(shell, angle=angle))[::2] - exact) / np.linalg.norm(exact)
+    return found
+
+
+def test_true_faces_come_near_exact_elastic_walls() -> None:
+    # Steel of 30 and 50 mm, smooth pulse (elastic_thick_plane.npz). The L2 errors of the hoop stress, inner and outer shell.
+    faces, middle = errors("faces"), errors("mid-surface")
+    assert faces[0, 0].max() < 0.025
+    assert faces[0, 1].max() < 0.045
+    assert middle[0, 0].min() > 0.30
+    assert middle[0, 1].max() > 0.12
+    assert faces[1].max() < 0.045
+    assert middle[1].max() > 0.1
+
+
+def test_a_thick_wall_at_its_mid_surface_is_remarked_with_both_numbers() -> None:
+    def remarks(wetted: str, thickness: float) -> str:
+        return " ".join(dimensionless(double(wetted, (0.01, thickness))).shells[1].remarks())
+
+    assert "off by about 6.0%, more than 5%" in remarks("mid-surface", 0.12)
+    assert 'use wetted = "faces"' in remarks("mid-surface", 0.12)
+    assert "mid-surface" not in remarks("faces", 0.12)
+    assert "mid-surface" not in remarks("mid-surface", 0.09)
+    thin, exact = -1.0 / 0.12, lame(1.0, 0.94, 1.06, 0.0, 1.0)
+    assert abs(thin / exact - 1.0) == pytest.approx(0.06, rel=0.1)
