@@ -9,7 +9,7 @@ import numpy as np
 from coaxshell.model import RigidShell
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
-from coaxshell.plotting.field import WALL_COLOUR, WALL_WIDTH, draw_frame, time_stamp, wall_radii
+from coaxshell.plotting.field import WALL_COLOUR, draw_frame, time_stamp, wall_bands
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
     STRESS_COLOURS,
@@ -123,10 +123,10 @@ def _draw_along(ax: Axes, response: SpatialResponse, pressure: Any, index: int, 
     edge = view.half_width
     image: Any = mappable(scales.pressure, PRESSURE_COLOURS)
     ax.imshow(pressure, extent=(-edge, edge, -edge, edge), origin="lower", cmap=image.cmap, norm=image.norm, interpolation="auto")
-    for number, (radius, shell) in enumerate(zip(wall_radii(response.system), response.system.shells, strict=True)):
-        for side, angle in ((radius, 0.0), (-radius, 180.0)):
+    for number, ((inner, outer), shell) in enumerate(zip(wall_bands(response.system), response.system.shells, strict=True)):
+        for side, angle in (((inner, outer), 0.0), ((-outer, -inner), 180.0)):
             if isinstance(shell, RigidShell):
-                ax.axvline(side, color=WALL_COLOUR, linewidth=1.5, zorder=3)
+                ax.axvline(0.5 * sum(side), color=WALL_COLOUR, linewidth=1.5, zorder=3)
                 continue
             z, stress = along_stations(response, number, [angle], index)
             _band(ax, side, z, stress[:, 0], edge, scales.stress)
@@ -136,9 +136,9 @@ def _draw_along(ax: Axes, response: SpatialResponse, pressure: Any, index: int, 
     ax.grid(visible=False)
 
 
-def _band(ax: Axes, place: float, z: FloatArray, stress: FloatArray, edge: float, limit: float) -> None:
+def _band(ax: Axes, place: tuple[float, float], z: FloatArray, stress: FloatArray, edge: float, limit: float) -> None:
     """Draw a wall as a band, coloured as far as its stations go."""
-    left, right = place - 0.5 * WALL_WIDTH, place + 0.5 * WALL_WIDTH
+    left, right = place
     colours: Any = mappable(limit, STRESS_COLOURS)
     low, high = max(float(z.min()), -edge), min(float(z.max()), edge)
     if high > low:
@@ -150,4 +150,4 @@ def _band(ax: Axes, place: float, z: FloatArray, stress: FloatArray, edge: float
         ax.vlines([left, right], low, high, color=WALL_COLOUR, linewidth=0.45, zorder=3)
     for start, end in ((-edge, low), (high, edge)):
         if end > start:
-            ax.vlines(place, start, end, color=WALL_COLOUR, linewidth=1.0, zorder=3)
+            ax.vlines(0.5 * (left + right), start, end, color=WALL_COLOUR, linewidth=1.0, zorder=3)

@@ -102,8 +102,8 @@ def draw_frame(
     ax.imshow(
         frames.field(index), extent=(-edge, edge, -edge, edge), origin="lower", cmap=image.cmap, norm=image.norm, interpolation="auto"
     )
-    for radius, around in zip(wall_radii(system), frames.stress, strict=True):
-        _wall(ax, radius, None if around is None else around[index], scales.stress)
+    for band, around in zip(wall_bands(system), frames.stress, strict=True):
+        _wall(ax, band, None if around is None else around[index], scales.stress)
     if absorbers and system.absorber_list:
         x, y = absorber_places(system)
         ax.plot(x, y, linestyle="none", marker="o", markersize=1.6, color=ABSORBER_COLOUR, markeredgewidth=0, zorder=4)
@@ -124,6 +124,12 @@ def wall_radii(system: System) -> list[float]:
     return [shell.radius / system.reference_radius for shell in system.shells]
 
 
+def wall_bands(system: System) -> list[tuple[float, float]]:
+    """Return the radii between which each shell is drawn, in a: at least WALL_WIDTH, and all between its faces where these are wetted."""
+    widths = [max(WALL_WIDTH, np.ptp(shell.wetted_radii) / system.reference_radius) for shell in system.shells]
+    return [(radius - 0.5 * width, radius + 0.5 * width) for radius, width in zip(wall_radii(system), widths, strict=True)]
+
+
 def absorber_places(system: System) -> tuple[FloatArray, FloatArray]:
     """Return x and y of the absorbers, in a, half-way between the shells they link."""
     radii = np.array(wall_radii(system))
@@ -133,13 +139,13 @@ def absorber_places(system: System) -> tuple[FloatArray, FloatArray]:
     return middle * np.cos(angle), middle * np.sin(angle)
 
 
-def _wall(ax: Axes, radius: float, stress: FloatArray | None, limit: float) -> None:
+def _wall(ax: Axes, band: tuple[float, float], stress: FloatArray | None, limit: float) -> None:
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Circle
 
-    inner, outer = radius - 0.5 * WALL_WIDTH, radius + 0.5 * WALL_WIDTH
+    inner, outer = band
     if stress is None:
-        ax.add_patch(Circle((0, 0), radius, fill=False, edgecolor=WALL_COLOUR, linewidth=1.5, zorder=3))
+        ax.add_patch(Circle((0, 0), 0.5 * (inner + outer), fill=False, edgecolor=WALL_COLOUR, linewidth=1.5, zorder=3))
         return
     colours = mappable(limit, STRESS_COLOURS)
     segments = PolyCollection(list(_segments(inner, outer)), array=stress, cmap=colours.cmap, norm=colours.norm, zorder=2)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.plotting.field import ABSORBER_COLOUR, WALL_COLOUR, WALL_WIDTH, absorber_places, time_stamp, wall_radii
+from coaxshell.plotting.field import ABSORBER_COLOUR, WALL_COLOUR, absorber_places, time_stamp, wall_bands
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
     STRESS_COLOURS,
@@ -76,7 +76,7 @@ class Canvas:
         self._colours = _table(PRESSURE_COLOURS)
         self._stress_colours = _table(STRESS_COLOURS)
         self._background = self._draw_background(responses, names, units)
-        self._bands = [[self._band(radius) for radius in wall_radii(response.system)] for response in responses]
+        self._bands = [[self._band(*edges) for edges in wall_bands(response.system)] for response in responses]
         self._overlays = [_Overlay(_draw_overlay(response.system, view)) for response in responses]
         self._stamp = _Stamp(max(9, self._px(13)))
 
@@ -97,11 +97,11 @@ class Canvas:
     def _px(self, at_450: float) -> int:
         return round(at_450 * self._zoom)
 
-    def _band(self, radius: float) -> _Band:
+    def _band(self, inner: float, outer: float) -> _Band:
         """Return the pixels of a shell, rows counted from the top, with soft edges."""
         x = self.view.centres
         y = x[::-1, None]
-        covered = 0.5 + (0.5 * WALL_WIDTH - np.abs(np.hypot(x, y) - radius)) / self.view.pixel
+        covered = 0.5 + (0.5 * (outer - inner) - np.abs(np.hypot(x, y) - 0.5 * (inner + outer))) / self.view.pixel
         rows, columns = np.nonzero(covered > 0)
         angle = np.degrees(np.arctan2(y[rows, 0], x[columns]))
         degree = np.rint(angle).astype(np.intp) % 360
@@ -191,8 +191,8 @@ def _draw_overlay(system: System, view: FieldView) -> Bytes:
         ax.set_axis_off()
         ax.set(xlim=(-view.half_width, view.half_width), ylim=(-view.half_width, view.half_width))
         zoom = view.pixels / 450.0
-        for radius in wall_radii(system):
-            for edge in (radius - 0.5 * WALL_WIDTH, radius + 0.5 * WALL_WIDTH):
+        for edges in wall_bands(system):
+            for edge in edges:
                 ax.add_patch(Circle((0, 0), edge, fill=False, edgecolor=WALL_COLOUR, linewidth=0.6 * zoom))
         if system.absorber_list:
             x, y = absorber_places(system)

@@ -18,7 +18,6 @@ import numpy as np
 
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled
 from coaxshell.model.shells import Shell
-from coaxshell.model.sources import source_distance
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.scaling import Problem
 
@@ -131,7 +130,7 @@ def slice_error(problem: Problem, duration: float) -> SliceError:
         return worst
     for source in system.sources:
         lasting = duration - source.delay / problem.scales.time
-        distance = source_distance(source, system.reference_radius)
+        distance = system.source_distance(source)
         if source.geometry != "spherical" or distance is None or lasting <= 0.0:
             continue
         value = slice_map().estimate(distance / system.reference_radius, equivalent_decay(source.pulse) / problem.scales.time, lasting)

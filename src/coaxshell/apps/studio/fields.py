@@ -11,7 +11,7 @@ import numpy.typing as npt
 from coaxshell.apps.studio import worker
 from coaxshell.apps.studio.arrays import Item, Packed, packed
 from coaxshell.model import System
-from coaxshell.model.places import region_name
+from coaxshell.model.places import region_name, shell_phrase
 from coaxshell.plotting.energy import group_colours
 from coaxshell.plotting.field import absorber_places, wall_radii
 from coaxshell.plotting.field_scales import field_scales
@@ -92,12 +92,20 @@ def point(system: System, settings: Settings, x: float, y: float) -> Packed:
     """Return the pressure history at a point, lengths in a."""
     response = worker.answer(system, settings)
     pressure = np.asarray(response.pressure(x=[x], y=[y], time=response.time, progress=worker.report)).reshape(-1)
-    radius = float(np.hypot(x, y))
-    inside = sum(radius >= wall for wall in wall_radii(system))
     return packed(
-        {"x": x, "y": y, "region": region_name(inside, len(system.shells))},
+        {"x": x, "y": y, "region": _place(system, float(np.hypot(x, y)) * system.reference_radius)},
         {"time": Item(response.time, "transits"), "pressure": Item(pressure, "Pa")},
     )
+
+
+def _place(system: System, radius: float) -> str:
+    """Return the name of the fluid, or of the wall between its wetted faces, at a distance from the axis (m)."""
+    count = len(system.shells)
+    for number, shell in enumerate(system.shells):
+        inner, outer = shell.wetted_radii
+        if inner < radius < outer:
+            return f"wall of the {shell_phrase(number, count)}"
+    return region_name(sum(radius >= shell.wetted_radii[1] for shell in system.shells), count)
 
 
 def energy(system: System, settings: Settings, every: int) -> Packed:
