@@ -98,3 +98,10 @@ def test_the_table_names_what_is_there():
         shells=[cx.RigidShell(radius=1.0)], fluids=["vacuum", "freshwater"], source=cx.PlaneShock(peak_pressure=1e5, decay_time=1e-4)
     )
     assert "rigid, radius 1 m" in rigid._repr_html_()
+
+
+def test_the_table_says_where_fluids_wet_a_wall():
+    system = cx.presets.load("bare")
+    assert "wetted" not in system._repr_html_()
+    faces = system.replace_path("shells.outer.wetted", "faces")
+    assert "12 mm thick, wetted at its faces" in faces._repr_html_()

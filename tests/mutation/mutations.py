@@ -8,6 +8,7 @@ from __future__ import annotations
 from elastic_mutations import ELASTIC
 from reading_mutations import READING
 from spatial_mutations import SPATIAL
+from wetted_mutations import WETTED
 
 from mutation import Mutation
 
@@ -227,30 +228,6 @@ MUTATIONS = (
         "density[1] * load[0] * gap.ab, density[0] * load[1] * gap.ba",
         "coupling of neighbouring shells through the gap: sign",
         "solver/test_coupling.py",
-    ),
-    Mutation(
-        "face-leverage",
-        "structure/shell_model.py",
-        "return inner / self.radius, outer / self.radius",
-        "return 1.0, 1.0",
-        "load on W per pressure on a true face: r/R",
-        "solver/test_wetted_faces.py",
-    ),
-    Mutation(
-        "face-of-a-gap",
-        "solver/coupling.py",
-        "problem.shells[j].wetted[int(j < i)]) for j in sides]",
-        "problem.shells[j].wetted[int(j >= i)]) for j in sides]",
-        "which face of a wall a fluid wets",
-        "solver/test_wetted_faces.py",
-    ),
-    Mutation(
-        "cascade-inside",
-        "solver/cascade.py",
-        "(h.outer - h.across * h.across * (inner * zeta) / divisor) * outer",
-        "(h.outer - h.across * h.across * (outer * zeta) / divisor) * outer",
-        "what lies within a wall with two faces, seen from outside",
-        "solver/test_cascade.py",
     ),
     Mutation(
         "absorber-cubic",
@@ -496,6 +473,7 @@ MUTATIONS = (
         "studies/test_evaluation.py",
     ),
     *SPATIAL,
+    *WETTED,
     *READING,
     *ELASTIC,
 )

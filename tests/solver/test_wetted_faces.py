@@ -15,6 +15,7 @@ from coaxshell.apps.verification.independent import RadialElements
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.cascade import CascadeSystem
 from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.kernels import initial_decay
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.structure.rigid import RigidWall
 
@@ -200,3 +201,12 @@ def test_a_thick_wall_at_its_mid_surface_is_remarked_with_both_numbers() -> None
     assert "mid-surface" not in remarks("mid-surface", 0.09)
     thin, exact = -1.0 / 0.12, lame(1.0, 0.94, 1.06, 0.0, 1.0)
     assert abs(thin / exact - 1.0) == pytest.approx(0.06, rel=0.1)
+
+
+def test_fluids_on_faces_slow_a_wall_at_once_by_their_resistance_there() -> None:
+    # s C_ii = (1/M)/(s + b) + O(s^-3), b with rho c r/R of both fluids.
+    problem, s, modes = dimensionless(double("faces", (0.1, 0.2))), np.array([2e4, 4e4]) + 0j, Modes(np.zeros(1))
+    for shell, wall in enumerate(problem.shells):
+        compliance = ModalSystem(problem, s, modes).solve(shell, np.ones((1, 2), complex))[shell][0]
+        rest = s * compliance - 1.0 / (wall.mass * (s + initial_decay(problem, shell, 0)[0, 0]))
+        assert np.abs(rest * s**3)[1] == pytest.approx(np.abs(rest * s**3)[0], rel=0.05)
