@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.special import ivp
 
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes, RadialBasis
@@ -129,8 +130,8 @@ def test_maxwell_betti_between_faces() -> None:
 
 
 def test_energy_closes_at_true_faces() -> None:
-    response = cx.simulate(double("faces", source=SHOCK), modes=12, duration=2.0, time_step=4e-3)
-    energy = response.energy(every=50)
+    response = cx.simulate(double("faces", source=SHOCK), modes=6, duration=1.0, time_step=5e-3)
+    energy = response.energy(every=20)
     assert float(np.abs(energy["closure_relative"]).max()) < 1e-6
     assert float(energy["exterior_work"].max()) > 0.0
 
@@ -210,3 +211,28 @@ def test_fluids_on_faces_slow_a_wall_at_once_by_their_resistance_there() -> None
         compliance = ModalSystem(problem, s, modes).solve(shell, np.ones((1, 2), complex))[shell][0]
         rest = s * compliance - 1.0 / (wall.mass * (s + initial_decay(problem, shell, 0)[0, 0]))
         assert np.abs(rest * s**3)[1] == pytest.approx(np.abs(rest * s**3)[0], rel=0.05)
+
+
+def test_walls_that_are_not_there_let_a_wave_pass_as_their_thickness_vanishes() -> None:
+    # Without mass and stiffness, but with faces: what is missing is the fluid between them.
+    nothing = STEEL.replace(density=1e-6, youngs_modulus=1e-3)
+    grid, modes = LaplaceGrid(0.1, 30), Modes(np.arange(6.0))
+    errors = []
+    for h in (0.02, 0.01, 1e-6):
+        shells = [cx.Shell(radius=r, layers=[cx.Layer(nothing, h)], wetted="faces") for r in (0.5, 1.0)]
+        problem = dimensionless(double("faces").replace(shells=shells))
+        modal = ModalSystem(problem, grid.nodes, modes)
+        moved = modal.solve_outside(problem.sources[0].prepare(grid, modes)(modal.radial, slice(None)))
+        s, front = grid.nodes, modes.neumann * np.exp(-grid.nodes * problem.head)
+        free = [front * ivp(modes.column, s * wall.radius) / s for wall in problem.shells]  # dp/dr = s^2 w of e^{-s(b - r cos theta)}
+        errors.append(max(np.abs(w - p).max() / np.abs(p).max() for w, p in zip(moved, free, strict=True)))
+    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
+    assert errors[2] < 1e-5
+
+
+def test_energy_over_the_whole_length_closes_at_true_faces() -> None:
+    sphere = cx.SphericalShock(peak_pressure=2.5e4, decay_time=1.314e-4, distance=4.0)
+    response = cx.simulate(double("faces", source=sphere), dimensions=3, stations=[0.0], modes=5, duration=1.0, time_step=2e-2)
+    energy = response.energy(every=25)
+    assert float(np.abs(energy["closure_relative"]).max()) < 5e-6
+    assert float(energy["exterior_work"].max()) > 0.0
