@@ -43,9 +43,10 @@ def same_step() -> None:
             if equal <= errors[1]:
                 break
         calls = [
-            lambda e=e, h=h, s=system: cx.simulate(s, engine=e, time_step=h, **whole) for e, h in zip(ENGINES, (1e-3, 1e-3), strict=True)
+            lambda e=e, h=h, s=system: cx.simulate(s, engine=e, time_step=h, **whole).warnings
+            for e, h in zip(ENGINES, (1e-3, 1e-3), strict=True)
         ]
-        calls.append(lambda h=step, s=system: cx.simulate(s, time_step=h, **whole))
+        calls.append(lambda h=step, s=system: cx.simulate(s, time_step=h, **whole).warnings)
         spectral, direct, coarse = medians(calls, 3)
         print(f"  {name:8} spectral {spectral:.2f} s, error {errors[0]:.1e}; direct {direct:.2f} s, error {errors[1]:.1e}; ", end="")
         print(
@@ -95,7 +96,7 @@ def _compared(system: cx.System, least: dict[str, tuple[float, float] | None]) -
             texts.append(f"{engine} not reached")
             continue
         step, reached = pair
-        seconds += medians([lambda e=engine, s=step: cx.simulate(system, engine=e, time_step=s, **EQUAL)], 3)
+        seconds += medians([lambda e=engine, s=step: cx.simulate(system, engine=e, time_step=s, **EQUAL).warnings], 3)
         texts.append(f"{engine} dt = {step:g} ({reached:.1e}) {seconds[-1]:.3f} s")
     return "; ".join(texts) + (f"; ratio {seconds[1] / seconds[0]:.1f}" if len(seconds) == 2 else "")
 

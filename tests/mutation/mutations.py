@@ -463,6 +463,14 @@ MUTATIONS = (
         "printed error of a march whose membranes the step does not resolve",
         "solver/test_estimates.py",
     ),
+    Mutation(
+        "judged-copies",
+        "solver/solution.py",
+        "for name in Judgement._fields}",
+        "for name in ()}",
+        "errors and warnings of a run that is copied before they are read",
+        "solver/test_judgement.py",
+    ),
     # studies, paper, command line
     Mutation(
         "shared-structure",

@@ -40,7 +40,10 @@ def test_curves_and_bars_are_those_of_the_library(client, name):
         force = response.absorber_force().values
         for side in (0, 1):
             assert_allclose(arrays[f"absorber_force/{side}"], force[[head, tail], side], rtol=SINGLE, atol=1e-12 * np.abs(force).max())
-    assert header["warnings"] == list(response.warnings)
+    judged = client.get(f"/api/runs/{header['run']}/judgement").json()
+    assert judged["warnings"] == list(response.warnings)
+    assert judged["estimates"]["errors"] == [one.errors for one in summary.shells]
+    assert judged["estimates"]["stress"] == [None if np.isnan(one) else one for one in response.estimates.modal_stress]
 
 
 def test_other_absorbers_on_a_structure_already_prepared_give_the_same_numbers(client):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable
 from threading import Lock
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -91,19 +91,27 @@ class ByteBoundedCache(Generic[T]):
         return len(self._held)
 
 
-def held_bytes(thing: Any, seen: set[int] | None = None) -> int:
+def held_bytes(thing: Any) -> int:
     """Return the bytes of all arrays that an object holds, directly or through its parts; views count as what they view."""
-    seen = set() if seen is None else seen
-    if id(thing) in seen:
-        return 0
-    seen.add(id(thing))
-    if isinstance(thing, np.ndarray):
-        return held_bytes(thing.base, seen) if isinstance(thing.base, np.ndarray) else thing.nbytes
-    parts: Iterable[Any] = ()
-    if isinstance(thing, dict):
-        parts = thing.values()
-    elif isinstance(thing, list | tuple):
-        parts = thing
-    elif type(thing).__module__.startswith("coaxshell.") and hasattr(thing, "__dict__"):
-        parts = vars(thing).values()
-    return sum(held_bytes(part, seen) for part in parts)
+    total, seen, waiting = 0, set[int](), [thing]
+    while waiting:
+        one = waiting.pop()
+        kind = type(one)
+        if kind in _PLAIN or id(one) in seen:
+            continue
+        seen.add(id(one))
+        if isinstance(one, np.ndarray):
+            if isinstance(one.base, np.ndarray):
+                waiting.append(one.base)
+            else:
+                total += one.nbytes
+        elif isinstance(one, dict):
+            waiting += one.values()
+        elif isinstance(one, list | tuple):
+            waiting += one
+        elif kind.__module__.startswith("coaxshell.") and hasattr(one, "__dict__"):
+            waiting += vars(one).values()
+    return total
+
+
+_PLAIN = frozenset({float, int, bool, str, type(None)})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from coaxshell.errors import InputError
-from coaxshell.numerics.memory import VARIABLE, available, words_of
+from coaxshell.numerics.memory import VARIABLE, available, plenty, words_of
 
 TOLD_FROM = 30.0
 """Seconds from which on a command tells at its start how long it will take."""
@@ -40,8 +40,7 @@ class Cost:
     @property
     def fits(self) -> bool:
         """Whether the memory is there."""
-        free = available()
-        return free is None or self.memory <= free
+        return plenty(self.memory) or (free := available()) is None or self.memory <= free
 
     @property
     def duration(self) -> str:
@@ -68,8 +67,9 @@ class Cost:
         InputError
             With the memory needed, that which is free, and the remedy.
         """
-        free = available()
-        if free is None or self.memory <= free:
+        if self.fits:
             return
+        free = available()
+        assert free is not None
         unless = f'{remedy}; or, to try nevertheless, set {VARIABLE}="{words_of(1.05 * self.memory)}"'
         raise InputError(where, f"{what} needs about {words_of(self.memory)}, and {words_of(free)} are free", unless)

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import os
 import re
+import time
 from pathlib import Path
 
 from coaxshell.errors import InputError
 
 VARIABLE = "COAXSHELL_MEMORY"
 UNLIMITED = "unlimited"
+_MOMENT, _MANY = 2.0, 16.0
+"""Seconds for which what was free counts, for what takes less than one part in so many of it."""
 _UNITS = {"b": 0, "kb": 1, "mb": 2, "gb": 3, "tb": 4}
 _SIZE = re.compile(r"(\d{1,15}(?:\.\d{1,9})?) {0,3}([kmgt]?b|[kmgt]?ib)", re.IGNORECASE)
 
@@ -37,6 +40,22 @@ def available(environment: dict[str, str] | None = None, root: Path = Path("/"))
         return None if words.lower() == UNLIMITED else size_of(words)
     known = [found for found in (_free(root), _group(root), _address_space(root)) if found is not None]
     return max(0, min(known)) if known else None
+
+
+def plenty(needed: float) -> bool:
+    """Return whether many times what is needed was free a moment ago: the kernel takes milliseconds to tell."""
+    words, now = os.environ.get(VARIABLE, ""), time.monotonic()
+    if _Seen.words != words or now - _Seen.when > _MOMENT:
+        _Seen.words, _Seen.when, _Seen.free = words, now, available()
+    return _Seen.free is None or _MANY * needed <= _Seen.free
+
+
+class _Seen:
+    """What was free when the kernel was asked last, and what the variable said then."""
+
+    words: str | None = None
+    when = 0.0
+    free: int | None = 0
 
 
 def size_of(text: str) -> int:

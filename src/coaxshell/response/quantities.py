@@ -47,8 +47,8 @@ _SUFFIXES: dict[Where, str] = {"head": "_head", "tail": "_tail", "anywhere": "",
 class Largest(Protocol):
     """The largest magnitude of a quantity within a window of time, as a mean over a segment of the wall."""
 
-    def __call__(self, solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
-        """Return the largest magnitude; the length in m."""
+    def __call__(self, solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
+        """Return the largest magnitude, the length in m; and what the lower half of the orders gives, where that is told and ``halved``."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,7 +221,7 @@ def _von_mises(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
     return von_mises_at(motion.solution, shell, theta)
 
 
-def _largest_von_mises(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
+def _largest_von_mises(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
     """Return the largest von Mises stress anywhere within a window; a mean over a segment is not taken."""
     parities, orders = solution.normal.shape[1:3]
     return peak_of_values(

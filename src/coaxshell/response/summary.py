@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
@@ -140,13 +141,19 @@ class Summary:
 
 
 def summarise(
-    solution: ModalSolution, window: Sequence[float] | None = None, segment: Segment = None, *, motion: WallMotion | None = None
+    solution: ModalSolution,
+    window: Sequence[float] | None = None,
+    segment: Segment = None,
+    *,
+    motion: WallMotion | None = None,
+    judged: bool = True,
 ) -> Summary:
     """Return the summary of a solution within a window (start, end) in transits, by default the whole run.
 
     The head is the point of the shell nearest to the first source, the tail the one opposite. Voltages are means over a segment of
     the wall: a length (m or text), None for what the pulse's band allows, or "point". Velocities and accelerations need the transforms
-    of the run: they are given with its *motion*, and where the run has all its instants.
+    of the run: they are given with its *motion*, and where the run has all its instants. Without being *judged* it has no warnings, NaN
+    for its errors, which a run estimates only when they are read, and nothing of the lower half of the orders.
 
     Raises
     ------
@@ -159,7 +166,7 @@ def summarise(
     elastic = [i for i, shell in enumerate(solution.problem.shells) if shell.moves]
     lengths = [segment_length(solution.problem, i, segment) for i in elastic]  # all checked before the first is computed
     walls, rates = motion or WallMotion(solution), motion is not None
-    shells = tuple(_shell(walls, i, span, length, rates=rates) for i, length in zip(elastic, lengths, strict=True))
+    shells = tuple(_shell(walls, i, span, length, rates=rates, judged=judged) for i, length in zip(elastic, lengths, strict=True))
     q, f = solution.absorber_displacement, solution.absorber_force
     return Summary(
         title=solution.problem.system.name,
@@ -168,13 +175,13 @@ def summarise(
         shells=shells,
         absorber_displacement=None if q is None or not len(q) else float(abs(q[..., span]).max()) * scales.length,
         absorber_force=None if f is None or not len(f) else float(abs(f[..., span]).max()) * scales.line_force,
-        time_window_error=float(solution.estimates.time_window),
+        time_window_error=float(solution.estimates.time_window) if judged else math.nan,
         settings=solution.settings.arguments(),
-        warnings=tuple(solution.warnings),
+        warnings=tuple(solution.warnings) if judged else (),
     )
 
 
-def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates: bool) -> ShellSummary:
+def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates: bool, judged: bool) -> ShellSummary:
     solution = motion.solution
     problem = solution.problem
     wall = problem.shells[shell]
@@ -185,23 +192,25 @@ def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates:
         if not quantity.given(motion, shell) or (quantity.rate and not rates):
             found |= dict.fromkeys(quantity.summary_keys)
         elif quantity.summary:
-            found |= _largest(quantity, motion, shell, span, length)
+            found |= _largest(quantity, motion, shell, span, length, judged)
     return ShellSummary(
         name=shell_name(shell, len(problem.shells)),
         segment=length if wall.has("sensor") else None,
         actuator_limit=actuator_limit(solution, shell).volts if wall.has("actuator") else None,
-        stress_truncation=float(solution.estimates.modal_stress[shell]),
-        errors=error_table(solution, shell),
+        stress_truncation=float(solution.estimates.modal_stress[shell]) if judged else math.nan,
+        errors=error_table(solution, shell) if judged else {},
         further={key: found.pop(key) for key in list(found) if key not in _FIELDS},
         **found,
     )
 
 
-def _largest(quantity: Quantity, motion: WallMotion, shell: int, span: slice, length: float) -> dict[str, Peak | float | None]:
+def _largest(
+    quantity: Quantity, motion: WallMotion, shell: int, span: slice, length: float, judged: bool
+) -> dict[str, Peak | float | None]:
     """Return the largest magnitudes of a quantity that the summary shows, by their keys."""
     solution, wanted = motion.solution, quantity.summary
     if quantity.largest is not None:
-        return {quantity.name: quantity.largest(solution, shell, span, length)}
+        return {quantity.name: quantity.largest(solution, shell, span, length, halved=judged)}
     head, time = solution.problem.system.sources[0].angle, solution.time
     width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
     amplitudes = made_once(quantity.amplitudes(motion, shell), span)

@@ -129,24 +129,32 @@ def actuator_values(solution: ModalSolution, shell: int, theta: FloatArray, leng
     return applied(at_angles(modal, basis), limit)
 
 
-def largest_sensor_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
-    """Return the largest sensor voltage anywhere within a window, as a mean over a segment of a length (m; 0 a point)."""
+def largest_sensor_voltage(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
+    """Return the largest sensor voltage anywhere within a window, as a mean over a segment of a length (m; 0 a point).
+
+    With what the lower half of the orders gives, unless it is not to be ``halved``.
+    """
     gain, share = voltage_gain(solution, shell), mean_shares(solution, shell, length)
-    return _largest(solution, lambda block: amplitudes(solution, shell, scaled(gain, share), block), window)
+    return _largest(solution, lambda block: amplitudes(solution, shell, scaled(gain, share), block), window, halved)
 
 
-def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice, length: float) -> Peak:
-    """Return the largest voltage asked for anywhere within a window, V, as a mean over a segment of a length (m; 0 a point)."""
+def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
+    """Return the largest voltage asked for anywhere within a window, V, as a mean over a segment of a length (m; 0 a point).
+
+    With what the lower half of the orders gives, unless it is not to be ``halved``.
+    """
     voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant
     share = mean_shares(solution, shell, length)[:, None]
-    return _largest(solution, lambda block: voltage[:, :, block] * share, window)
+    return _largest(solution, lambda block: voltage[:, :, block] * share, window, halved)
 
 
-def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice) -> Peak:
+def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice, halved: bool) -> Peak:
     """Return the largest magnitude of a quantity, and beside it what the lower half of the orders gives."""
     parities, all_of_them = solution.normal.shape[1:3]
     few, quantity = lower_half(all_of_them), made_once(quantity, window)
     largest = peak_anywhere(quantity, solution.time, window, len(circle_angles(all_of_them, parities)))
+    if not halved:
+        return largest
     fewer = peak_anywhere(lambda block: quantity(block)[:, :few], solution.time, window, len(circle_angles(few, parities)))
     return replace(largest, lower_half=fewer.value)
 

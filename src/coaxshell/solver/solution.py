@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -48,6 +49,11 @@ class Estimates:
     march: FloatArray
     axial: FloatArray | None = None
 
+    @classmethod
+    def unknown(cls, shells: int) -> Estimates:
+        """Return those of a run of which nothing has been estimated."""
+        return cls(*np.full((3, shells, 2), np.nan))
+
     @property
     def combined(self) -> FloatArray:
         """Sum of the errors by all causes, shape (shells, 2)."""
@@ -78,6 +84,13 @@ class Estimates:
     def time_window(self) -> float:
         """The largest error by the time step, march included, of any displacement."""
         return float((self.time_step + self.march)[:, 0].max(initial=0.0))
+
+
+class Judgement(NamedTuple):
+    """How far a run can be trusted: its estimates, and its physics warnings, one sentence each."""
+
+    estimates: Estimates
+    warnings: tuple[str, ...]
 
 
 def is_whole(time: FloatArray, settings: Settings) -> bool:
@@ -128,7 +141,7 @@ class ModalSolution:
         V: v = sum_m V[.,0,m] sin(m theta) - V[.,1,m] cos(m theta), so that dv/dtheta = sum m (V0 cos + V1 sin).
     estimates : Estimates
     warnings : tuple of str
-        Physics warnings, one sentence each with both numbers and the remedy.
+        Physics warnings, one sentence each with both numbers and the remedy. Both may be made when first read (:meth:`judge_when_read`).
     timings : dict
         Seconds by stage.
     normal_rate, tangential_rate : ndarray, same shape, or None
@@ -152,7 +165,7 @@ class ModalSolution:
     normal: FloatArray
     tangential: FloatArray
     estimates: Estimates
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = field(default_factory=tuple)
     timings: dict[str, float] = field(default_factory=dict)
     normal_rate: FloatArray | None = None
     tangential_rate: FloatArray | None = None
@@ -167,9 +180,32 @@ class ModalSolution:
         if spectra.nbytes <= KEPT_BYTES:
             object.__setattr__(self, "spectra", spectra)
 
+    def judge_when_read(self, judge: Callable[[ModalSolution], Judgement]) -> None:
+        """Leave estimates and warnings to be made when either is first read: of runs that follow a slider they hardly ever are.
+
+        A judgement reads the transforms: where those are not kept, it is made now, and a copy is made of a run that has been judged.
+        """
+        if self.spectra is None:
+            vars(self).update(judge(self)._asdict())
+            return
+        for name in Judgement._fields:
+            del vars(self)[name]
+        vars(self)["_judge"] = judge
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what is not here until it is read."""
+        here, judge = vars(self), vars(self).get("_judge")
+        if name in Judgement._fields and name not in here and judge is not None:
+            here.update(judge(self)._asdict())
+            here.pop("_judge", None)  # with all that it needs
+        if name not in here:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        return here[name]
+
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms."""
-        return {**vars(self), "spectra": None}
+        judged = {name: getattr(self, name) for name in Judgement._fields}
+        return {**vars(self), **judged, "spectra": None}
 
     def field(self, name: str) -> FloatArray:
         """Return one of :data:`coaxshell.structure.shell_model.FIELDS` at a station of a three-dimensional run.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -11,23 +12,22 @@ from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver import checks, estimates
 from coaxshell.solver.actuation import pressure_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.finite import numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
-from coaxshell.solver.interface.linked import interface_of, solve_linked
-from coaxshell.solver.mode_choice import resolve_modes, tolerance_missed
+from coaxshell.solver.interface.linked import solve_linked
+from coaxshell.solver.judgement import judgement
+from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
-from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.structure_spectra import StructureSpectra
-from coaxshell.solver.tension import tensions
 
 
 def solve(system: System, *, settings: Settings | None = None, progress: Progress | None = None) -> ModalSolution:
@@ -151,21 +151,13 @@ def _solved(
             asked = pressure_asked(problem, w, v, w_rate, v_rate)
             correction = correction if solved.actuation is None else solved.actuation[..., keep] - asked
     stopwatch.lap("inverse transform")
-    interface = interface_of(solved, w, keep, asked)
-    spectra = solved.normal, solved.tangential
-    errors = estimates.estimated_errors(solved.passive, spectra, (w, v), settings.time_step, interface)
-    stopwatch.lap("error estimates")
-    warnings = [*structure.notes, *checks.absorbers(solved, settings.refinement), *checks.before(problem, grid, structure.modes.max_order)]
-    warnings += tolerance_missed(asked_for, structure.modes.max_order, errors, saturating=saturate)
-    warnings += checks.after(problem, errors, settings) + checks.tension(problem, tensions(problem, grid, solved.normal))
-    stopwatch.lap("pressure on the walls")
     solution = ModalSolution(
         problem,
         settings,
         grid.time[keep],
         w,
         v,
-        errors,
+        Estimates.unknown(len(problem.shells)),
         timings=stopwatch.seconds,
         normal_rate=w_rate,
         tangential_rate=v_rate,
@@ -173,6 +165,6 @@ def _solved(
         absorber_force=solved.force[..., keep] if links.count else None,
         control_correction=correction,
     )
-    solution = replace(solution, warnings=(*warnings, *checks.actuators(solution)))
     solution.keep(solved)
+    solution.judge_when_read(partial(judgement, solved=solved, asked_for=asked_for, asked=asked))
     return solution

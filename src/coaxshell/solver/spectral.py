@@ -37,10 +37,10 @@ def map_node_blocks(blocks: list[slice], work: Callable[[slice], None], progress
 
 
 class Stopwatch:
-    """Seconds by stage, in the order in which the stages ended."""
+    """Seconds by stage, in the order in which the stages ended; added to those of earlier ones if given."""
 
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
+    def __init__(self, seconds: dict[str, float] | None = None) -> None:
+        self.seconds: dict[str, float] = {} if seconds is None else seconds
         self._last = time.perf_counter()
 
     def lap(self, stage: str) -> None:

@@ -12,6 +12,7 @@ from coaxshell.model import RigidShell, Shell
 from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
+from coaxshell.response.errors import error_table
 from coaxshell.response.peaks import Peak
 from coaxshell.response.quantities import QUANTITIES, Quantity, Where, columns
 from coaxshell.response.summary import Summary, summarise
@@ -42,7 +43,8 @@ def bars() -> dict[str, tuple[str, str]]:
 def curves(response: Response, seconds: float) -> Packed:
     """Return header and arrays of a run as docs/studio-api.md says."""
     system, count = response.system, len(response.system.shells)
-    summary = summarise(response.solution)  # without peaks of velocities and accelerations, which a slider would wait for
+    # Without peaks of velocities and accelerations, errors and warnings, which a slider would wait for.
+    summary = summarise(response.solution, judged=False)
     absorbers = _absorbers(response)
     highest = {shell.name: shell.actuator_limit for shell in summary.shells}
     header = {
@@ -63,15 +65,22 @@ def curves(response: Response, seconds: float) -> Packed:
         ],
         "absorbers": absorbers,
         "bars": _bars(response, summary),
+    }
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
+
+
+def judgement(response: Response) -> dict[str, Any]:
+    """Return estimated errors and warnings of a run as docs/studio-api.md says."""
+    elastic = [index for index, shell in enumerate(response.system.shells) if isinstance(shell, Shell)]
+    return {
         "estimates": {
             "stress": [_finite(value) for value in response.estimates.modal_stress],
             "displacement": [_finite(value) for value in response.estimates.modal_displacement],
             "time_window": _finite(response.estimates.time_window),
-            "errors": [shell.errors for shell in summary.shells],
+            "errors": [error_table(response.solution, index) for index in elastic],
         },
         "warnings": list(response.warnings),
     }
-    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
 
 
 def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]:

@@ -138,6 +138,17 @@ async def of_run(run: Run, content: Any) -> Response:
         raise RefusedError.of(error) from None
 
 
+async def judgement(request: Request) -> Response:
+    """Answer with the estimated errors and the warnings of a run, which its curves do not wait for."""
+    studio = studio_of(request)
+    found = studio.run(request.path_params["run"])
+    try:
+        told = await studio.workers.submit(worker.judge, *found.pair, place=found.place, live=False).future
+    except InputError as error:
+        raise RefusedError.of(error) from None
+    return JSONResponse({"run": found.name, **told})
+
+
 async def energy(request: Request) -> Response:
     """Answer with the energy balance of a run."""
     from coaxshell.apps.studio import fields
@@ -220,6 +231,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/link/open", open_link, methods=["POST"]),
         Route("/api/upload", upload, methods=["POST"]),
         Route("/api/runs/{run}", run),
+        Route("/api/runs/{run}/judgement", judgement),
         Route("/api/runs/{run}/energy", energy),
         Route("/api/runs/{run}/point", point),
     ]

@@ -122,7 +122,10 @@ def answer_key(system: System, settings: Settings) -> str:
 
 
 def answer(system: System, settings: Settings) -> Response:
-    """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``."""
+    """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``.
+
+    A preview is kept beyond the next one only once it is judged (:func:`judge`): while a slider moves none is, and nobody comes back.
+    """
     key = answer_key(system, settings)
     if _Here.last is not None and _Here.last[0] == key:
         return _Here.last[1]  # the only one whose transforms are at hand
@@ -135,9 +138,20 @@ def answer(system: System, settings: Settings) -> Response:
         response = prepared.simulate(system.absorbers, progress=report)
     finally:
         _Here.structures.put(structure_key(system, settings), prepared)  # weighed afterwards: it grows with the run
-    _Here.answers.put(key, response.without_transforms())
+    if not _live(settings):
+        _Here.answers.put(key, response.without_transforms())
     _Here.last = key, response
     return response
+
+
+def judge(system: System, settings: Settings) -> dict[str, Any]:
+    """Return estimated errors and warnings of a run; it is kept with them."""
+    from coaxshell.apps.studio.curves import judgement
+
+    response = answer(system, settings)
+    told = judgement(response)
+    _Here.answers.put(answer_key(system, settings), response.without_transforms())
+    return told
 
 
 def structure(system: System, settings: Settings) -> PreparedSystem:
@@ -151,9 +165,14 @@ def _at_hand(system: System, settings: Settings) -> PreparedSystem:
     return _Here.structures.get(structure_key(system, settings)) or _structure(system.replace(absorbers=()), settings)
 
 
+def _live(settings: Settings) -> bool:
+    """Return whether a resolution is no finer than what is solved as sliders move."""
+    return settings.steps * settings.refinement <= limits.PREVIEW_STEPS
+
+
 def _structure(system: System, settings: Settings) -> PreparedSystem:
     """Return a structure prepared from what the one used last shares with it, or from nothing."""
-    live = settings.steps * settings.refinement <= limits.PREVIEW_STEPS  # finer ones would share hundreds of megabytes
+    live = _live(settings)  # finer ones would share hundreds of megabytes
     kin = _Here.structures.latest(lambda kept: kept.settings == settings) if live else None
     if kin is not None:
         return kin.retuned(system)

@@ -3,11 +3,12 @@ import { client, request } from "./api.js";
 import { finished } from "./events.js";
 
 const PATIENCE = 900; // ms without a change before full resolution starts
+const PAUSE = 150; // and before errors and warnings are asked for
 let revision = 0;
 export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
 export class Slot {
-  // `name` of the slot; `show(result)` draws, `problem(problems)` of the description, `progress(job or null)`,
+  // `name` of the slot; `show(result)` draws, `judged(result)` if errors and warnings shall follow, `problem(problems)` of the description, `progress(job or null)`,
   // `fail(error, full)` of anything else; `full` tells that only full resolution failed.
   constructor(name, tell) {
     Object.assign(this, { name, tell, wanted: null, busy: false, shown: 0, full: null, timer: 0, result: null });
@@ -51,8 +52,20 @@ export class Slot {
   }
 
   keep(wish, answer, full) {
-    this.result = { ...answer, full, revision: wish.revision, system: wish.system };
-    this.tell.show(this.result);
+    const { estimates = null, warnings = [] } = this.result ?? {}; // of the one before, as long as there are none of this one
+    const result = { estimates, warnings, judged: false, ...answer, full, revision: wish.revision, system: wish.system };
+    this.result = result;
+    this.tell.show(result);
+    if (this.tell.judged) setTimeout(() => this.judge(result), full ? 0 : PAUSE);
+  }
+
+  async judge(result) {
+    const rests = () => this.result === result && this.wanted.revision === result.revision;
+    if (!rests()) return;
+    const told = await request(`/api/runs/${result.run}/judgement`).catch((error) => ({ estimates: null, warnings: [], unjudged: error.message }));
+    if (this.result !== result || !told) return;
+    Object.assign(result, told, { judged: true });
+    this.tell.judged(result);
   }
 
   // Full resolution of what is shown.

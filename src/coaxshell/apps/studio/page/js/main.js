@@ -22,7 +22,7 @@ import { capital, inWords, placeName, refusal, shellName, told } from "./words.j
 const page = { world: null, system: null, resolution: null, problems: [], runs: {}, quantity: "stress", which: "ends", unit: "transits", reachable: true, metrics: [] };
 
 const slots = {
-  current: new Slot("current", { show: (result) => take("current", result), problem: (problems) => refuse(problems), fail, progress }),
+  current: new Slot("current", { show: (result) => take("current", result), judged: () => peaks.drawJudgement(page.runs.current), problem: (problems) => refuse(problems), fail, progress }),
   // A refusal of these is the current one's too, told there; what they showed last stays beside what it showed last.
   bare: new Slot("bare", { show: (result) => take("bare", result), problem: () => {}, fail: () => { page.bareKey = ""; } }),
   pinned: new Slot("pinned", { show: (result) => take("pinned", result), problem: () => drop("pinned"), fail: () => {} }),

@@ -8,14 +8,24 @@ export function draw(runs) {
   const { current } = runs;
   if (!current) return;
   const others = ["bare", "pinned"].filter((key) => runs[key]);
-  const warnings = current.warnings.length ? el("ul", { class: "warnings", "aria-label": "Warnings" }, ...current.warnings.map((text) => el("li", {}, sentence(text)))) : null;
   const table = el("table", { class: "peaks" },
     el("caption", {}, `Largest magnitudes over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), el("td", {}), el("th", { scope: "col", class: "number" }, "Current"), ...others.flatMap((key) => [el("th", { scope: "col", class: "number" }, RUNS[key].name.replace(/^./, (c) => c.toUpperCase())), el("th", { scope: "col", class: "number" }, "Change")]))),
     ...groups(current).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), ...bars.map((bar) => line(bar, runs, others, extent(bar, current, runs, others))))));
   const region = el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Peak and RMS values" }, table);
-  by("peaks").replaceChildren(...(warnings ? [warnings] : []), region, el("p", { class: "scroll-hint", "aria-hidden": "true" }, "← swipe the table to see all of it →"), el("p", { class: "note" }, accuracy(current)));
+  by("peaks").replaceChildren(region, el("p", { class: "scroll-hint", "aria-hidden": "true" }, "← swipe the table to see all of it →"), el("p", { class: "note accuracy" }));
+  drawJudgement(current);
   region.classList.toggle("scrolls", region.scrollWidth > region.clientWidth + 1);
+}
+
+// Warnings above the table and the accuracy below it. They come a moment after the rest; until then those of the run before stand there, dimmed.
+export function drawJudgement(current) {
+  const panel = by("peaks"), note = panel.querySelector(".accuracy");
+  if (!current || !note) return;
+  panel.querySelector(".warnings")?.remove();
+  if (current.warnings.length) panel.prepend(el("ul", { class: "warnings", "aria-label": "Warnings" }, ...current.warnings.map((text) => el("li", {}, sentence(text)))));
+  note.textContent = accuracy(current);
+  panel.classList.toggle("unjudged", !current.judged);
 }
 
 function groups(result) {
@@ -49,7 +59,9 @@ function line(bar, runs, others, most) {
     }));
 }
 
-function accuracy({ estimates, full, resolution }) {
+function accuracy({ estimates, full, judged, unjudged, resolution }) {
+  if (!judged) return "Errors and warnings of this run follow.";
+  if (unjudged) return `Errors and warnings of this run cannot be given: ${unjudged}.`;
   const worst = Math.max(...estimates.stress.filter((one) => one !== null), 0);
   return `Estimated relative error of the stress from the orders left out: ${show(worst, "", 2)} at ${resolution.modes} orders, step ${show(resolution.time_step, "")} a/c${full ? "" : " (preview)"}.`;
 }
