@@ -127,6 +127,14 @@ SPATIAL = (
         "weight of k = 0 in integrals along the axis",
         "response/test_whole_length_energy.py",
     ),
+    Mutation(
+        "points-along",
+        "solver/axial/motion.py",
+        "np.array([np.cos(k * points.z), -np.sin(k * points.z)])",
+        "np.array([np.cos(k * points.z), np.sin(k * points.z)])",
+        "motion of the walls where point absorbers hold them: what is odd along the axis",
+        "response/test_whole_length_energy.py",
+    ),
     # fields on cuts
     Mutation(
         "cut-kappa",

@@ -1,16 +1,19 @@
-"""Energy of the absorbers and what their dampers turn into heat, dimensionless (unit rho_e c_e^2 a^2 per length)."""
+"""Energy of the absorbers and what their dampers turn into heat, dimensionless: in units of rho_e c_e^2 a^2 per length, of points a^3."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.synthesis import angle_basis, at_angles
-from coaxshell.solver.interface.absorbers import properties
+from coaxshell.solver.interface.absorbers import Properties, properties
+from coaxshell.solver.interface.link_motion import LinkMotion
 
 
 class AbsorberEnergy(NamedTuple):
@@ -25,37 +28,64 @@ class AbsorberEnergy(NamedTuple):
     defect: FloatArray
 
 
+Walls = Callable[[int, list[int], list[int]], tuple[FloatArray, FloatArray, "FloatArray | float"]]
+"""From a shell and the numbers and sides of the absorbers' ends on it: w and dw/dt there, (ends, T), and the impedance Z of the wall."""
+
+
 def absorber_energy(motion: Motion) -> AbsorberEnergy:
-    """Return m (dq/dt)^2/2, the springs' k_l D^2/2 + k_nl D^4/4, D = q - w_i(theta_n) on either side, and what the dampers take.
+    """Return the energy of the line absorbers of a motion in two dimensions; zeros without any."""
+    fitted, scales = motion.problem.system.absorber_list, motion.problem.scales
+
+    def at(shell: int, here: list[int], side: list[int]) -> tuple[FloatArray, FloatArray, float]:
+        return *_at_absorbers(motion, shell, np.array([fitted[n].angle for n in here])), _impedance(motion, shell)
+
+    inner = [one.inner_shell for one in fitted]
+    return held_energy(properties(fitted, scales), inner, motion.links, at, motion.grid, motion.kept)
+
+
+def held_energy(
+    law: Properties, inner: Sequence[int], links: LinkMotion | None, at: Walls, grid: LaplaceGrid, kept: slice
+) -> AbsorberEnergy:
+    """Return m (dq/dt)^2/2, the springs' k_l D^2/2 + k_nl D^4/4, D = q - w_i on either side, and what the dampers take.
 
     A damper takes c r^2, r = (Z (dq/dt - dw/dt) + c dD/dt)/(Z + c): the rate from the motion of its ends where it is weaker than the
     wall, and what its link's law makes of its force (:mod:`coaxshell.solver.interface.link_motion`) where it is stiffer, for then the
     motion of the ends errs by more than their difference. (Force on the shell less the springs') times dq/dt - dw/dt differs from it by the
     error of the time step: the defect.
+
+    Parameters
+    ----------
+    law : Properties
+        Dimensionless, of every absorber.
+    inner : sequence of int
+        The inner one of the two shells that each links.
+    links : LinkMotion or None
+        None without absorbers.
+    at : callable
+        The walls where they are held.
+    grid : LaplaceGrid
+    kept : slice
+        The grid's instants at which energies are taken.
     """
-    fitted = motion.problem.system.absorber_list
-    time, kept = motion.grid.time, motion.kept
-    links = motion.links
-    powers, energies = np.zeros((2, time.size)), np.zeros((2, time[kept].size))
+    powers, energies = np.zeros((2, grid.time.size)), np.zeros((2, grid.time[kept].size))
     if links is not None:
         q, dq, force = links.displacement, links.velocity, links.force
-        law = properties(fitted, motion.problem.scales)
         energies[0] = np.sum(0.5 * law.mass[:, None] * dq[:, kept] ** 2, axis=0)
-        for shell in range(len(motion.problem.shells)):
-            ends = [(n, shell - a.inner_shell) for n, a in enumerate(fitted) if shell - a.inner_shell in (0, 1)]
+        for shell in range(max(inner, default=0) + 2):
+            ends = [(n, shell - first) for n, first in enumerate(inner) if shell - first in (0, 1)]
             if not ends:
                 continue
             here, side = (list(part) for part in zip(*ends, strict=True))
-            w, dw = _at_absorbers(motion, shell, np.array([fitted[n].angle for n in here]))
+            w, dw, impedance = at(shell, here, side)
             stretch, parting = q[here] - w, dq[here] - dw
             damping, linear, cubic = (column[here, None] for column in (law.damping, law.linear, law.cubic))
             spring = linear * stretch + cubic * stretch**3
-            share = damping / (damping + _impedance(motion, shell))
+            share = damping / (damping + impedance)
             rate = parting + share * (links.stretch_rate[here, side] - parting)
             energies[1] += np.sum(0.5 * linear * stretch[:, kept] ** 2 + 0.25 * cubic * stretch[:, kept] ** 4, axis=0)
             powers[0] += np.sum(damping * rate**2, axis=0)
             powers[1] += np.sum(np.where(damping > 0.0, (force[here, side] - spring) * parting, 0.0), axis=0)
-    taken = integrate.cumulative_simpson(powers, dx=motion.grid.time_step, initial=0.0, axis=-1)[:, kept]
+    taken = integrate.cumulative_simpson(powers, dx=grid.time_step, initial=0.0, axis=-1)[:, kept]
     return AbsorberEnergy(energies[0], energies[1], taken[0], taken[1] - taken[0])
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from coaxshell.model.places import region_name, shell_name, shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress, ShareDone
-from coaxshell.response.energy.absorbers import absorber_energy
+from coaxshell.response.energy.absorbers import AbsorberEnergy, absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.shells import actuator_work, shell_dissipation, shell_energy
@@ -31,7 +31,7 @@ def parts_of(motion: Motion, report: Progress) -> dict[str, Entry]:
     report(0.1, "work on the surface")
     entries = _surface(motion)
     report(0.25, "shells and absorbers")
-    entries |= {**_shells(motion), **_absorbers(motion)}
+    entries |= {**_shells(motion), **absorber_entries(absorber_energy(motion))}
     return entries | _fluids(motion, lambda fraction: report(0.35 + 0.65 * fraction, "fluids"))
 
 
@@ -67,8 +67,9 @@ def _shells(motion: Motion) -> dict[str, Entry]:
     return entries | {"actuator_work": Entry(taken, "loss", "actuators", "work that the actuators have taken from the shells")}
 
 
-def _absorbers(motion: Motion) -> dict[str, Entry]:
-    kinetic, spring, dissipated, defect = absorber_energy(motion)
+def absorber_entries(found: AbsorberEnergy) -> dict[str, Entry]:
+    """Return the energy of absorbers by the names of the balance."""
+    kinetic, spring, dissipated, defect = found
     law = "what the forces on the moving ends make of the dampers' dissipation, less damper_dissipation: error of the time step"
     return {
         "absorber_kinetic": Entry(kinetic, "store", "absorbers", "kinetic energy of the absorbers' masses"),

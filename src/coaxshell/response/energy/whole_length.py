@@ -4,7 +4,8 @@ With the weights of Parseval's theorem (:mod:`coaxshell.solver.axial.motion`) fo
 
     E = L [E(k_0) + (1/2) sum_{j>=1} E(k_j)],
 
-E(k) the balance in two dimensions of the amplitudes at k, shares 2/L and 4/L of the sources included. Every wavenumber closes by itself.
+E(k) the balance in two dimensions of the amplitudes at k, shares 2/L and 4/L of the sources included. Every wavenumber closes by itself,
+without point absorbers: these take from some and give to others, and what they hold and dissipate closes the sum.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.energy.balance import ARRAYS, labelled, whole_steps
+from coaxshell.response.energy.held_points import HeldPoints
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.energy.parts import Entry, parts_of
+from coaxshell.response.energy.parts import Entry, absorber_entries, parts_of
 from coaxshell.solver.axial.motion import wave_motions
 from coaxshell.solver.axial.sampling import whole_length_sampling
 from coaxshell.solver.axial.solution import SpatialSolution
@@ -67,7 +69,8 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     count = 1 if uniform else len(sampling.modes)
     total: dict[str, Entry] = {}
     power = np.zeros(len(problem.shells))
-    for j, wave in enumerate(wave_motions(problem, sampling, grid)):
+    held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
+    for j, wave in enumerate(wave_motions(problem, sampling, grid, None if held is None else held.forces)):
         motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, every * settings.refinement, wave.incident)
         power += [wave.length * motion.power(wall).sum() for wall in range(power.size)]
         if not uniform:
@@ -81,6 +84,10 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
         for name, part in parts_of(motion, report).items():
             before = total[name].values if name in total else np.zeros_like(part.values)
             total[name] = part._replace(values=before + wave.length * part.values)
+        if held is not None:
+            held.add(wave)
+    if held is not None:
+        total |= absorber_entries(held.energy(slice(None, None, every * settings.refinement)))
     scales = problem.scales
     found = labelled(solution, every, total, scales.line_energy if uniform else scales.energy, "J/m" if uniform else "J")
     return found.assign_attrs(extent="per metre of length" if uniform else "over the whole length")
@@ -88,9 +95,6 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
 
 def require_balanced(problem: Problem) -> None:
     """Refuse what has neither an energy over the whole length nor one per length: InputError names the sources, or the absorbers."""
-    if problem.system.point_absorbers:
-        remedy = "run without them, or with line absorbers in two dimensions"
-        raise InputError("absorbers", "what point absorbers hold and dissipate is not balanced", remedy)
     for number, geometry in enumerate(problem.sources):
         if isinstance(geometry, PlaneGeometry) and geometry.inclination:
             where = f"source[{number}].inclination" if isinstance(problem.system.source, tuple) else "source.inclination"
@@ -105,4 +109,10 @@ def require_balanced(problem: Problem) -> None:
             "source",
             "spherical sources have an energy, in J, line sources and plane waves one per length, in J/m: together they have neither",
             "ask for the energy of each kind in a run of its own",
+        )
+    if problem.system.point_absorbers and not any(spherical):
+        raise InputError(
+            "absorbers",
+            "points hold an energy, in J, line sources and plane waves give one per length, in J/m: together they have neither",
+            "ask for the energy under spherical sources, or of line absorbers in two dimensions",
         )

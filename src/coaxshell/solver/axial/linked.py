@@ -19,6 +19,7 @@ from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_sums
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, admittance
+from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
 from coaxshell.solver.interface.march import march
 from coaxshell.solver.kernels import exponential_weights, initial_decay
 from coaxshell.solver.scaling import Problem
@@ -42,12 +43,22 @@ class PointSolution:
         q of every absorber.
     error : float
         Relative error of the forces by the steps of the march; 0 where nothing was marched.
+    exact : pair of ndarray or None
+        Transforms of the forces and of q of the absorbers carried, where they are linear.
     """
 
     forces: PointForces
     force: FloatArray
     displacement: FloatArray
     error: float = 0.0
+    exact: tuple[ComplexArray, ComplexArray] | None = None
+
+    def links(self, structure: PointStructure) -> LinkMotion:
+        """Return forces, motion and rates of every absorber of the description."""
+        absorbers = structure.layout.absorbers
+        if self.exact is not None:
+            return exact_motion(absorbers, structure.grid, *self.exact)
+        return marched_motion(absorbers, structure.grid.time_step, self.force, self.displacement)
 
 
 class PointStructure(StructureSpectra):
@@ -153,8 +164,9 @@ def solve_points(structure: PointStructure, progress: Progress | None = None) ->
     if absorbers.is_linear:
         force, displacement = _exact(structure)
         spectra = layout.of_every(force)
-        histories, moved, error = grid.invert(force), grid.invert(displacement), 0.0
+        histories, moved, error, exact = grid.invert(force), grid.invert(displacement), 0.0, (force, displacement)
     else:
+        exact = None
         result = march(structure, absorbers, progress=progress)
         histories, moved = result.force, result.mass_displacement
         error = _march_error(structure, histories)
@@ -162,7 +174,7 @@ def solve_points(structure: PointStructure, progress: Progress | None = None) ->
     every = layout.of_every(histories)
     sides = every.reshape(2, layout.member_count, -1).swapaxes(0, 1)
     forces = PointForces(layout.points, spectra, layout.parities)
-    return PointSolution(forces, sides, moved[absorbers.member], error)
+    return PointSolution(forces, sides, moved[absorbers.member], error, exact)
 
 
 def _exact(structure: PointStructure) -> tuple[ComplexArray, ComplexArray]:

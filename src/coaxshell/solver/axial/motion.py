@@ -8,7 +8,7 @@ and likewise v and the pressures; u = A_u sin kz + B_u cos kz. A and B do not me
 
     integral of w w' dz = L (A A' + B B')/2,        L A A' for k = 0:
 
-they are two more parities, of the axis, which share all operators.
+they are two more parities, of the axis, which share all operators. Forces of point absorbers make waves too, which add to A and B.
 """
 
 from __future__ import annotations
@@ -24,11 +24,15 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.families import Family, wave_sets
+from coaxshell.solver.axial.point_forces import PointForces, WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import amplitudes_of
 from coaxshell.solver.excitation import incident_of, source_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import node_blocks
+
+_NOTHING = 1e-13
+"""Of a motion, below which what is odd along the axis is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,18 +55,30 @@ class WaveMotion:
     axial: ComplexArray
     _families: list[Family]
     _shares: FloatArray
+    _around: int
     _problem: Problem
     _grid: LaplaceGrid
 
     def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return modal pressure and slope dp/dr on the outermost surface as if nothing were there, each (parities, orders, nodes)."""
         parities = source_parities(self._problem.system.sources)
-        found = [np.stack(incident_of(family.groups, parities, self._grid, basis)) for family in self._families]
-        pressure, slope = _superposed(self._shares, found)
+        sources = [i for i, family in enumerate(self._families) if family.forces is None]
+        found = [np.stack(incident_of(self._families[i].groups, parities, self._grid, basis)) for i in sources]
+        pressure, slope = _superposed(self._shares[sources], found, self._around)
         return pressure, slope
 
+    def at_points(self, points: WallPoints) -> ComplexArray:
+        """Return what this wavenumber adds to the transforms of w at points of walls, the means over their patches, (P, nodes)."""
+        k, found = float(self.modes.wavenumber), np.empty((points.count, self.normal.shape[-1]), np.complex128)
+        along = points.along(k) * np.array([np.cos(k * points.z), -np.sin(k * points.z)])[: self._shares.shape[1]]
+        shapes = [points.around(self._problem, self.modes, parity) for parity in range(self._around)]
+        for n, shell in enumerate(points.shell):
+            columns = np.concatenate([share * shape[n] for share in along[:, n] for shape in shapes])
+            found[n] = columns @ self.normal[shell].reshape(columns.size, -1)
+        return found
 
-def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid) -> Iterator[WaveMotion]:
+
+def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, forces: PointForces | None = None) -> Iterator[WaveMotion]:
     """Yield the motion of every axial wavenumber in turn, of sources that are all spherical or all uniform along the axis.
 
     Parameters
@@ -71,11 +87,16 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid) -
         Of three dimensions.
     sampling : AxialSampling
     grid : LaplaceGrid
+    forces : PointForces, optional
+        Of point absorbers under spherical sources.
     """
-    origin = np.zeros(1)
+    origin, around = np.zeros(1), source_parities(problem.system.sources)
+    around = around if forces is None else max(around, forces.parities)
     blocks = node_blocks(grid, sampling.max_order)
-    per_block = [wave_sets(problem, sampling, origin, grid.nodes[block])[0] for block in blocks]
-    waves = wave_sets(problem, sampling, origin, grid.nodes)[0]
+    per_block = [
+        wave_sets(problem, sampling, origin, grid.nodes[block], None if forces is None else forces.at(block))[0] for block in blocks
+    ]
+    waves = wave_sets(problem, sampling, origin, grid.nodes, forces)[0]
     for j, modes in enumerate(waves.modes):
         shares = np.array([[family.even[0, j], family.odd[0, j]] for family in waves.families])
         if not shares[:, 1].any():
@@ -83,15 +104,29 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid) -
 
         def work(which: int, j: int = j, shares: FloatArray = shares) -> ComplexArray:
             found = amplitudes_of(problem, per_block[which], j, grid, blocks[which])
-            return _superposed(shares, [amplitude[:3] for amplitude in found])
+            return _superposed(shares, [amplitude[:3] for amplitude in found], around)
 
         with ThreadPoolExecutor(WORKERS) as pool:
             motion = np.concatenate(list(pool.map(work, range(len(blocks)))), axis=-1)
         length = sampling.period * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
-        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, problem, grid)
+        if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
+            motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
+        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, around, problem, grid)
 
 
-def _superposed(shares: FloatArray, amplitudes: list[ComplexArray]) -> ComplexArray:
-    """Return what families make with their shares (families, axial parities): (..., parities, orders, nodes), first those of A."""
-    parts = [sum(share * amplitude for share, amplitude in zip(column, amplitudes, strict=True)) for column in shares.T]
+def _superposed(shares: FloatArray, amplitudes: list[ComplexArray], around: int) -> ComplexArray:
+    """Return what families make with their shares (families, axial parities): (..., parities, orders, nodes), first those of A.
+
+    Of each axial parity there are so many *around*; families that have fewer are zero there.
+    """
+    whole = [_widened(amplitude, around) for amplitude in amplitudes]
+    parts = [sum(share * amplitude for share, amplitude in zip(column, whole, strict=True)) for column in shares.T]
     return np.concatenate(parts, axis=-3)
+
+
+def _widened(amplitude: ComplexArray, around: int) -> ComplexArray:
+    missing = around - amplitude.shape[-3]
+    if missing == 0:
+        return amplitude
+    zeros = np.zeros((*amplitude.shape[:-3], missing, *amplitude.shape[-2:]), np.complex128)
+    return np.concatenate([amplitude, zeros], axis=-3)
