@@ -256,4 +256,12 @@ SPATIAL = (
         "transforms travel with a run to other processes",
         "solver/test_axial_blocks.py",
     ),
+    Mutation(
+        "voltage-of-one-station",
+        "studies/reading.py",
+        "[motion.solution for motion in response.motions]",
+        "[response.solution]",
+        "voltages of a study are those of the first station alone",
+        "studies/test_spatial_studies.py",
+    ),
 )

@@ -90,6 +90,14 @@ WITHOUT_SHELL = {
     "system": {"mass": "total_mass", "time_window_error": "time_window_error"},
 }
 """Quantities of the absorbers and of the system, by their names in text, and the properties of a reading that give them."""
+_OF_POINTS = {"absorber_mass": "kg", "absorber_force": "N"}
+"""Units of what point absorbers have otherwise than lines."""
+_NOT_OF_POINTS = {
+    "dissipated_energy": ("is not read of point absorbers", "leave it out, or use a function of the response"),
+    "total_mass": ("masses at points and masses per metre do not add up", "use absorbers.mass (kg) and the mass of each shell (kg/m)"),
+}
+_PLANE_ALONE = (*FLUID_QUANTITIES, "dissipated_energy")
+"""What is read in two dimensions alone."""
 
 
 @dataclass(frozen=True)
@@ -167,10 +175,6 @@ def metrics_of(asked: Metrics, system: System, code: UserCode = ANYWHERE) -> tup
     return tuple(found.values())
 
 
-_IN_ALL_DIMENSIONS = ("mass", "stress_truncation", "time_window_error")
-"""What stands beside the quantities of the table in three dimensions."""
-
-
 def require_readable(metrics: Sequence[Metric], dimensions: int) -> None:
     """Raise InputError for a metric that is not read from runs of so many dimensions."""
     for metric in metrics:
@@ -178,19 +182,30 @@ def require_readable(metrics: Sequence[Metric], dimensions: int) -> None:
             continue
         if metric.quantity in shell_metrics() and metric.quantity not in shell_metrics(dimensions):
             raise InputError(metric.name, "is read at stations of a run in three dimensions", "use dimensions=3, or leave it out")
-        if dimensions == 3 and metric.quantity not in (*shell_metrics(), *_IN_ALL_DIMENSIONS):
+        if dimensions == 3 and metric.quantity in _PLANE_ALONE:
             raise InputError(metric.name, "is not read in three dimensions", "use dimensions=2, or a function of the response")
 
 
-def metric_names(system: System) -> list[str]:
-    """Return the names of all metrics that a system has."""
+def without_shell(system: System) -> dict[str, dict[str, MetricEntry]]:
+    """Return what can be asked of the absorbers and of a system, by place and name; units of point absorbers are those of points."""
+    entries = {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}
+    if system.point_absorbers:
+        entries = {key: entry for key, entry in entries.items() if key not in _NOT_OF_POINTS}
+        entries |= {key: entries[key]._replace(units=units) for key, units in _OF_POINTS.items()}
+    return {place: {name: entries[key] for name, key in names.items() if key in entries} for place, names in WITHOUT_SHELL.items()}
+
+
+def metric_names(system: System, dimensions: int = 2) -> list[str]:
+    """Return the names of all metrics that a system has in so many dimensions."""
     count = len(system.shells)
     names: list[str] = []
     for i, wall in enumerate(system.shells):
         place = shell_place(i, count)
-        names += [f"{place}.{key}" for key, entry in shell_quantities().items() if _lacks(wall, entry) is None]
-    names += [f"{region_place(i, count)}.rms_pressure" for i, fluid in enumerate(system.fluids) if not isinstance(fluid, Vacuum)]
-    return names + [f"{place}.{key}" for place, keys in WITHOUT_SHELL.items() for key in keys]
+        names += [f"{place}.{key}" for key, entry in shell_quantities(dimensions).items() if _lacks(wall, entry) is None]
+    if dimensions == 2:
+        names += [f"{region_place(i, count)}.rms_pressure" for i, fluid in enumerate(system.fluids) if not isinstance(fluid, Vacuum)]
+    more = [(place, name) for place, names_there in without_shell(system).items() for name in names_there]
+    return names + [f"{place}.{name}" for place, name in more if dimensions == 2 or WITHOUT_SHELL[place][name] not in _PLANE_ALONE]
 
 
 def _metric(asked: Any, name: str | None, system: System, where: str, code: UserCode) -> Metric:
@@ -208,7 +223,9 @@ def _metric(asked: Any, name: str | None, system: System, where: str, code: User
     label = name or text
     if isinstance(item, str) and quantity in WITHOUT_SHELL.get(item, {}):
         attribute = WITHOUT_SHELL[item][quantity]
-        entry = {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}[attribute]
+        if system.point_absorbers and attribute in _NOT_OF_POINTS:
+            raise InputError(where, f"{text!r}: {_NOT_OF_POINTS[attribute][0]}", _NOT_OF_POINTS[attribute][1])
+        entry = without_shell(system)[item][quantity]
         return Metric(label, entry.units, entry.long_name, item, attribute)
     if listing == "fluids" or (quantity in FLUID_QUANTITIES and item in ("interior", "gap", "exterior")):
         return _of_fluid(text, label, item, quantity, system, where)

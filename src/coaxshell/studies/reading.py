@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
 
 from coaxshell.model.layers import Shell
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.response import Response
 from coaxshell.response.energy.absorbers import absorber_energy
@@ -22,7 +23,7 @@ from coaxshell.solver.electrodes import segment_length
 
 
 class DesignReading:
-    """What metrics take from a system alone, without a run; SI, absorbers and shells per metre of length.
+    """What metrics take from a system alone, without a run; SI, line absorbers and shells per metre of length, point absorbers as they are.
 
     Parameters
     ----------
@@ -49,27 +50,27 @@ class DesignReading:
     @cached_property
     def absorber_count(self) -> float:
         """How many absorbers there are."""
-        return float(len(self.system.absorber_list))
+        return float(len(self.system.absorber_list) + len(self.system.point_absorbers))
 
     @cached_property
     def absorber_mass(self) -> float:
-        """Mass of all absorbers, kg/m."""
+        """Mass of all absorbers, kg/m, or kg of those at points."""
         return absorber_mass(self.system)
 
     @cached_property
     def absorber_spacing(self) -> float:
-        """Smallest distance between neighbouring absorbers of one gap along the inner of the two shells they link, m."""
+        """Smallest distance between absorbers of one gap along the inner of the two shells they link, m."""
         return absorber_spacing(self.system)
 
     @cached_property
     def total_mass(self) -> float:
-        """Mass of all shells and absorbers, kg/m."""
+        """Mass of all shells and line absorbers, kg/m."""
         shells = sum(shell_mass(wall) for wall in self.system.shells if isinstance(wall, Shell))
         return shells + self.absorber_mass
 
 
 class MetricSource(DesignReading):
-    """What metrics take from one response; SI throughout, absorbers and shells per metre of length.
+    """What metrics take from one response, in three dimensions the largest over its stations; units as of :class:`DesignReading`.
 
     Parameters
     ----------
@@ -80,6 +81,7 @@ class MetricSource(DesignReading):
         super().__init__(response.system)
         self.response = response
         self.solution = response.solution
+        self._solutions = [motion.solution for motion in response.motions]
         self._whole = slice(0, self.solution.time.size)
         self._width = len(circle_angles(self.solution.normal.shape[2], self.solution.normal.shape[1]))
         self._head = self.system.sources[0].angle
@@ -114,8 +116,8 @@ class MetricSource(DesignReading):
         """Return the largest voltage that the control law asks for anywhere, before any saturation, V; 0 without control."""
         if self.solution.problem.shells[shell].gains is None:
             return 0.0
-        voltage = demanded_voltage(self.solution, shell)
-        return self._anywhere(lambda block: voltage[:, :, block])
+        voltages = (demanded_voltage(solution, shell) for solution in self._solutions)
+        return max(self._anywhere(partial(_window, voltage)) for voltage in voltages)
 
     def peak_actuator_field(self, shell: int) -> float:
         """Return the same as a field across the actuator, V/m."""
@@ -127,13 +129,15 @@ class MetricSource(DesignReading):
 
     def segment_sensor_voltage(self, shell: int) -> float:
         """Return the largest sensor voltage as a mean over the default segment (:mod:`coaxshell.solver.electrodes`), V."""
-        return largest_sensor_voltage(self.solution, shell, self._whole, segment_length(self.solution.problem, shell)).value
+        length = segment_length(self.solution.problem, shell)
+        return max(largest_sensor_voltage(solution, shell, self._whole, length).value for solution in self._solutions)
 
     def segment_actuator_voltage(self, shell: int) -> float:
         """Return the largest voltage asked for as a mean over the default segment, before any saturation, V; 0 without control."""
         if self.solution.problem.shells[shell].gains is None:
             return 0.0
-        return largest_demanded_voltage(self.solution, shell, self._whole, segment_length(self.solution.problem, shell)).value
+        length = segment_length(self.solution.problem, shell)
+        return max(largest_demanded_voltage(solution, shell, self._whole, length).value for solution in self._solutions)
 
     def segment_actuator_field(self, shell: int) -> float:
         """Return the same as a field across the actuator, V/m."""
@@ -156,14 +160,12 @@ class MetricSource(DesignReading):
     @cached_property
     def absorber_displacement(self) -> float:
         """Largest displacement of any absorber's mass, m; 0 without absorbers."""
-        found = self.solution.absorber_displacement
-        return 0.0 if found is None or not len(found) else float(np.abs(found).max()) * self.solution.problem.scales.length
+        return float(np.abs(self.response.absorber_displacement()).max()) if self.absorber_count else 0.0
 
     @cached_property
     def absorber_force(self) -> float:
-        """Largest force of any absorber on either of its shells, N/m; 0 without absorbers."""
-        found = self.solution.absorber_force
-        return 0.0 if found is None or not len(found) else float(np.abs(found).max()) * self.solution.problem.scales.line_force
+        """Largest force of any absorber on either of its shells, N/m, or N of those at points; 0 without absorbers."""
+        return float(np.abs(self.response.absorber_force()).max()) if self.absorber_count else 0.0
 
     @cached_property
     def dissipated_energy(self) -> float:
@@ -190,18 +192,33 @@ def shell_mass(shell: Shell) -> float:
 
 
 def absorber_mass(system: System) -> float:
-    """Return the mass of all absorbers of a system per metre of length, kg/m."""
-    return float(sum(absorber.mass for absorber in system.absorber_list))
+    """Return the mass of all absorbers of a system: per metre of length, kg/m, of lines, kg of points."""
+    return float(sum(absorber.mass for absorber in system.absorber_list or system.point_absorbers))
 
 
 def absorber_spacing(system: System) -> float:
-    """Return the smallest distance between neighbouring absorbers of one gap, m: the arc along the inner of the shells they link.
+    """Return the smallest distance between absorbers of one gap, m, along the inner of the shells they link.
 
-    A gap's whole circumference where it has a single absorber, that of the outermost shell where there are none.
+    Of lines the arc between neighbours, of points sqrt((R theta)^2 + z^2). A gap's whole circumference where it has a single absorber,
+    that of the outermost shell where there are none.
     """
     spacings = [math.tau * system.reference_radius]
     for i in {absorber.inner_shell for absorber in system.absorber_list}:
         angles = sorted(absorber.angle % 360.0 for absorber in system.absorber_list if absorber.inner_shell == i)
         steps = [after - before for before, after in pairwise([*angles, angles[0] + 360.0])]
         spacings.append(math.radians(min(steps)) * system.shells[i].radius)
+    for i in {absorber.inner_shell for absorber in system.point_absorbers}:
+        places = [(absorber.angle, absorber.z) for absorber in system.point_absorbers if absorber.inner_shell == i]
+        spacings.append(_closest(np.array(places), system.shells[i].radius))
     return min(spacings)
+
+
+def _closest(places: FloatArray, radius: float) -> float:
+    """Return the smallest distance between points of a cylinder (angle in degrees, z), the circumference of a single one."""
+    turns = np.abs((places[:, None, 0] - places[:, 0] + 180.0) % 360.0 - 180.0)
+    apart = np.hypot(np.radians(turns) * radius, places[:, None, 1] - places[:, 1])
+    return float(np.min(apart[~np.eye(len(places), dtype=bool)], initial=math.tau * radius))
+
+
+def _window(modal: FloatArray, block: slice) -> FloatArray:
+    return modal[:, :, block]

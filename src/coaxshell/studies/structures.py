@@ -39,7 +39,8 @@ class Structures:
     def response(self, system: System) -> Response:
         """Return the response of a system; InputError as :func:`coaxshell.response.simulate`."""
         saturates = system.control is not None and system.control.saturation
-        if self.resolution.engine != "spectral" or not (system.absorber_list or saturates):
+        prepares = self.resolution.engine == "spectral" and self.resolution.dimensions == 2
+        if not prepares or not (system.absorber_list or saturates):
             return simulate(system, progress=self._progress, settings=self.resolution)
         structure = structure_of(system)
         if self._prepared is None or self._structure != structure:

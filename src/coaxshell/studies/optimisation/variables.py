@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber
+from coaxshell.model.absorbers import Absorber, PointAbsorber
 from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.studies.varied_fields import Field, field_of, varied
@@ -166,7 +166,7 @@ def space_of(system: System, variables: Mapping[str, VariableLike]) -> Space:
     if not isinstance(variables, Mapping) or not variables:
         raise InputError("variables", "there are none", 'give at least one, as in {"absorbers.mass": Range(1, 20)}')
     single = any(name.startswith(EVERY) for name in variables)
-    base = system.replace(absorbers=system.absorber_list) if single else system
+    base = system.replace(absorbers=system.absorber_list or system.point_absorbers) if single else system
     found: list[Variable] = []
     for name, given in variables.items():
         where = f"variables.{name}"
@@ -221,7 +221,7 @@ def _field(base: System, path: str, where: str) -> Field:
 def _written_out(base: System, path: str) -> tuple[str, ...]:
     """Return a path, or one for each of the absorbers that are listed one by one."""
     name = path.removeprefix("absorbers.")
-    if name != path and isinstance(base.absorbers, tuple) and base.absorbers and name in Absorber.model_fields:
+    if name != path and isinstance(base.absorbers, tuple) and base.absorbers and name in type(base.absorbers[0]).model_fields:
         return tuple(f"absorbers[{i}].{name}" for i in range(len(base.absorbers)))
     return (path,)
 
@@ -252,11 +252,12 @@ def _each(base: System, name: str, wanted: Range | Integer | Choice, where: str)
     mode = getattr(wanted, "each", "") or "single"
     if mode not in ("single", "mirror"):
         raise InputError(f"{where}.each", f"{mode!r} is not allowed", 'must be "single" or "mirror"')
-    if not base.absorber_list:
+    assert isinstance(base.absorbers, tuple)
+    if not base.absorbers:
         raise InputError(where, "this system has no absorbers", "describe a ring of them first")
     plain = replace(wanted, each="") if isinstance(wanted, Range) else wanted
     made = []
-    for one, image in _pairs(base, where) if mode == "mirror" else [(i, i) for i in range(len(base.absorber_list))]:
+    for one, image in _pairs(base, where) if mode == "mirror" else [(i, i) for i in range(len(base.absorbers))]:
         if name == "angle" and mode == "mirror" and one == image:
             continue  # it sits on the axis and stays there
         paths = [f"absorbers[{i}].{name}" for i in dict.fromkeys((one, image))]
@@ -269,10 +270,12 @@ def _each(base: System, name: str, wanted: Range | Integer | Choice, where: str)
 
 def _pairs(base: System, where: str) -> list[tuple[int, int]]:
     """Return (absorber, its mirror image about the first source's direction), each pair once."""
-    axis, absorbers = base.sources[0].angle, base.absorber_list
+    axis = base.sources[0].angle
+    absorbers: tuple[Absorber | PointAbsorber, ...] = base.absorber_list or base.point_absorbers
 
-    def images(a: Absorber, b: Absorber) -> bool:
-        return a.inner_shell == b.inner_shell and abs(math.remainder(a.angle + b.angle - 2.0 * axis, 360.0)) < _SAME
+    def images(a: Absorber | PointAbsorber, b: Absorber | PointAbsorber) -> bool:
+        at_one_z = getattr(a, "z", 0.0) == getattr(b, "z", 0.0)
+        return at_one_z and a.inner_shell == b.inner_shell and abs(math.remainder(a.angle + b.angle - 2.0 * axis, 360.0)) < _SAME
 
     pairs = []
     for i, absorber in enumerate(absorbers):
