@@ -40,8 +40,7 @@ def test_a_run_is_refused_for_all_that_makes_it_large_together():
     limits.check_cost(large, Settings(2.0, 2e-2, 12), live=True)
 
 
-def test_a_run_in_three_dimensions_costs_as_many_as_it_has_wavenumbers(monkeypatch):
-    monkeypatch.setattr(limits, "require_two_dimensions", lambda system, settings: None)
+def test_a_run_in_three_dimensions_costs_as_many_as_it_has_wavenumbers():
     bare, fine = presets.load("bare"), {"time_step": 1e-3, "modes": 150, "dimensions": 3}
     with pytest.raises(InputError, match=r"^resolution: .* takes about .*fewer orders, stations or shells"):
         limits.check_cost(bare, Settings(**fine), live=True)

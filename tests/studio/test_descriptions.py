@@ -174,8 +174,7 @@ def test_bodies_are_bounded(client):
     assert client.post("/api/validate", content=json.dumps({"toml": "x"})).status_code == 415
 
 
-def test_a_resolution_in_three_dimensions_is_checked_as_everywhere(client, monkeypatch):
-    monkeypatch.setattr(limits, "require_two_dimensions", lambda system, settings: None)
+def test_a_resolution_in_three_dimensions_is_checked_as_everywhere(client):
     spatial = {"duration": 1.0, "time_step": 0.02, "modes": 8, "dimensions": 3, "stations": ["0 m", "70 cm"], "axial_period": "20 m"}
     answer = validated(client, system=described("bare"), resolution=spatial)
     assert answer["resolution"] == {**spatial, "stations": [0.0, 0.7], "axial_period": 20.0}

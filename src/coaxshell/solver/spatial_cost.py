@@ -26,7 +26,8 @@ def sampling_of(system: System, settings: Settings, highest_order: int) -> Axial
 
 def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     """Return the cost of a run in three dimensions, given the *size* of the same run in two; InputError for a period that is too short."""
-    pairs = sum(modes.count for modes in sampling_of(system, settings, size.orders - 1).modes) * size.nodes
+    tops = sampling_of(system, settings, size.orders - 1).tops
+    pairs = float(tops.sum() + tops.size) * size.nodes
     stations, amplitudes = len(settings.stations), size.shells * size.source_parities
     kept = stations * amplitudes * (_FIELDS * (size.plane + size.history) + 6.0 * size.plane)
     return Cost(

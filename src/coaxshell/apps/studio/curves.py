@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from coaxshell.apps.studio import limits
 from coaxshell.apps.studio.arrays import Item, Packed, packed
-from coaxshell.model import RigidShell, Shell
+from coaxshell.model import Absorber, PointAbsorber, RigidShell, Shell
 from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
@@ -17,17 +18,18 @@ from coaxshell.response.peaks import Peak
 from coaxshell.response.quantities import QUANTITIES, Quantity, Where, columns
 from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.tables import quantities_of
+from coaxshell.response.wall_motion import WallMotion
 
 _ABSORBER_FORCE = {"absorber_force": ("absorber force, inward", "N/m")}
 _PLACES: dict[Where, str] = {"head": "peak {} at the head", "tail": "peak {} at the tail", "anywhere": "peak {} anywhere", "rms": "RMS {}"}
 
 
 def quantities() -> dict[str, tuple[str, str]]:
-    """Return what is given at head and tail of each shell: label and unit by name."""
-    return {quantity.name: (quantity.label, quantity.unit) for quantity in columns()} | _ABSORBER_FORCE
+    """Return what is given at head and tail of each shell, in any dimensions: label and unit by name."""
+    return {quantity.name: (quantity.label, quantity.unit) for quantity in columns(3)} | _ABSORBER_FORCE
 
 
-def bars() -> dict[str, tuple[str, str]]:
+def bars(dimensions: int = 2) -> dict[str, tuple[str, str]]:
     """Return the bars of a shell: label and unit by their keys in the summary."""
     return {
         quantity.key(where): (
@@ -35,19 +37,25 @@ def bars() -> dict[str, tuple[str, str]]:
             quantity.unit,
         )
         for quantity in QUANTITIES.values()
-        if quantity.dimensions == 2
+        if quantity.dimensions <= dimensions
         for where in quantity.summary
     }
 
 
 def curves(response: Response, seconds: float) -> Packed:
     """Return header and arrays of a run as docs/studio-api.md says."""
-    system, count = response.system, len(response.system.shells)
     # Without peaks of velocities and accelerations, errors and warnings, which a slider would wait for.
     summary = summarise(response.solution, judged=False)
-    absorbers = _absorbers(response)
+    absorbers = absorbers_of(response, response.system.absorber_list)
+    header = {**header_of(response, summary, seconds), "absorbers": absorbers, "bars": bars_of(response, summary)}
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
+
+
+def header_of(response: Response, summary: Summary, seconds: float) -> dict[str, Any]:
+    """Return what the headers of all runs have: resolution and shells."""
+    system, count = response.system, len(response.system.shells)
     highest = {shell.name: shell.actuator_limit for shell in summary.shells}
-    header = {
+    return {
         "ok": True,
         "resolution": limits.table_of(response.settings),
         "seconds": seconds,
@@ -63,10 +71,7 @@ def curves(response: Response, seconds: float) -> Packed:
             }
             for index, shell in enumerate(system.shells)
         ],
-        "absorbers": absorbers,
-        "bars": _bars(response, summary),
     }
-    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
 
 
 def judgement(response: Response) -> dict[str, Any]:
@@ -89,26 +94,27 @@ def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]
     ends = np.array([head, head + 180.0])
     items: dict[str, Item] = {}
     for index in range(len(response.system.shells)):
-        for quantity in _given(response, index):
+        for quantity in given(response.motion, index):
             values = quantity.at(response.motion, index, ends)
             items[f"{quantity.name}/{index}"] = Item(np.asarray(values, dtype=np.float32).T, quantity.unit)
     if solution.absorber_force is not None and response.system.absorber_list:
         forces = solution.problem.scales.line_force * solution.absorber_force
         for index in range(len(response.system.shells)):
             for side, first in ((0, index), (1, index - 1)):  # a shell is the inner one of the gap outside it, the outer one of that inside
-                pair = _nearest(response, head, first)
+                pair = _nearest(response.system.absorber_list, head, first)
                 if pair is not None and f"absorber_force/{index}" not in items:
                     items[f"absorber_force/{index}"] = Item(forces[list(pair), side], "N/m")
     return items
 
 
-def _given(response: Response, index: int) -> list[Quantity]:
-    return quantities_of(response.motion, index) if isinstance(response.system.shells[index], Shell) else []
+def given(motion: WallMotion, index: int) -> list[Quantity]:
+    """Return the quantities of a shell whose histories are given."""
+    return quantities_of(motion, index) if isinstance(motion.solution.problem.system.shells[index], Shell) else []
 
 
-def _absorbers(response: Response) -> dict[str, Any]:
-    listed = response.system.absorber_list
-    pair = _nearest(response, response.system.sources[0].angle, None)
+def absorbers_of(response: Response, listed: Sequence[Absorber | PointAbsorber]) -> dict[str, Any]:
+    """Return where absorbers are, and the numbers of those nearest to head and tail."""
+    pair = _nearest(listed, response.system.sources[0].angle, None)
     return {
         "count": len(listed),
         "angles": [absorber.angle for absorber in listed],
@@ -118,12 +124,11 @@ def _absorbers(response: Response) -> dict[str, Any]:
     }
 
 
-def _nearest(response: Response, head: float, inner_shell: int | None) -> tuple[int, int] | None:
+def _nearest(listed: Sequence[Absorber | PointAbsorber], head: float, inner_shell: int | None) -> tuple[int, int] | None:
     """Return the numbers of the absorbers nearest to head and tail, of one gap or of all; None without any."""
-    numbers = [n for n, one in enumerate(response.system.absorber_list) if inner_shell in (None, one.inner_shell)]
+    numbers = [n for n, one in enumerate(listed) if inner_shell in (None, one.inner_shell)]
     if not numbers:
         return None
-    listed = response.system.absorber_list
 
     def nearest(angle: float) -> int:
         return min(numbers, key=lambda n: round(abs((listed[n].angle - angle + 180.0) % 360.0 - 180.0), 9))
@@ -131,26 +136,32 @@ def _nearest(response: Response, head: float, inner_shell: int | None) -> tuple[
     return nearest(head), nearest(head + 180.0)
 
 
-def _bars(response: Response, summary: Summary) -> list[dict[str, Any]]:
+def bars_of(response: Response, summary: Summary, dimensions: int = 2) -> list[dict[str, Any]]:
+    """Return the bars of all shells, and of the absorbers."""
     count = len(response.system.shells)
     numbers = {shell_name(index, count): index for index in range(count)}
     found: list[dict[str, Any]] = []
     for shell in summary.shells:
-        for name, (label, unit) in bars().items():
+        for name, (label, unit) in bars(dimensions).items():
             value: Peak | float | None = getattr(shell, name)
             if value is None:
                 continue
             told = _peak(value) if isinstance(value, Peak) else {"value": _finite(value), "time": None, "angle": None}
             found.append({"shell": numbers[shell.name], "name": name, "label": label, "unit": unit, **told})
-    for name, label, unit in (
-        ("absorber_displacement", "peak absorber displacement", "m"),
-        ("absorber_force", "peak absorber force", "N/m"),
-    ):
-        largest = getattr(summary, name)
-        if largest is not None:
-            told = {"value": _finite(largest), "time": None, "angle": None}
-            found.append({"shell": None, "name": name, "label": label, "unit": unit, **told})
-    return found
+    return [*found, *absorber_bars(summary.absorber_displacement, summary.absorber_force, "N/m")]
+
+
+def absorber_bars(displacement: float | None, force: float | None, unit: str) -> list[dict[str, Any]]:
+    """Return the bars of the absorbers, whose forces have a unit of their own at points."""
+    each = (
+        ("absorber_displacement", "peak absorber displacement", "m", displacement),
+        ("absorber_force", "peak absorber force", unit, force),
+    )
+    return [
+        {"shell": None, "name": name, "label": label, "unit": of, "value": _finite(largest), "time": None, "angle": None}
+        for name, label, of, largest in each
+        if largest is not None
+    ]
 
 
 def _peak(peak: Peak) -> dict[str, Any]:

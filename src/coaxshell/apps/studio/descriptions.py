@@ -11,7 +11,7 @@ from coaxshell.errors import InputError
 from coaxshell.model import RigidShell, System
 from coaxshell.model.places import shell_phrase
 from coaxshell.model.toml import loads
-from coaxshell.studies.metrics import metric_names
+from coaxshell.studies.metrics import metric_names, without_shell
 from coaxshell.studies.reading import absorber_mass, shell_mass
 
 
@@ -39,10 +39,16 @@ def normalised(system: System) -> dict[str, Any]:
     return dict(system.model_dump(mode="json"))
 
 
-def told(system: System) -> dict[str, Any]:
-    """Return the answer to a valid description."""
+def told(system: System, dimensions: int = 2) -> dict[str, Any]:
+    """Return the answer to a valid description, with the metrics of runs in so many dimensions."""
     plain = {"system": normalised(system), "toml": system.to_toml_string()}
-    return {"ok": True, **plain, "derived": derived(system), "metrics": metric_names(system), "records": viewed(system)}
+    metrics = {"metrics": metric_names(system, dimensions), "metric_units": metric_units(system)}
+    return {"ok": True, **plain, "derived": derived(system), **metrics, "records": viewed(system)}
+
+
+def metric_units(system: System) -> dict[str, str]:
+    """Return the units of what is asked of the absorbers and the system: those of absorbers at points are others than those of lines."""
+    return {f"{place}.{name}": entry.units for place, entries in without_shell(system).items() for name, entry in entries.items()}
 
 
 def derived(system: System) -> list[dict[str, Any]]:
@@ -62,9 +68,10 @@ def derived(system: System) -> list[dict[str, Any]]:
             (f"thickness/{index}", f"thickness of the {name}", shell.thickness, "m"),
         ]
         rows += [(f"slenderness/{index}", f"radius by thickness of the {name}", shell.radius / shell.thickness, "")]
-    added = absorber_mass(system)
-    rows += [("shell_mass", "mass of all shells", shells_mass, "kg/m"), ("absorber_mass", "mass of all absorbers", added, "kg/m")]
-    if shells_mass:
+    added, points = absorber_mass(system), bool(system.point_absorbers)
+    rows += [("shell_mass", "mass of all shells", shells_mass, "kg/m")]
+    rows += [("absorber_mass", "mass of all absorbers", added, "kg" if points else "kg/m")]
+    if shells_mass and not points:
         rows.append(("absorber_share", "absorbers by shells", added / shells_mass, ""))
     for index, source in enumerate(system.sources):
         of = "" if len(system.sources) == 1 else f" of source {index}"

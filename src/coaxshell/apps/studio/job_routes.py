@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
 from starlette.background import BackgroundTask
@@ -17,25 +17,22 @@ from coaxshell._version import __version__
 from coaxshell.apps.studio import arrays, bodies, downloads, limits, refusals, study_routes, worker
 from coaxshell.apps.studio.jobs import Job
 from coaxshell.apps.studio.refusals import RefusedError
-from coaxshell.apps.studio.routes import MOST_REVISION, studio_of, wanted
+from coaxshell.apps.studio.routes import ENERGY_INSTEAD, FIELD_INSTEAD, MOST_REVISION, refuse_space, studio_of, wanted
 from coaxshell.apps.studio.state import Run, Studio
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
     from coaxshell.studies.optimisation.optimum import Optimum
 
-KINDS = ("solve", "field", "film", "energy", "sweep", "optimise")
 HEARTBEAT, THROTTLE = 15.0, 0.1
 
 
 async def start(request: Request) -> Response:
     """Start a job."""
     studio, data = studio_of(request), await bodies.read_table(request)
-    job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", KINDS), bodies.text_of(data, "title"))
+    job = Job(bodies.name_of(data, "client"), bodies.one_of(data, "kind", tuple(_STARTS)), bodies.text_of(data, "title"))
     try:
-        await {"solve": _solve, "field": _field, "film": _film, "energy": _energy, "sweep": _sweep, "optimise": _optimise}[job.kind](
-            studio, job, data
-        )
+        await _STARTS[job.kind](studio, job, data)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({"job": job.told()}, 202)
@@ -66,6 +63,7 @@ async def _field(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.apps.studio import fields
 
     run = studio.run(bodies.name_of(data, "run"))
+    limits.require_plane(run.settings, "the pressure", FIELD_INSTEAD)
     every, size = bodies.whole_of(data, "every", 1, limits.STEPS, 8), bodies.whole_of(data, "size", 32, 320, 200)
     half_width = bodies.number_of(data, "half_width", 0.5, 10.0, 3.0)
     values = (run.settings.steps // every + 1) * size**2
@@ -81,9 +79,21 @@ async def _energy(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.apps.studio import fields
 
     run = studio.run(bodies.name_of(data, "run"))
+    limits.require_plane(run.settings, "the energy", ENERGY_INSTEAD)
     job.run = run.name
     every = bodies.whole_of(data, "every", 1, limits.STEPS, 10)
     studio.jobs.start(job, fields.energy, *run.pair, every, place=run.place)
+
+
+async def _unrolled(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.apps.studio import unrolled
+
+    run = studio.run(bodies.name_of(data, "run"))
+    shell, frames = bodies.whole_of(data, "shell", 0, limits.SHELLS - 1, 0), bodies.whole_of(data, "frames", 2, 200, 120)
+    quantity = bodies.one_of(data, "quantity", tuple(unrolled.COMPONENTS), "stress")
+    await run_in_threadpool(unrolled.require_flat, run.system, run.settings, shell)
+    job.run = run.name
+    studio.jobs.start(job, unrolled.unrolled, *run.pair, shell, quantity, frames, place=run.place)
 
 
 async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
@@ -92,6 +102,8 @@ async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     frames, size = bodies.whole_of(data, "frames", 2, 500, 120), bodies.whole_of(data, "size", 64, 480, 360)
     fps = bodies.number_of(data, "fps", 1.0, 60.0, 25.0)
     job.run, job.file, job.name = runs[0].name, studio.file(kind), runs[0].system.name
+    for run in runs:
+        limits.require_plane(run.settings, "films", FIELD_INSTEAD)
     pairs = [run.pair for run in runs]
     studio.jobs.start(job, downloads.movie, pairs, frames, fps, size, job.file, place=runs[0].place)
 
@@ -110,6 +122,17 @@ async def _optimise(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     study = await run_in_threadpool(study_routes.asked, "optimise", data)
     job.name = study.system.name
     studio.jobs.start(job, optimisations.optimise, *study.arguments, place=worker.structure_key(study.system, study.settings))
+
+
+_STARTS: dict[str, Callable[[Studio, Job, dict[str, Any]], Awaitable[None]]] = {
+    "solve": _solve,
+    "field": _field,
+    "film": _film,
+    "energy": _energy,
+    "unrolled": _unrolled,
+    "sweep": _sweep,
+    "optimise": _optimise,
+}
 
 
 def _runs(studio: Studio, names: Any) -> list[Run]:
@@ -143,7 +166,7 @@ async def result(request: Request) -> Response:
         from coaxshell.apps.studio import optimisations
 
         return JSONResponse({"kind": "optimise", **await run_in_threadpool(optimisations.told, found.result)})
-    if found.kind == "energy":
+    if found.kind in ("energy", "unrolled"):
         return arrays.answer(found.result, run=found.run)
     if found.kind != "field":
         raise RefusedError(404, "not-found", "result", f"a {found.kind} has none", "see /api/runs/{run} or /api/jobs/{id}/file")
@@ -218,6 +241,8 @@ async def download(request: Request) -> Response:
         time = bodies.number_of(dict(query), "time", 0.0, 1e6, 1.0)
         others = query.getlist("compare")
         runs = [run, *(_runs(studio, others) if others else [])]
+        for one in runs if quantity == "field" else ():
+            refuse_space(one, "the pressure", FIELD_INSTEAD)
         work = studio.workers.submit(downloads.figure, [one.pair for one in runs], quantity, time, path, place=run.place, live=False)
     else:
         raise refusals.not_found(f"{wanted_file}.{suffix}")

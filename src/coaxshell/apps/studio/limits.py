@@ -23,13 +23,15 @@ from coaxshell.model.naming import suggestion
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.memory import words_of
 from coaxshell.solver.cost import run_cost
-from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.settings import AXIAL, Settings
+from coaxshell.solver.solvable import require_solvable
 
 BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUDIO_NESTING.value
 SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABSORBERS.value
 SOURCES, SAMPLES, STATIONS = STUDIO_SOURCES.value, STUDIO_SAMPLES.value, STUDIO_STATIONS.value
 PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
+PREVIEW_SPATIAL = Settings(time_step=1e-2, modes=32, dimensions=3)
+"""The bare double shell at one station in less than 3 s of a processor."""
 ENTRIES = ("duration", "time_step", "modes", "refinement", "dimensions", "stations", "axial_modes", "axial_period")
 """Entries of a resolution that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
@@ -127,13 +129,25 @@ def check_cost(system: System, settings: Settings, *, live: bool) -> None:
 
     Also for one that has no solution in the dimensions asked for.
     """
-    require_two_dimensions(system, settings)
+    require_solvable(system, settings)
     cost, most = run_cost(system, settings), LIVE_COST if live else FULL_COST
     if cost.memory > most.memory or cost.seconds > most.seconds:
         found = f"a run of this system at this resolution takes about {words_of(cost.memory)} and {cost.duration}"
         fewer = "orders, stations or shells" if settings.dimensions == 3 else "orders, absorbers or shells"
         remedy = f"at most {words_of(most.memory)} and {most.duration} here: fewer {fewer}, or a coarser time step"
         raise InputError("resolution", found, remedy)
+
+
+def require_plane(settings: Settings, what: str, remedy: str) -> None:
+    """Raise InputError for a run in three dimensions where the studio shows two alone."""
+    if settings.dimensions == 3:
+        raise InputError("run", f"is of three dimensions, of which the studio does not show {what}", remedy)
+
+
+def cost_of(system: System, settings: Settings) -> dict[str, Any]:
+    """Return what a run is estimated to cost, as plain data: seconds within a factor of 3, bytes of memory."""
+    cost = run_cost(system, settings)
+    return {"seconds": cost.seconds, "duration": cost.duration, "memory": cost.memory}
 
 
 def check_values(where: str, values: object) -> None:
@@ -167,7 +181,8 @@ def settings_of(given: object, *, live: bool, system: System | None = None) -> S
     for name in given if isinstance(given, dict) else ():
         if name not in ENTRIES:
             raise InputError(f"resolution.{name}", "is not an entry of a resolution", suggestion(name, ENTRIES))
-    settings = Settings.of(system, given, base=PREVIEW, where="resolution")
+    spatial = isinstance(given, dict) and str(given.get("dimensions")) == "3"
+    settings = Settings.of(system, given, base=PREVIEW_SPATIAL if spatial else PREVIEW, where="resolution")
     modes, steps = settings.modes, settings.steps * settings.refinement
     if modes == "auto":
         raise InputError("resolution.modes", "'auto' is not allowed", f"give a whole number from 1 to {MODES}")

@@ -45,7 +45,7 @@ def planned(system: System, settings: Settings, data: dict[str, Any]) -> Problem
         if entry in data:
             raise InputError(entry, "is not taken here", "leave it out; coaxshell optimise takes it")
     variables = _variables(system, data.get("variables"))
-    names = metric_names(system)
+    names = metric_names(system, settings.dimensions)
     objectives, constraints = _objectives(data.get("objectives"), names), _constraints(data.get("constraints", []), names)
     evaluations = _whole(data, "evaluations", 1, limits.EVALUATIONS, 100)
     population = None if data.get("population") is None else _whole(data, "population", 4, limits.POPULATION, None)
@@ -131,7 +131,7 @@ class Hand:
     def __init__(self, problem: Problem, settings: Settings) -> None:
         prepared, self._settings, self._metrics = None, settings, problem.targets.metrics
         with suppress(InputError):  # an unstable feedback is the baseline's own failure
-            prepared = worker.structure(problem.space.base, settings)
+            prepared = worker.structure(problem.space.base, settings) if settings.dimensions == 2 else None
         self._structures = Structures(problem.resolution, prepared, worker.report)
         self._count, self._done, self._stage = 1 + problem.evaluations, 0, "baseline"
         self.warnings: dict[System, tuple[str, ...]] = {}

@@ -75,8 +75,12 @@ def _described(data: dict[str, Any]) -> dict[str, Any]:
     settings = limits.settings_of(given, live=False, system=system)
     with refusals.readable("system"):
         limits.check_cost(system, settings, live=False)
+        costs = {"full": limits.cost_of(system, settings)}
+        if isinstance(data.get("preview"), dict):
+            costs["preview"] = limits.cost_of(system, limits.settings_of(data["preview"], live=True, system=system))
     return {
-        **descriptions.told(system),
+        **descriptions.told(system, settings.dimensions),
+        "costs": costs,
         "resolution": {name: value for name, value in limits.table_of(settings).items() if not isinstance(given, dict) or name in given},
     }
 
@@ -149,6 +153,18 @@ async def judgement(request: Request) -> Response:
     return JSONResponse({"run": found.name, **told})
 
 
+FIELD_INSTEAD = "use two dimensions here, or response.pressure(...) of a run in Python"
+ENERGY_INSTEAD = "use two dimensions here, or coaxshell run --dimensions 3 --energy FILE"
+
+
+def refuse_space(run: Run, what: str, remedy: str) -> None:
+    """Refuse what is not shown of a run in three dimensions."""
+    try:
+        limits.require_plane(run.settings, what, remedy)
+    except InputError as error:
+        raise RefusedError.of(error) from None
+
+
 async def energy(request: Request) -> Response:
     """Answer with the energy balance of a run."""
     from coaxshell.apps.studio import fields
@@ -156,6 +172,7 @@ async def energy(request: Request) -> Response:
     studio = studio_of(request)
     found = studio.run(request.path_params["run"])
     every = bodies.whole_of(dict(request.query_params), "every", 1, limits.STEPS, 10)
+    refuse_space(found, "the energy", ENERGY_INSTEAD)
     return await of_run(found, studio.workers.submit(fields.energy, *found.pair, every, place=found.place, live=False).future)
 
 
@@ -167,6 +184,7 @@ async def point(request: Request) -> Response:
     found = studio.run(request.path_params["run"])
     query = dict(request.query_params)
     x, y = (bodies.number_of(query, name, -20.0, 20.0) for name in ("x", "y"))
+    refuse_space(found, "the pressure", FIELD_INSTEAD)
     return await of_run(found, studio.workers.submit(fields.point, *found.pair, x, y, place=found.place, live=False).future)
 
 

@@ -35,7 +35,11 @@ def schema() -> dict[str, Any]:
         "explosives": list(EXPLOSIVES),
         "metric_units": _metric_units(),
         "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in quantities().items()],
-        "resolutions": {"preview": limits.table_of(limits.PREVIEW), "full": limits.table_of(limits.FULL)},
+        "resolutions": {
+            "preview": limits.table_of(limits.PREVIEW),
+            "full": limits.table_of(limits.FULL),
+            "preview_spatial": limits.table_of(limits.PREVIEW_SPATIAL),
+        },
         "films": ["mp4", "webp"] if find_spec("imageio_ffmpeg") else ["webp"],
         "limits": limits.table(),
     }
@@ -43,7 +47,7 @@ def schema() -> dict[str, Any]:
 
 def _metric_units() -> dict[str, str]:
     """Return the unit of each metric by its name, or by its quantity where the place does not matter."""
-    units = {name: entry.units for name, entry in {**shell_quantities(), **FLUID_QUANTITIES}.items()}
+    units = {name: entry.units for name, entry in {**shell_quantities(3), **FLUID_QUANTITIES}.items()}
     for place, names in WITHOUT_SHELL.items():
         units |= {f"{place}.{name}": {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}[key].units for name, key in names.items()}
     return units

@@ -54,7 +54,7 @@ def _sweep(data: dict[str, Any]) -> Asked:
     seed = bodies.whole_of(data, "seed", 0, 2**31, 0)
     system, settings = wanted(data, live=False)
     over, metrics = data.get("over"), data.get("metrics", sweeps.METRICS)
-    plan = sweeps.planned(system, over, metrics, points, samples, seed)
+    plan = sweeps.planned(system, settings, over, metrics, points, samples, seed)
     entries = {"metrics": metrics, "points": points, "samples": samples, "seed": None if samples is None else seed}
     return Asked(system, settings, (system, settings, *plan), entries, ("over", over or {}))
 

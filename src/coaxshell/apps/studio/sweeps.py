@@ -25,7 +25,9 @@ from coaxshell.studies.varied_fields import varied
 METRICS = ["inner.peak_stress", "outer.peak_stress"]
 
 
-def planned(system: System, over: Any, metrics: Any, points: str, samples: int | None, seed: int) -> tuple[Design, tuple[Metric, ...]]:
+def planned(
+    system: System, settings: Settings, over: Any, metrics: Any, points: str, samples: int | None, seed: int
+) -> tuple[Design, tuple[Metric, ...]]:
     """Return points and metrics of a sweep.
 
     Raises
@@ -45,7 +47,7 @@ def planned(system: System, over: Any, metrics: Any, points: str, samples: int |
             raise InputError(f"over.{path}", f"{shown(count)} values are not allowed here", f"give a whole number, at most {limits.CASES}")
     if samples is not None and samples > limits.CASES:
         raise InputError("samples", f"{samples} are too many here", f"at most {limits.CASES}")
-    known = metric_names(system)
+    known = metric_names(system, settings.dimensions)
     if not isinstance(metrics, list) or len(metrics) > len(known):
         raise InputError("metrics", f"{shown(metrics)} is not allowed", "give a list of names such as inner.peak_stress")
     for number, name in enumerate(metrics):

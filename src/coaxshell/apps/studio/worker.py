@@ -15,7 +15,7 @@ from coaxshell.apps.studio import limits, memory
 from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
-from coaxshell.response import PreparedSystem, Response, prepare
+from coaxshell.response import PreparedSystem, Response, prepare, simulate
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.executors import begin_worker
 
@@ -133,15 +133,20 @@ def answer(system: System, settings: Settings) -> Response:
     if found is not None:
         return found
     _Here.last = None
-    prepared = _at_hand(system, settings)
-    try:
-        response = prepared.simulate(system.absorbers, progress=report)
-    finally:
-        _Here.structures.put(structure_key(system, settings), prepared)  # weighed afterwards: it grows with the run
-    if not _live(settings):
+    response = simulate(system, settings=settings, progress=report) if settings.dimensions == 3 else _on_structure(system, settings)
+    if settings.dimensions == 3 or not _live(settings):
         _Here.answers.put(key, response.without_transforms())
     _Here.last = key, response
     return response
+
+
+def _on_structure(system: System, settings: Settings) -> Response:
+    """Return the response of a system by its structure, which is kept."""
+    prepared = _at_hand(system, settings)
+    try:
+        return prepared.simulate(system.absorbers, progress=report)
+    finally:
+        _Here.structures.put(structure_key(system, settings), prepared)  # weighed afterwards: it grows with the run
 
 
 def judge(system: System, settings: Settings) -> dict[str, Any]:
@@ -182,7 +187,10 @@ def _structure(system: System, settings: Settings) -> PreparedSystem:
 def solve(system: System, settings: Settings) -> Any:
     """Return the curves of a run."""
     from coaxshell.apps.studio.curves import curves
+    from coaxshell.apps.studio.station_curves import station_curves
+    from coaxshell.response.spatial import SpatialResponse
 
     start = time.perf_counter()
     response = answer(system, settings)
-    return curves(response, time.perf_counter() - start)
+    seconds = time.perf_counter() - start
+    return station_curves(response, seconds) if isinstance(response, SpatialResponse) else curves(response, seconds)

@@ -61,11 +61,15 @@ class AxialSampling:
         return self.spacing * np.arange(math.floor(self.highest / self.spacing * (1.0 + 1e-12)) + 1, dtype=np.float64)
 
     @cached_property
+    def tops(self) -> FloatArray:
+        """The highest order with (m/M)^2 + (k/k_max)^2 <= 1 at every wavenumber, shape (waves,)."""
+        room = np.maximum(1.0 - (self.wavenumbers / self.highest) ** 2, 0.0)
+        return np.floor(self.max_order * np.sqrt(room) + 1e-9)
+
+    @cached_property
     def modes(self) -> list[Modes]:
         """Orders with (m/M)^2 + (k/k_max)^2 <= 1 at every wavenumber."""
-        room = np.maximum(1.0 - (self.wavenumbers / self.highest) ** 2, 0.0)
-        tops = np.floor(self.max_order * np.sqrt(room) + 1e-9)
-        return [Modes.up_to(int(top), float(k)) for top, k in zip(tops, self.wavenumbers, strict=True)]
+        return [Modes.up_to(int(top), float(k)) for top, k in zip(self.tops, self.wavenumbers, strict=True)]
 
     @cached_property
     def weights(self) -> FloatArray:

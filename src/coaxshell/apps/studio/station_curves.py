@@ -1,0 +1,60 @@
+"""A response in three dimensions as the arrays and bars that the page draws: at every station, and the largest over all."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from coaxshell.apps.studio.arrays import Item, Packed, packed
+from coaxshell.apps.studio.curves import absorber_bars, absorbers_of, bars_of, given, header_of, judgement
+from coaxshell.response.spatial import SpatialResponse
+
+
+def station_curves(response: SpatialResponse, seconds: float) -> Packed:
+    """Return header and arrays of a run as docs/studio-api.md says."""
+    summary, points = response.summary(), response.system.point_absorbers
+    each = [bars_of(response, one, 3) for one in summary.each]
+    absorbers = {**absorbers_of(response, points), "z": [point.z for point in points]}
+    header = {
+        **header_of(response, summary.each[0], seconds),
+        **judgement(response),
+        "judged": True,
+        "stations": list(summary.stations),
+        "absorbers": absorbers,
+        "bars": [*_largest(each, summary.stations), *absorber_bars(summary.absorber_displacement, summary.absorber_force, "N")],
+        "station_bars": each,
+    }
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response), **_forces(response, absorbers)})
+
+
+def _largest(each: list[list[dict[str, Any]]], stations: tuple[float, ...]) -> list[dict[str, Any]]:
+    """Return of the bars of all stations, which are alike, the largest of each kind with its station (m)."""
+    found = []
+    for alike in zip(*each, strict=True):
+        largest = max(range(len(alike)), key=lambda i: alike[i]["value"] or 0.0)
+        found.append({**alike[largest], "station": stations[largest]})
+    return found
+
+
+def _histories(response: SpatialResponse) -> dict[str, Item]:
+    """Return all histories at the ends of the shells, (stations, 2, instants)."""
+    head = response.system.sources[0].angle
+    ends, items = np.array([head, head + 180.0]), {}
+    for index in range(len(response.system.shells)):
+        for quantity in given(response.motions[0], index):
+            values = [np.asarray(quantity.at(motion, index, ends), dtype=np.float32).T for motion in response.motions]
+            items[f"{quantity.name}/{index}"] = Item(np.stack(values), quantity.unit)
+    return items
+
+
+def _forces(response: SpatialResponse, absorbers: dict[str, Any]) -> dict[str, Item]:
+    """Return the forces of the point absorbers nearest to head and tail on each shell that they hold, (2, instants)."""
+    if absorbers["head"] is None:
+        return {}
+    forces, inner = np.asarray(response.absorber_force())[[absorbers["head"], absorbers["tail"]]], absorbers["inner_shells"]
+    shells = {inner[absorbers["head"]], inner[absorbers["tail"]]}
+    if len(shells) > 1:  # in different gaps: no shell is held by both
+        return {}
+    first = shells.pop()
+    return {f"absorber_force/{first + side}": Item(forces[:, side], "N") for side in (0, 1)}
