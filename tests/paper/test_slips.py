@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -304,6 +304,11 @@ def test_a_response_with_slips_is_not_saved(tmp_path):
 def test_bad_input_is_refused(slips, system, where):
     with pytest.raises(cx.InputError, match=where):
         simulate(system, TINY, frozenset(slips))
+
+
+def test_three_dimensions_know_no_slips():
+    with pytest.raises(cx.InputError, match=r"^dimensions: 3 knows no slips"):
+        simulate(BARE, replace(TINY, dimensions=3), frozenset({"printed-strain"}))
 
 
 @pytest.mark.parametrize("slip", ["diffraction-sign", "radius-factor", "printed-strain"])

@@ -31,8 +31,8 @@ def simulate(system: System, resolution: Settings, slips: frozenset[str] = CORRE
     Raises
     ------
     InputError
-        If a slip is not known, the system is not the paper's kind, the engine is not the spectral one, or the slip makes the
-        system grow within the duration.
+        If a slip is not known, the system is not the paper's kind, the engine is not the spectral one, the run is in three dimensions,
+        or the slip makes the system grow within the duration.
     """
     ((_, response),) = solve_each({"": system}, resolution, slips, progress)
     return response
@@ -63,6 +63,8 @@ def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> Pr
 
     if resolution.engine != "spectral":
         raise InputError("engine", f"{resolution.engine!r} knows no slips", 'use engine="spectral"')
+    if resolution.dimensions != 2:
+        raise InputError("dimensions", "3 knows no slips: the printed equations are those of two", "use dimensions=2")
     prepared = PreparedSystem(slipped(system, slips), resolution)
     if slips & SELF_EXCITED:
         assert isinstance(prepared.settings.modes, int)
