@@ -3,7 +3,7 @@
 A spherical source of two dimensions has the sphere's pressure in the plane of the source, S/R f(t - (R - S)), but walls and fluids that
 answer alike along the axis: what spreads along it in three dimensions stays. The map beside this file holds, for the paper's bare
 shells, the difference between both answers by the source's distance, the pulse's decay and the duration of the run; the ranges of
-other systems' differences over it are what is told as its spread. ``python -m coaxshell.apps.paper.sphere`` makes it again.
+other systems' differences over it are what is told as its spread. ``python -m coaxshell.apps.paper.sphere map`` makes it again.
 """
 
 from __future__ import annotations

@@ -66,6 +66,7 @@ def reproduce(
 
 def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Settings:
     from coaxshell.apps.paper.reproduction import QUICK
+    from coaxshell.apps.paper.sphere.judged import LEAST
     from coaxshell.model import presets
 
     chosen = settings_of(presets.load("bare"), {"duration": duration, "time_step": time_step, "modes": modes})
@@ -74,10 +75,6 @@ def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Setti
     if chosen.duration < LEAST:
         raise InputError("--duration", f"{chosen.duration:g} is too short for the claims", f"give at least {LEAST:g} transits")
     return QUICK if quick else chosen
-
-
-LEAST = 4.0
-"""Shortest run in which all instants that the claims are about lie, transits."""
 
 
 def _tell(found: Results) -> None:

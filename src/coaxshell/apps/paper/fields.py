@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,6 +38,9 @@ def fields_of(response: Response, progress: Progress | None = None) -> dict[str,
     - ``rms time``, ``<region> rms`` over its area; ``energy time``, and J/m: ``stored``, ``dissipated`` (dampers), ``actuators``,
       ``radiated``, ``worked`` (by the exterior pressure), ``residual``.
 
+    Of a run in three dimensions it is the field across the axis at z = 0, at the finest time resolution that its orders bear, without the
+    exterior, without means over areas and without energies.
+
     Parameters
     ----------
     response : Response
@@ -50,17 +53,19 @@ def fields_of(response: Response, progress: Progress | None = None) -> dict[str,
             progress(fraction, "fields")
 
     head, peak = float(response.system.sources[0].angle), float(getattr(response.system.sources[0], "peak_pressure"))  # noqa: B009
-    last = float(response.time[-1])
+    last, spatial = float(response.time[-1]), response.stations is not None
     angle = np.arange(0.0, 181.0, 2.0)
     kept: dict[str, FloatArray] = {"angle": angle}
+    finest: dict[str, Any] = {} if spatial else {"time_resolution": RESOLUTION}
 
     def polar(radius: FloatArray, time: FloatArray) -> FloatArray:
-        found = response.pressure(radius=radius, angle=head + angle, time=time, filter="lanczos", time_resolution=RESOLUTION)
+        found = response.pressure(radius=radius, angle=head + angle, time=time, filter="lanczos", **finest)
         return np.asarray(found, dtype=np.float64) / peak
 
     kept["snapshot time"] = np.array([t for t in SNAPSHOTS if t <= last])
     inner = response.system.shells[0].radius / response.system.reference_radius
-    for region, (start, stop) in {"interior": (0.0, inner), "gap": (inner, 1.0), "exterior": (1.0, OUTERMOST)}.items():
+    regions = {"interior": (0.0, inner), "gap": (inner, 1.0), "exterior": (1.0, OUTERMOST)}
+    for region, (start, stop) in list(regions.items())[: 2 if spatial else 3]:
         kept[f"{region} radius"] = start + (stop - start) * (np.arange(_RADII[region]) + 0.5) / _RADII[region]
         kept[f"{region} snapshot"] = polar(kept[f"{region} radius"], kept["snapshot time"])
     tell(0.3)
@@ -70,6 +75,8 @@ def fields_of(response: Response, progress: Progress | None = None) -> dict[str,
     ray = response.pressure(radius=kept["gap radius"], angle=[head], time=np.arange(0.0, min(1.0, last), RESOLUTION))
     kept["gap peak"] = np.abs(np.asarray(ray, dtype=np.float64)).max(axis=(0, 2)) / peak
     tell(0.5)
+    if spatial:
+        return kept
     kept["rms time"] = np.linspace(0.0, last, round(last / 0.05) + 1)
     for region in ("interior", "gap", "exterior"):
         outermost = OUTERMOST if region == "exterior" else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class Observed:
     histories : mapping of (quantity, shell, side) to ndarray, shape (T,)
         "stress" (Pa) and "displacement" (m, inward) at "head" and "tail"; empty if only peaks were kept.
     circle : mapping of str to ndarray, shape (T,)
-        Root mean square of the stress over a shell's surface at every instant, Pa.
+        Root mean square of the stress over a shell's surface at every instant, Pa; in three dimensions over its circle at the station.
     absorber : ndarray, shape (3, T)
         Displacement of the first absorber's mass, m, and its forces on the inner and the outer shell, N/m; (3, 0) without absorbers.
     warnings : tuple of str
@@ -73,8 +73,10 @@ class Observed:
 
 
 def observe(response: Response, *, peaks_only: bool = False) -> Observed:
-    """Return what is kept of a response; with *peaks_only* no histories."""
-    summary = response.summary(segment="point")  # the paper's voltages are those at points
+    """Return what is kept of a response, of one in three dimensions at its first station; with *peaks_only* no histories."""
+    summary: Any = response.summary(segment="point")  # the paper's voltages are those at points
+    if response.stations is not None:
+        summary = summary.at(response.stations[0])
     system = response.system
     names = {name: system.shell_index(name) for name in SHELLS if isinstance(system.shells[system.shell_index(name)], Shell)}
     elastic = [i for i, shell in enumerate(system.shells) if isinstance(shell, Shell)]
@@ -96,7 +98,7 @@ def _histories(response: Response, shells: tuple[str, ...]) -> dict[tuple[str, s
     found: dict[tuple[str, str, str], FloatArray] = {}
     for shell in shells:
         for quantity in ("stress", "displacement"):
-            values = getattr(response, quantity)(shell, angle=[head + turn for turn in SIDES.values()])
+            values = getattr(response, quantity)(shell, angle=[head + turn for turn in SIDES.values()], **_where(response))
             for k, side in enumerate(SIDES):
                 found[quantity, shell, side] = np.asarray(values, dtype=np.float64)[:, k].copy()
     return found
@@ -105,7 +107,12 @@ def _histories(response: Response, shells: tuple[str, ...]) -> dict[tuple[str, s
 def _over_circle(response: Response, shell: str) -> FloatArray:
     from coaxshell.response.synthesis import mean_square
 
-    return np.sqrt(mean_square(np.asarray(response.modal(shell, "stress"), dtype=np.float64)))
+    return np.sqrt(mean_square(np.asarray(response.modal(shell, "stress", **_where(response)), dtype=np.float64)))
+
+
+def _where(response: Response) -> dict[str, float]:
+    """Return the station that is read of a run in three dimensions, nothing in two."""
+    return {} if response.stations is None else {"station": float(response.stations[0])}
 
 
 def _absorber(response: Response, system: System) -> FloatArray:

@@ -12,6 +12,8 @@ from coaxshell.apps.paper.reproduction import texts
 from coaxshell.apps.paper.reproduction.plan import VARIANTS
 from coaxshell.apps.paper.reproduction.results import Results
 from coaxshell.apps.paper.sphere import texts as sphere
+from coaxshell.apps.paper.sphere.judged import Judgement
+from coaxshell.apps.paper.sphere.report import claims_markdown
 from coaxshell.apps.verification.markdown import table
 from coaxshell.apps.verification.page import document, inlined
 from coaxshell.apps.verification.suite import circumstances
@@ -23,7 +25,8 @@ _STYLE = """
 .part { color: var(--part); } code { font-size: .86em; background: var(--wash); padding: .1em .35em; border-radius: .25em; }
 td:nth-child(7) { white-space: normal; } td .dim { font-size: .95em; }
 .claims th, .slips th { white-space: normal; vertical-align: bottom; }
-@media (min-width: 60.01rem) { .claims td:nth-child(n + 4):nth-child(-n + 7) { width: 5.2rem; } .claims td:nth-child(3) { width: 31%; } }
+@media (min-width: 60.01rem) { .claims td:nth-child(n + 4):nth-child(-n + 7) { width: 5.2rem; } .claims td:nth-child(3) { width: 31%; }
+  .both td:nth-child(n + 3):nth-child(-n + 4) { width: 6rem; } .both td:nth-child(n + 5) { width: 30%; white-space: normal; } }
 video { width: 100%; max-width: 66rem; border: 1px solid var(--line); border-radius: .4rem; }
 details { margin-top: .3rem; } summary { cursor: pointer; color: var(--dim); } h2 { scroll-margin-top: 1rem; }
 @media (max-width: 60rem) { /* one statement or slip below the other, each cell with the heading of its column */
@@ -130,10 +133,22 @@ def _sphere(results: Results) -> str:
     shown = [inlined(found.pictures[name], "png", sphere.TITLE, escape(caption)) for name, caption in sphere.CAPTIONS.items()]
     tables = [f"<p>{escape(caption)}</p>{_table(headings, _escaped(rows))}" for caption, headings, rows in found.tables]
     use = "".join(f"<li>{escape(line)}</li>" for line in sphere.USE)
+    judged = "" if found.judged is None else _in_both(found.judged)
     said = "".join(f"<p>{escape(text)}</p>" for text in (sphere.ABOUT, found.told))
     return (
-        f"{said}{tables[0]}{tables[1]}<p>{escape(sphere.WHY)}</p>{shown[0]}<p>{escape(sphere.MAP)}</p>{shown[1]}{tables[2]}<ul>{use}</ul>"
+        f"{said}{tables[0]}{tables[1]}<p>{escape(sphere.WHY)}</p>{shown[0]}<p>{escape(sphere.MAP)}</p>{shown[1]}{tables[2]}"
+        f"{judged}<ul>{use}</ul>"
     )
+
+
+def _in_both(judged: Judgement) -> str:
+    """Return the claims under slice and sphere, their verdicts marked."""
+    rows = [
+        [*_escaped([row[:2]])[0], *(f'<b class="{MARKS[verdict]}">{verdict}</b>' for verdict in row[2:4]), *_escaped([row[4:]])[0]]
+        for row in judged.rows
+    ]
+    said = f"<p>{escape(sphere.CLAIMS)}</p><p>{escape(judged.told)}</p>"
+    return f"<h3>{sphere.CLAIMS_TITLE}</h3>{said}{_table(sphere.CLAIM_HEADINGS, rows, 'claims both')}"
 
 
 def _times(results: Results) -> str:
@@ -165,6 +180,8 @@ def markdown(results: Results) -> str:
         parts += ["## The slips", table(texts.SLIP_HEADINGS, texts.slip_rows()), table(texts.EFFECT_HEADINGS, texts.effect_rows(results))]
     if results.sphere:
         parts += [f"## {sphere.TITLE}", results.sphere.markdown.replace("\n## ", "\n### ").strip()]
+        if results.sphere.judged is not None:
+            parts += [f"### {sphere.CLAIMS_TITLE}", *claims_markdown(results.sphere.judged)]
     parts.append("## Run times, and how to repeat")
     if results.estimate:
         parts.append(texts.estimate_text(results.estimate))

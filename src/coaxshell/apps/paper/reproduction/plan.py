@@ -14,6 +14,7 @@ from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.limiting_cases import limiting_systems
 from coaxshell.apps.paper.recipes import FigureRecipe
+from coaxshell.apps.paper.sphere.judged import LEAST, TOPICS, claims_resolution, topic
 from coaxshell.apps.paper.sphere.report import RESOLUTION as SPHERE_RESOLUTION
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
@@ -55,9 +56,9 @@ class Part:
     Attributes
     ----------
     kind : str
-        "runs", "fields", "figure", "film", "slips", "sphere" or "direct".
+        "runs", "fields", "figure", "film", "slips", "sphere", "claims under the sphere" or "direct".
     about : str
-        Which one: a group of runs, a system, the number of a figure.
+        Which one: a group of runs, a system, the number of a figure, a module of claims.
     variant : str
         Model.
     """
@@ -83,6 +84,12 @@ def sphere_resolution(resolution: Settings) -> Settings:
     return replace(
         resolution.up_to(SPHERE_RESOLUTION.duration), modes=modes, time_step=max(resolution.time_step, SPHERE_RESOLUTION.time_step)
     )
+
+
+def sphere_claims(resolution: Settings) -> Iterator[Part]:
+    """Yield the parts that judge claims in three dimensions, where the run lasts long enough for them."""
+    if resolution.duration >= LEAST:
+        yield from (Part("claims under the sphere", topic.module) for topic in TOPICS)
 
 
 @dataclass(frozen=True)
@@ -147,6 +154,7 @@ def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: boo
     if wanted("slips"):
         yield Part("slips", "one by one")
     if wanted("sphere"):
+        yield from sphere_claims(resolution)
         yield SPHERE
     if film and wanted("film"):
         yield Part("film", "bare against hybrid")
@@ -183,6 +191,9 @@ def part_cost(part: Part, resolution: Settings) -> Cost:
     if part.kind == "sphere":
         at = sphere_resolution(resolution)
         return _runs([systems.preset("bare")], replace(at, dimensions=3)).then(_runs([systems.preset("bare")] * 3, at))
+    if part.kind == "claims under the sphere":
+        at, asked = claims_resolution(resolution), [systems.preset("bare"), *topic(part.about).asked().values()]
+        return _runs(asked, replace(at, dimensions=3)).then(_runs(asked, at)).then(_FIELDS)
     if part.kind == "film":
         return _runs([systems.preset(name) for name in ("bare", "hybrid")], resolution).then(_FILM)
     if part.kind == "fields":

@@ -13,8 +13,9 @@ from coaxshell.apps.paper.claims.claim import Verdict
 from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.recipes import FigureRecipe
-from coaxshell.apps.paper.reproduction.plan import SPHERE, VARIANTS, Part
+from coaxshell.apps.paper.reproduction.plan import SPHERE, VARIANTS, Part, sphere_claims
 from coaxshell.apps.paper.reproduction.work import picture, runs_of
+from coaxshell.apps.paper.sphere.judged import Judgement, claims_resolution, judged_in_both
 from coaxshell.apps.paper.sphere.texts import CAPTIONS
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
@@ -57,12 +58,16 @@ class Estimate:
 
 @dataclass(frozen=True)
 class SphereSection:
-    """What slice and sphere differ by: Markdown, the tables with captions and headings, the resolution in words, pictures as PNG bytes."""
+    """What slice and sphere differ by: Markdown, the tables with captions and headings, the resolution in words, pictures as PNG bytes.
+
+    ``judged`` are the paper's claims under both, None if the run is too short for them.
+    """
 
     markdown: str
     tables: list[tuple[str, list[str], list[list[str]]]]
     told: str
     pictures: Mapping[str, bytes]
+    judged: Judgement | None = None
 
 
 @dataclass(frozen=True)
@@ -128,14 +133,15 @@ def judged_claims(resolution: Settings, store: Store) -> tuple[Judged, ...]:
     return tuple(judge(claim, variants) for claim in claims())
 
 
-def sphere_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> SphereSection | None:
-    """Return what slice and sphere differ by, if it was computed."""
+def sphere_of(resolution: Settings, store: Store, pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> SphereSection | None:
+    """Return what slice and sphere differ by, if it was computed, and the claims judged under both from the runs in the store."""
     piece = pieces.get(SPHERE)
     if piece is None:
         return None
     arrays, values = piece
     pictures = {name: arrays[name].tobytes() for name in CAPTIONS}
-    return SphereSection(values["markdown"], values["tables"], values["told"], pictures)
+    judged = judged_in_both(claims_resolution(resolution), store=store) if any(sphere_claims(resolution)) else None
+    return SphereSection(values["markdown"], values["tables"], values["told"], pictures, judged)
 
 
 def estimate_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> Estimate | None:

@@ -95,7 +95,7 @@ def reproduce(
         time.perf_counter() - start,
         resumed,
         worker_count(workers),
-        sphere_of(pieces),
+        sphere_of(resolution, store, pieces),
     )
 
 

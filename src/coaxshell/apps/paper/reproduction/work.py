@@ -129,6 +129,14 @@ def _sphere(job: Job, store: Store) -> Piece:
     return pictures, {"markdown": made.markdown("figures/"), "tables": tables, "told": made.told}
 
 
+def _sphere_claims(job: Job, store: Store) -> Piece:
+    """Judge the claims of one module under the slice and under the sphere; their runs stay in the store."""
+    from coaxshell.apps.paper.sphere.judged import claims_resolution, judged_in_both, topic
+
+    judged = judged_in_both(claims_resolution(job.resolution), (topic(job.part.about),), store)
+    return {}, {"claims": len(judged.claims)}
+
+
 def _direct(job: Job, store: Store) -> Piece:
     """Measure the processor time of both engines on a sample of Figure 9's runs, each run on its own."""
     from coaxshell.response import simulate
@@ -149,6 +157,7 @@ _WORK: dict[str, Callable[[Job, Store], Piece]] = {
     "film": _film,
     "slips": _slips,
     "sphere": _sphere,
+    "claims under the sphere": _sphere_claims,
     "direct": _direct,
 }
 

@@ -1,16 +1,23 @@
-"""Make the map of the slice's error again: ``python -m coaxshell.apps.paper.sphere [FILE]``; two minutes of one processor."""
+"""Make what the package holds about slice and sphere again.
+
+``python -m coaxshell.apps.paper.sphere map [FILE]``: the map of the slice's error, two minutes of one processor;
+``python -m coaxshell.apps.paper.sphere claims [FILE]``: the paper's claims under both, four minutes.
+"""
 
 from __future__ import annotations
 
 import json
 import re
 import sys
+import warnings
 from importlib.resources import files
 from pathlib import Path
 
-from coaxshell.apps.paper.sphere.error_map import as_table, error_map
+from coaxshell.apps.paper.sphere import error_map, kept
+from coaxshell.apps.paper.sphere.judged import RESOLUTION, judged_in_both
+from coaxshell.errors import PhysicsWarning
 from coaxshell.numerics.files import write_text
-from coaxshell.solver.slice_error import DATA
+from coaxshell.solver import slice_error
 
 
 def report(fraction: float, stage: str) -> None:
@@ -18,11 +25,27 @@ def report(fraction: float, stage: str) -> None:
     sys.stderr.write(f"{100 * fraction:3.0f} % {stage}\n")
 
 
+def map_text() -> tuple[str, Path]:
+    """Return the map as JSON text, and where the package has it."""
+    text = json.dumps(error_map.as_table(error_map.error_map(progress=report)), indent=1)
+    return re.sub(r"\n\s+(?=[-\d\]n])", " ", text) + "\n", Path(str(files("coaxshell.solver").joinpath(slice_error.DATA)))
+
+
+def claims_text() -> tuple[str, Path]:
+    """Return the judged claims as JSON text, and where the package has them."""
+    text = json.dumps(kept.as_table(judged_in_both(RESOLUTION)), indent=1) + "\n"
+    return text, Path(str(files("coaxshell.apps.paper.sphere").joinpath(kept.DATA)))
+
+
 def main(arguments: list[str]) -> None:
-    """Compute the map and write it into a file, the package's own unless one is given."""
-    path = Path(arguments[0]) if arguments else Path(str(files("coaxshell.solver").joinpath(DATA)))
-    text = json.dumps(as_table(error_map(progress=report)), indent=1)
-    write_text(path, re.sub(r"\n\s+(?=[-\d\]n])", " ", text) + "\n")
+    """Compute the map or the claims and write them into a file, the package's own unless one is given."""
+    made = {"map": map_text, "claims": claims_text}
+    if not arguments or arguments[0] not in made:
+        sys.exit(f"say which: {' or '.join(made)}")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        text, path = made[arguments[0]]()
+    write_text(Path(arguments[1]) if arguments[1:] else path, text)
 
 
 if __name__ == "__main__":

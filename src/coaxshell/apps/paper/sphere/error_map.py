@@ -118,7 +118,7 @@ def _beside(made: SliceMap, system: System, resolution: Settings) -> Iterator[Fl
 
 def as_table(made: SliceMap) -> dict[str, Any]:
     """Return a map as lists of numbers with three digits, null for NaN."""
-    about = "Error of the slice in two dimensions against the sphere; made by python -m coaxshell.apps.paper.sphere"
+    about = "Error of the slice in two dimensions against the sphere; made by python -m coaxshell.apps.paper.sphere map"
     table = {name: _listed(getattr(made, name)) for name in (*AXES, *ARRAYS, "spread")}
     return {"about": about, **table}
 

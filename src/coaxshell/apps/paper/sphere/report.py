@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from coaxshell.apps.paper.claims.systems import preset
 from coaxshell.apps.paper.sphere import texts
 from coaxshell.apps.paper.sphere.compared import KINDS, SPHERE, Compared, compare
+from coaxshell.apps.paper.sphere.judged import Judgement
 from coaxshell.apps.verification.markdown import table
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.slice_error import SliceMap, slice_map
@@ -30,11 +31,14 @@ class Report:
         The paper's bare shells under the sphere, the slice, a line and a plane wave.
     known : SliceMap
         The package's map of the slice's error.
+    judged : Judgement or None
+        The paper's claims under both.
     """
 
     resolution: Settings
     found: Compared
     known: SliceMap
+    judged: Judgement | None = None
 
     @property
     def peak_rows(self) -> list[tuple[str, ...]]:
@@ -81,7 +85,8 @@ class Report:
         peaks, differences, distances = (f"{caption}\n\n{table(headings, rows)}" for caption, headings, rows in self.tables)
         use = "\n".join(f"- {line}" for line in texts.USE)
         pieces = [texts.ABOUT, self.told, peaks, differences, texts.WHY, shown[0], "## The map", texts.MAP, shown[1], distances]
-        return "\n\n".join([*pieces, "## What to use when", use]) + "\n"
+        claims = [] if self.judged is None else [f"## {texts.CLAIMS_TITLE}", *claims_markdown(self.judged)]
+        return "\n\n".join([*pieces, *claims, "## What to use when", use]) + "\n"
 
     def figures(self) -> dict[str, Figure]:
         """Return the pictures by the names of their files."""
@@ -90,6 +95,11 @@ class Report:
         return {"slice-or-sphere-histories": figure_histories(self.found), "slice-or-sphere-map": figure_error_map(self.known)}
 
 
-def report(resolution: Settings = RESOLUTION) -> Report:
-    """Return the report, by one run in three dimensions and three in two."""
-    return Report(resolution, compare(preset("bare"), resolution), slice_map())
+def claims_markdown(judged: Judgement) -> list[str]:
+    """Return what is said about the paper's claims under slice and sphere, and their table, as Markdown."""
+    return [texts.CLAIMS, judged.told, table(texts.CLAIM_HEADINGS, judged.rows)]
+
+
+def report(resolution: Settings = RESOLUTION, judged: Judgement | None = None) -> Report:
+    """Return the report, by one run in three dimensions and three in two, and what has been found about the paper's claims, if anything."""
+    return Report(resolution, compare(preset("bare"), resolution), slice_map(), judged)

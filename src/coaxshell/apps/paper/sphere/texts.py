@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from coaxshell.apps.paper.claims.claim import Verdict
+
 TITLE = "Slice, cylinder or sphere?"
 SHOWN_DECAY, SHOWN_DURATION = 0.2, 4.0
 """Transits, at which errors are laid out over the distance: next to the paper's 0.18, and the duration of its figures but one."""
@@ -30,6 +35,16 @@ USE = (
     "wave of them. The plane wave errs more near the source (79 % for 63 % from 5 radii) and as little far from it.",
     "What is compared with the paper must be the slice, as its figures are.",
 )
+CLAIMS_TITLE = "The paper's statements under the sphere"
+CLAIMS = (
+    "Statements of the paper that mean something under a true sphere, judged by the same criteria from runs that differ in their "
+    "dimensions alone: the slice in two, the sphere in three, read in its plane, z = 0; what counts over the surface counts over that "
+    "circle. Left out are statements about numbers alone (time step, orders, masses, the steel rod), limiting cases under a plane wave, "
+    "which is the same in both, energies and means over areas of fluid, and lists of dozens of runs."
+)
+CLAIM_HEADINGS = ("no.", "statement", "slice, two dimensions", "sphere, three", "found under the slice", "found under the sphere")
+VERDICTS: dict[Verdict, str] = {"holds": "hold", "holds in part": "hold in part", "does not hold": "do not"}
+"""Verdicts, as they are counted in a sentence."""
 PEAK_HEADINGS = ("point", "sphere", "slice", "line source", "plane wave")
 DIFFERENCE_HEADINGS = ("point", "slice", "line source", "plane wave")
 DISTANCE_HEADINGS = ("distance (outer radii)", "slice", "line source", "plane wave")

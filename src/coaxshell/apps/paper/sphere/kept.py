@@ -1,0 +1,43 @@
+"""What was found about the paper's claims under slice and sphere at the finest resolution, four minutes of a processor: kept."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from coaxshell.apps.paper.claims import Finding, Judged, claims
+from coaxshell.apps.paper.known_runs import CORRECTED
+from coaxshell.apps.paper.sphere.compared import SPHERE
+from coaxshell.apps.paper.sphere.judged import Judgement
+from coaxshell.solver.settings import Settings
+
+DATA = "claims.json"
+_NAMES = {"slice": CORRECTED, SPHERE: SPHERE}
+
+
+def as_table(found: Judgement) -> dict[str, Any]:
+    """Return a judgement as plain values, numbers with five digits."""
+
+    def plain(finding: Finding) -> dict[str, Any]:
+        return {**asdict(finding), "measured": {name: float(f"{value:.5g}") for name, value in finding.measured.items()}}
+
+    listed = [{"name": one.claim.name, **{key: plain(one.findings[name]) for key, name in _NAMES.items()}} for one in found.claims]
+    about = "The paper's claims under the slice and under the sphere; made by python -m coaxshell.apps.paper.sphere claims"
+    return {"about": about, "resolution": found.resolution.arguments(), "claims": listed}
+
+
+def from_table(table: Mapping[str, Any]) -> Judgement:
+    """Return the judgement that :func:`as_table` took apart."""
+    known = {claim.name: claim for claim in claims()}
+    judged = tuple(Judged(known[one["name"]], {name: Finding(**one[key]) for key, name in _NAMES.items()}) for one in table["claims"])
+    return Judgement(Settings(**table["resolution"]), judged)
+
+
+@cache
+def known_claims() -> Judgement:
+    """Return the judgement that the package holds."""
+    return from_table(json.loads(files("coaxshell.apps.paper.sphere").joinpath(DATA).read_text(encoding="utf-8")))
