@@ -100,6 +100,21 @@ def test_two_dimensions_have_no_blocks() -> None:
 
 @pytest.mark.filterwarnings("default")
 def test_a_dask_cluster_one_of_whose_workers_is_killed(threaded: SpatialResponse) -> None:
+    assert_same(with_a_worker_killed("bare", **QUICK), threaded)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_600_wavenumbers_on_a_dask_cluster_one_of_whose_workers_is_killed() -> None:
+    many = {**QUICK, "modes": 20, "axial_period": 190.0}
+    threaded = cx.simulate("bare", **many)
+    assert isinstance(threaded, SpatialResponse)
+    assert len(threaded.spatial.sampling.modes) >= 600
+    assert_same(with_a_worker_killed("bare", **many), threaded)
+
+
+def with_a_worker_killed(name: str, **settings) -> SpatialResponse:
+    """Run on two workers of a local Dask cluster, one of which is killed on the way."""
     dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
     dask.config.set({"distributed.worker.daemon": True, "distributed.comm.timeouts.connect": "20s"})
     with distributed.LocalCluster(
@@ -113,5 +128,7 @@ def test_a_dask_cluster_one_of_whose_workers_is_killed(threaded: SpatialResponse
                 os.kill(victim, signal.SIGKILL)
                 killed.set()
 
-        assert_same(run(cx.Execution(dask=cluster.scheduler_address, progress=kill_one)), threaded)
+        found = cx.simulate(name, execution=cx.Execution(dask=cluster.scheduler_address, progress=kill_one), **settings)
         assert killed.is_set()
+        assert isinstance(found, SpatialResponse)
+        return found
