@@ -87,7 +87,7 @@ def test_a_verdict_that_turns_is_told(small):
     turned = replace(small.claims[0], findings={**small.claims[0].findings, SPHERE: replace(pair(small.claims[0])[1], verdict="holds")})
     same = replace(turned, findings=dict.fromkeys(turned.findings, turned.findings[SPHERE]))
     told = replace(small, claims=(turned, same)).told
-    assert f"Verdicts turn in 1: {turned.claim.number}." in told
+    assert f"Verdicts turn: no. {turned.claim.number}." in told
     assert "2 hold, 0 hold in part, 0 do not under the sphere" in told
     assert "No verdict turns." in replace(small, claims=(same,)).told
 

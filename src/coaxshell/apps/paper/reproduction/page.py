@@ -26,7 +26,8 @@ _STYLE = """
 td:nth-child(7) { white-space: normal; } td .dim { font-size: .95em; }
 .claims th, .slips th { white-space: normal; vertical-align: bottom; }
 @media (min-width: 60.01rem) { .claims td:nth-child(n + 4):nth-child(-n + 7) { width: 5.2rem; } .claims td:nth-child(3) { width: 31%; }
-  .both td:nth-child(n + 3):nth-child(-n + 4) { width: 6rem; } .both td:nth-child(n + 5) { width: 30%; white-space: normal; } }
+  .claims.both td:nth-child(n + 3):nth-child(-n + 4) { width: 5.2rem; }
+  .claims.both td:nth-child(n + 5):nth-child(-n + 6) { width: 33%; white-space: normal; } }
 video { width: 100%; max-width: 66rem; border: 1px solid var(--line); border-radius: .4rem; }
 details { margin-top: .3rem; } summary { cursor: pointer; color: var(--dim); } h2 { scroll-margin-top: 1rem; }
 @media (max-width: 60rem) { /* one statement or slip below the other, each cell with the heading of its column */

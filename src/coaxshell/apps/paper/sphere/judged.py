@@ -137,7 +137,7 @@ class Judgement:
         counts = [Counter(pair(one)[k].verdict for one in self.claims) for k in (0, 1)]
         told = [", ".join(f"{count[verdict]} {word}" for verdict, word in texts.VERDICTS.items()) for count in counts]
         turned = [str(one.claim.number) for one in self.claims if one.turned]
-        which = f"Verdicts turn in {len(turned)}: {', '.join(turned)}." if turned else "No verdict turns."
+        which = f"Verdicts turn: no. {', '.join(turned)}." if turned else "No verdict turns."
         at = f"M = {self.resolution.modes}, time step {self.resolution.time_step:g}, to t = {self.resolution.duration:g}"
         return f"Of {len(self.claims)} statements {told[0]} under the slice, {told[1]} under the sphere. {which} Both computed with {at}."
 
