@@ -72,6 +72,15 @@ def test_a_solved_run_is_drawn_and_exported_too(run):
     assert run("export", "bare", *SPATIAL, "--to", "csv", "--output", "x.csv").code == 0
 
 
+def test_a_saved_run_is_filmed_and_opened_in_paraview(run, saved):
+    assert run("snapshots", saved, "--section", "70 cm", "--times", "0.4", "--pixels", "16", "--output", "s.png").code == 0
+    assert run("animate", saved, "--frames", "2", "--size", "16", "--output", "f.webp").code == 0
+    assert run("animate", saved, "--frames", "2", "--size", "100", "--wall", "1", "--component", "axial", "--output", "w.webp").code == 0
+    outcome = run("export", saved, "--to", "paraview", "--times", "0.5", "--points", "5", "--volume", "5", "--width", "3", "--output", "p")
+    assert outcome.code == 0, outcome
+    assert "wrote p: open across.pvd, along.pvd, volume.pvd and shells.pvd in ParaView" in outcome.out
+
+
 def test_two_runs_are_compared_at_the_stations_that_both_have(run, saved):
     outcome = run("run", "iakovlev-double", *SPATIAL, "--compare", "bare", "--figure", "f.png")
     assert outcome.code == 0, outcome
@@ -112,7 +121,8 @@ def test_a_sphere_is_compared_with_a_slice(run, saved):
             "source.inclination: 5 degrees: an inclined wave carries energy along the shells",
         ),
         (["run", "bare", "--dimensions", "3", "--engine", "direct"], "--engine: 'direct' solves two dimensions only"),
-        (["export", "bare", "--dimensions", "3", "--to", "paraview"], "--dimensions: 3 is not for this command"),
+        (["animate", "bare", "--dimensions", "3", "--wall", "outer", "--section", "0"], "--wall: cannot be combined with --section"),
+        (["animate", "bare", "--dimensions", "3", "--component", "loud"], "--component: 'loud'"),
     ],
 )
 def test_bad_input_is_one_line_before_anything_is_solved(refused, arguments, message):
@@ -124,10 +134,10 @@ def test_bad_input_is_one_line_before_anything_is_solved(refused, arguments, mes
     [
         (["plot", "bare.nc", "--stations", "0.3"], "--stations: 0.3 m is none of the run's; it has 0, 0.7 m"),
         (["plot", "bare.nc", "--modes", "8"], "--modes: has no effect on a saved run"),
-        (["snapshots", "bare.nc"], "bare.nc: is a run in three dimensions, this command shows two"),
-        (["animate", "bare.nc", "--output", "film.webp"], "bare.nc: is a run in three dimensions"),
         (["figure", "3", "--from", "bare.nc"], "bare.nc: is a run in three dimensions"),
-        (["export", "bare.nc", "--to", "paraview"], "bare.nc: is a run in three dimensions"),
+        (["snapshots", "bare.nc", "--section", "0.2"], "--section: 0.2 m is none of the run's"),
+        (["animate", "bare.nc", "--wall", "middle", "--output", "f.webp"], "--wall: 'middle'"),
+        (["export", "bare.nc", "--to", "paraview", "--volume", "3"], "--volume: 3 is not allowed"),
     ],
 )
 def test_a_saved_run_is_refused_by_name_where_two_dimensions_are_shown(refused, saved, arguments, message):

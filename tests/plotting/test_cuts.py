@@ -47,7 +47,7 @@ def test_one_station_leaves_shells_along_the_axis_as_lines() -> None:
     figure = figure_cuts(solved("bare", [0.0]), 1.0, view=SMALL)
     along = next(ax for ax in figure.axes if ax.get_ylabel() == "$z/a$")
     assert len(along.images) == 1
-    assert len(along.collections) == 8
+    assert len(along.collections) == 4
 
 
 def test_a_wall_laid_flat_is_mirrored(response: SpatialResponse) -> None:

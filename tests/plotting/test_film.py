@@ -11,9 +11,11 @@ from PIL import Image
 
 from coaxshell import InputError, presets
 from coaxshell.plotting import FieldView, film_files, save_film
+from coaxshell.plotting.cut_frames import shown_runs
 from coaxshell.plotting.field_scales import FieldScales
 from coaxshell.plotting.film_canvas import Canvas, _draw_overlay
 from coaxshell.plotting.frames import field_frames, gathered
+from coaxshell.plotting.panels import Section
 
 VIEW = FieldView(3.0, 90)
 SCALES = FieldScales(2e4, 2e5)
@@ -21,7 +23,7 @@ SCALES = FieldScales(2e4, 2e5)
 
 @pytest.fixture
 def canvas(waves):
-    return Canvas([waves], ["Bare"], VIEW, SCALES, "auto")
+    return Canvas(shown_runs([waves], ["Bare"]), VIEW, SCALES, "auto")
 
 
 def panel(picture, canvas):
@@ -41,7 +43,7 @@ def test_the_field_is_drawn_the_right_way_up(canvas, make_waves):
 def test_the_shells_show_their_stress(waves, stress):
     """Green in tension, violet in compression, at the degree where it is."""
     close = FieldView(1.2, 120)
-    canvas = Canvas([waves], ["Bare"], close, SCALES, "auto")
+    canvas = Canvas(shown_runs([waves], ["Bare"]), close, SCALES, "auto")
     parts = gathered(field_frames(waves, [0.0], close))
     for ring in parts.stress:
         ring[:] = 0.0
@@ -102,7 +104,7 @@ def test_mp4_plays_back(waves, tmp_path):
     ffmpeg = pytest.importorskip("imageio_ffmpeg").get_ffmpeg_exe()
     path = save_film(waves, path=tmp_path / "film.mp4", frames=10, fps=10, until=2.0, view=VIEW, units="relative")
     told = subprocess.run([ffmpeg, "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], capture_output=True, check=True)
-    canvas = Canvas([waves], ["Bare"], VIEW, SCALES, "relative")
+    canvas = Canvas(shown_runs([waves], ["Bare"]), VIEW, SCALES, "relative")
     pictures = np.frombuffer(told.stdout, np.uint8).reshape(-1, canvas.height, canvas.width, 3).astype(int)
     assert len(pictures) == 10
     assert b"yuv420p" in told.stderr
@@ -177,6 +179,6 @@ def test_refusals(waves, tmp_path, options, message):
 
 @pytest.mark.parametrize(("pixels", "marked"), [(90, False), (300, True)])
 def test_axes_are_marked_where_they_can_be_read(waves, pixels, marked):
-    overlay = _draw_overlay(waves.system, FieldView(3.0, pixels))
+    overlay = _draw_overlay(Section(waves.system, ""), FieldView(3.0, pixels))
     lower_edge = overlay[-round(0.06 * pixels) :, :, 3]
     assert bool(lower_edge.any()) is marked

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,19 +13,23 @@ import numpy.typing as npt
 from coaxshell.errors import InputError
 from coaxshell.export.vtk_xml import write_collection, write_image, write_lines
 from coaxshell.model import RigidShell
+from coaxshell.model.base import shown as written
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.files import replacing_folder
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
 from coaxshell.response.quantities import QUANTITIES, Quantity, columns
+from coaxshell.solver.stations import stations_of
 
 if TYPE_CHECKING:
+    from coaxshell.export.paraview_space import SpaceOptions
     from coaxshell.response import Response
+    from coaxshell.response.spatial import SpatialResponse
 
 Report = Progress
 
-PARAVIEW_PARTS = ("data", "field.pvd", "shells.pvd", "system.toml")
+PARAVIEW_PARTS = ("data", "field.pvd", "across.pvd", "along.pvd", "volume.pvd", "shells.pvd", "system.toml")
 """What an exported folder holds."""
 
 _STAGE = "ParaView"
@@ -41,6 +45,10 @@ def export_paraview(
     half_width: float = 3.0,
     points: int = 301,
     displaced: float = 0.0,
+    cuts: bool = True,
+    volume: int | None = None,
+    velocity: bool = False,
+    station: Any = None,
     force: bool = False,
     progress: Report | None = None,
 ) -> Path:
@@ -49,6 +57,12 @@ def export_paraview(
     field.pvd: the total pressure (Pa) on a square of points. shells.pvd: each shell as a closed line in steps of half a degree
     with hoop_stress (Pa), displacement (vector, m), normal_displacement (m, positive inward), shell_velocity and shell_acceleration and
     their normal parts likewise (m/s, m/s^2) and, for each line, the shell's number.
+
+    Of a run in three dimensions across.pvd and along.pvd are the pressure on squares across the axis, at a station, and along it, at y = 0;
+    volume.pvd, if asked for, that in all fluids of a cylinder, a curved grid for each. shells.pvd holds the shells as surfaces over all
+    stations with hoop_stress, axial_stress, shear_stress, von_mises_stress (Pa), displacement (vector, m), normal_displacement and, where
+    the run keeps its transforms, normal_shell_velocity and normal_shell_acceleration; where sources are alike on both sides of z = 0,
+    stations count for both.
 
     Parameters
     ----------
@@ -63,6 +77,14 @@ def export_paraview(
         Points along its side.
     displaced : float
         The shells are drawn displaced by this many times their displacement; 0 draws them at rest.
+    cuts : bool
+        Of three dimensions: write the cuts.
+    volume : int, optional
+        Of three dimensions: write a volume too, of so many points along its diameter and its length; 41 is a good start.
+    velocity : bool
+        Of three dimensions: write the particle velocity (vector, m/s) on cuts and in the volume too.
+    station : float or str, optional
+        Of three dimensions: z of the cut across the axis, m or text, any; the run's first station when left out.
     force : bool
         Replace the folder if it holds an earlier export; what holds anything else is never replaced.
     progress : callable, optional
@@ -74,9 +96,14 @@ def export_paraview(
         An argument is not allowed, the folder exists, or it cannot be written.
     """
     check_grid(half_width, points, displaced)
+    index = _instants(response, _default_times(response) if times is None else times)
     if response.stations is not None:
-        raise InputError("response", "is of three dimensions: ParaView is given runs in two", "export its histories as CSV or for MATLAB")
-    index = _instants(response, np.linspace(0.0, float(response.time[-1]), 101) if times is None else times)
+        spatial = cast("SpatialResponse", response)
+        options = space_options(spatial, half_width, points, displaced, cuts=cuts, volume=volume, velocity=velocity, station=station)
+        return _export_space(spatial, folder, index, options, force=force, progress=progress)
+    for name, given in (("volume", volume), ("velocity", velocity or None), ("station", station)):
+        if given is not None:
+            raise InputError(name, f"{written(given)} belongs to three dimensions", "leave it out, or give a run in three dimensions")
     seconds = np.asarray(response.time_seconds, dtype=np.float64)[index]
     shown, kept = 3.0 * response.time.size, 1.0 * len(_arrays(response)) * len(response.system.shells) * len(index)
     Cost(8.0 * _ANGLES.size * (shown + kept) + 4.0 * _BLOCK_BYTES).require(
@@ -86,8 +113,71 @@ def export_paraview(
         (partial / "data").mkdir()
         fields = _write_fields(response, partial, index, half_width, points, progress)
         shells = _write_shells(response, partial, index, displaced)
-        write_collection(partial / "field.pvd", list(seconds), fields)
-        write_collection(partial / "shells.pvd", list(seconds), shells)
+        write_collection(partial / "field.pvd", list(seconds), [[name] for name in fields])
+        write_collection(partial / "shells.pvd", list(seconds), [[name] for name in shells])
+        (partial / "system.toml").write_text(response.system.to_toml_string(), encoding="utf-8")
+    return Path(folder)
+
+
+class SpatialFields(TypedDict):
+    """What :func:`export_paraview` is told of runs in three dimensions."""
+
+    cuts: bool
+    volume: int | None
+    velocity: bool
+    station: Any
+
+
+def paraview_cost(
+    response: Response, times: Sequence[float] | None, half_width: float, points: int, **fields: Unpack[SpatialFields]
+) -> Cost:
+    """Return what the fields of a run in three dimensions cost that :func:`export_paraview` writes."""
+    from coaxshell.export.paraview_space import check_space, space_cost
+
+    spatial = cast("SpatialResponse", response)
+    index = _instants(response, _default_times(response) if times is None else times)
+    options = space_options(spatial, half_width, points, 0.0, **fields)
+    check_space(spatial, options, len(index))
+    return space_cost(spatial, options, index)
+
+
+def _default_times(response: Response) -> FloatArray:
+    return np.linspace(0.0, float(response.time[-1]), 101)
+
+
+def space_options(
+    response: SpatialResponse,
+    half_width: float,
+    points: int,
+    displaced: float,
+    *,
+    cuts: bool = True,
+    volume: int | None = None,
+    velocity: bool = False,
+    station: Any = None,
+) -> SpaceOptions:
+    """Return what of a run in three dimensions is written; see :func:`export_paraview`."""
+    from coaxshell.export.paraview_space import SpaceOptions
+
+    z = float(response.stations[0] if station is None else stations_of(station)[0])
+    return SpaceOptions(half_width, points, cuts, volume, velocity, z, displaced)
+
+
+def _export_space(
+    response: SpatialResponse,
+    folder: str | Path,
+    index: npt.NDArray[np.intp],
+    options: SpaceOptions,
+    *,
+    force: bool,
+    progress: Report | None,
+) -> Path:
+    from coaxshell.export.paraview_space import check_space, write_space
+
+    check_space(response, options, len(index))
+    with replacing_folder(folder, PARAVIEW_PARTS, force=force) as partial:
+        (partial / "data").mkdir()
+        write_space(response, partial, index, options, progress)
         (partial / "system.toml").write_text(response.system.to_toml_string(), encoding="utf-8")
     return Path(folder)
 

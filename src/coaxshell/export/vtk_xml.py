@@ -43,27 +43,63 @@ class _Appended:
             file.write(b"\n</AppendedData>\n</VTKFile>\n")
 
 
-def write_image(path: Path, origin: Sequence[float], spacing: Sequence[float], arrays: Mapping[str, Array]) -> None:
+def write_image(
+    path: Path, origin: Sequence[float], spacing: Sequence[float], arrays: Mapping[str, Array], *, axes: tuple[int, int] = (0, 1)
+) -> None:
     """Write a .vti file of points on a Cartesian plane.
 
     Parameters
     ----------
     path : Path
-    origin, spacing : sequence of float
-        x and y of the first point, and the steps, m.
-    arrays : mapping of name to ndarray, shape (ny, nx) or (ny, nx, components)
+    origin : sequence of float
+        x and y, and z if it is not 0, of the first point, m.
+    spacing : sequence of float
+        The steps along columns and rows, m.
+    arrays : mapping of name to ndarray, shape (rows, columns) or (rows, columns, components)
+    axes : (int, int)
+        Along which axis of space columns and rows are: x and y, or (0, 2) for x and z.
     """
     appended = _Appended()
     rows, columns = next(iter(arrays.values())).shape[:2]
-    extent = f"0 {columns - 1} 0 {rows - 1} 0 0"
+    last, steps = [0, 0, 0], [1.0, 1.0, 1.0]
+    for axis, count, step in zip(axes, (columns, rows), spacing, strict=True):
+        last[axis], steps[axis] = count - 1, step
+    first = [*origin, 0.0][:3]
+    extent = " ".join(f"0 {end}" for end in last)
     elements = [appended.array(name, values.reshape(rows * columns, *values.shape[2:])) for name, values in arrays.items()]
     body = (
-        f'<ImageData WholeExtent="{extent}" Origin="{origin[0]!r} {origin[1]!r} 0.0" Spacing="{spacing[0]!r} {spacing[1]!r} 1.0">\n'
+        f'<ImageData WholeExtent="{extent}" Origin="{_numbers(first)}" Spacing="{_numbers(steps)}">\n'
         f'<Piece Extent="{extent}">\n<PointData Scalars={quoteattr(next(iter(arrays)))}>\n'
         + "\n".join(elements)
         + "\n</PointData>\n</Piece>\n</ImageData>"
     )
     appended.write(path, "ImageData", body)
+
+
+def _numbers(values: Sequence[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def write_surface(path: Path, points: Array, arrays: Mapping[str, Array]) -> None:
+    """Write a .vts file of points that form a grid of three indices, one of which may stay the same on a surface.
+
+    Parameters
+    ----------
+    path : Path
+    points : ndarray, shape (layers, rows, columns, 3)
+        m.
+    arrays : mapping of name to ndarray, shape (layers, rows, columns) or (layers, rows, columns, components)
+    """
+    appended, shape = _Appended(), points.shape[:3]
+    extent = " ".join(f"0 {count - 1}" for count in reversed(shape))
+    count = points.size // 3
+    place = appended.array("Points", points.reshape(count, 3))
+    elements = [appended.array(name, values.reshape(count, *values.shape[3:])) for name, values in arrays.items()]
+    body = (
+        f'<StructuredGrid WholeExtent="{extent}">\n<Piece Extent="{extent}">\n<Points>\n{place}\n</Points>\n'
+        f"<PointData Scalars={quoteattr(next(iter(arrays)))}>\n" + "\n".join(elements) + "\n</PointData>\n</Piece>\n</StructuredGrid>"
+    )
+    appended.write(path, "StructuredGrid", body)
 
 
 def write_lines(path: Path, lines: Sequence[Array], point_data: Mapping[str, Array], line_data: Mapping[str, Array]) -> None:
@@ -95,10 +131,12 @@ def write_lines(path: Path, lines: Sequence[Array], point_data: Mapping[str, Arr
     appended.write(path, "PolyData", body)
 
 
-def write_collection(path: Path, times: Sequence[float], files: Sequence[str]) -> None:
-    """Write a .pvd file: one file, named relative to it, for each time."""
+def write_collection(path: Path, times: Sequence[float], files: Sequence[Sequence[str]]) -> None:
+    """Write a .pvd file: one file or several parts, named relative to it, for each time."""
     sets = "\n".join(
-        f'<DataSet timestep="{float(time)!r}" group="" part="0" file={quoteattr(file)}/>' for time, file in zip(times, files, strict=True)
+        f'<DataSet timestep="{float(time)!r}" group="" part="{part}" file={quoteattr(file)}/>'
+        for time, parts in zip(times, files, strict=True)
+        for part, file in enumerate(parts)
     )
     text = f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n{sets}\n'
     path.write_text(text + "</Collection>\n</VTKFile>\n", encoding="utf-8")

@@ -23,6 +23,7 @@ from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figur
 from coaxshell.plotting.style import COLOURS, style
 from coaxshell.plotting.sweep import figure_sweep, plot_sweep
 from coaxshell.plotting.unrolled import plot_unrolled
+from coaxshell.plotting.wall_film import save_wall_film
 
 __all__ = [
     "COLOURS",
@@ -66,5 +67,6 @@ __all__ = [
     "plot_unrolled",
     "save_figure",
     "save_film",
+    "save_wall_film",
     "style",
 ]

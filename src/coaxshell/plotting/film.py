@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,10 +15,11 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.memory import available
 from coaxshell.numerics.scalars import plain
-from coaxshell.plotting.field_scales import FieldScales, field_scales
+from coaxshell.plotting.cut_frames import Shown, Solved, shown_runs
+from coaxshell.plotting.field_scales import FieldScales, check_units, field_scales
 from coaxshell.plotting.film_canvas import Canvas
 from coaxshell.plotting.film_files import film_writer, write_film
-from coaxshell.plotting.frames import FieldView, Frames, Report, field_frames, gathered
+from coaxshell.plotting.frames import FieldView, Frames, Report
 from coaxshell.plotting.snapshots import headings, share_of
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ Bytes = npt.NDArray[np.uint8]
 _STAGE = "film"
 BLOCK_MEMORY = 0.9e9
 """Bytes that the pressure of one block of frames may take unless told otherwise."""
-_SAMPLES, _SAMPLE_PIXELS = 40, 90
 _WORKING = 0.4e9
 """Bytes with which the field of a block of frames is computed, beside the block itself."""
 
@@ -47,8 +47,12 @@ def save_film(
     units: str = "auto",
     progress: Report | None = None,
     memory: float = BLOCK_MEMORY,
+    station: Any = None,
 ) -> Path:
     """Write a film of the pressure field and of the stress on the shells; several responses are shown side by side.
+
+    Of a run in three dimensions the cross-section at a station and the plane y = 0 along the axis stand side by side, in which shells
+    show their stress at head and tail as far as the stations go; both are solved for all frames at once.
 
     Parameters
     ----------
@@ -73,6 +77,8 @@ def save_film(
         Called with the fraction done and the name of the stage.
     memory : float
         Bytes that the pressure of one block of frames may take, all systems together; less where less is free.
+    station : float or str, optional
+        Of the cross-sections of runs in three dimensions, m or text; the first of each when left out.
 
     Returns
     -------
@@ -86,13 +92,16 @@ def save_film(
     target = Path(path)
     check_film(target, frames, fps)
     view = view or FieldView()
-    times = _times(responses, frames, until)
+    times = film_times(responses, frames, until)
+    runs = shown_runs(responses, headings(responses, names), station)
+    panels = sum(len(run.panels) for run in runs)
     parities = max(response.solution.normal.shape[1] for response in responses)
     kept = sum(4.0 * response.solution.normal.nbytes for response in responses)
-    require_room(film_cost(len(responses), frames, view, parities=parities, kept=kept, memory=memory), frames, view)
-    scales = _film_scales(responses, times, view, pressure_limit, stress_limit)
-    canvas = Canvas(responses, headings(responses, names), view, scales, units)
-    pictures = _pictures(canvas, responses, times, view, _for_blocks(memory) / len(responses), progress)
+    require_room(film_cost(panels, frames, view, parities=parities, kept=kept, memory=memory), frames, view)
+    check_units(units)
+    solved = [run.solved(times, view, share_of(progress, number, len(runs))) for number, run in enumerate(runs)]
+    canvas = Canvas(runs, view, _film_scales(solved, pressure_limit, stress_limit), units)
+    pictures = _pictures(canvas, solved, len(times), _for_blocks(memory) / len(responses), progress)
     write_film(target, (canvas.width, canvas.height), len(times), fps, pictures)
     return target
 
@@ -143,7 +152,15 @@ def _for_blocks(memory: float) -> float:
     return memory if free is None else min(memory, 0.3 * free)
 
 
-def _times(responses: Sequence[Response], frames: int, until: float | None) -> FloatArray:
+def films_cost(runs: Sequence[Shown], frames: int, view: FieldView) -> Cost:
+    """Return what a film of runs at hand costs, the fields of three dimensions with it."""
+    cost = film_cost(sum(len(run.panels) for run in runs), frames, view)
+    solved = [run.cost(frames, view) for run in runs]
+    return Cost(cost.memory + sum(one.memory for one in solved), cost.seconds + sum(one.seconds for one in solved))
+
+
+def film_times(responses: Sequence[Response], frames: int, until: float | None) -> FloatArray:
+    """Return the instants of a film's frames, transits; InputError if there are no runs, or they are shorter."""
     if not responses:
         raise InputError("responses", "there are none", "give at least one response")
     end = min(float(response.time[-1]) for response in responses)
@@ -152,28 +169,23 @@ def _times(responses: Sequence[Response], frames: int, until: float | None) -> F
     return np.linspace(0.0, end if until is None else until, frames)
 
 
-def _film_scales(
-    responses: Sequence[Response], times: FloatArray, view: FieldView, pressure: float | None, stress: float | None
-) -> FieldScales:
-    """Return scales from instants spread over the film, on a coarse grid."""
+def _film_scales(solved: Sequence[Solved], pressure: float | None, stress: float | None) -> FieldScales:
+    """Return scales from instants spread over the film."""
     if pressure is not None and stress is not None:
         return FieldScales(pressure, stress)
-    coarse = FieldView(view.half_width, min(view.pixels, _SAMPLE_PIXELS))
-    chosen = times[:: max(1, len(times) // _SAMPLES)]
-    return field_scales([gathered(field_frames(response, chosen, coarse)) for response in responses], pressure, stress)
+    return field_scales([frames for one in solved for frames in one.sample()], pressure, stress)
 
 
-def _pictures(
-    canvas: Canvas, responses: Sequence[Response], times: FloatArray, view: FieldView, memory: float, progress: Report | None
-) -> Iterator[Bytes]:
-    done = 0
-    streams: list[Iterator[Frames]] = [
-        field_frames(response, times, view, progress=share_of(progress, number, len(responses)), memory=memory)
-        for number, response in enumerate(responses)
-    ]
-    for parts in zip(*streams, strict=True):
-        for index in range(len(parts[0])):
-            done += 1
-            if progress is not None:
-                progress(done / len(times), _STAGE)
-            yield canvas.frame(parts, index)
+def _pictures(canvas: Canvas, solved: Sequence[Solved], count: int, memory: float, progress: Report | None) -> Iterator[Bytes]:
+    streams = [_each_frame(one.frames(share_of(progress, number, len(solved)), memory)) for number, one in enumerate(solved)]
+    for done, parts in enumerate(zip(*streams, strict=True), start=1):
+        if progress is not None:
+            progress(done / count, _STAGE)
+        yield canvas.frame([frames for panels in parts for frames in panels], 0)
+
+
+def _each_frame(blocks: Iterator[tuple[Frames, ...]]) -> Iterator[tuple[Frames, ...]]:
+    """Yield single frames: blocks of runs may be of different lengths."""
+    for block in blocks:
+        for index in range(len(block[0])):
+            yield tuple(frames.one(index) for frames in block)

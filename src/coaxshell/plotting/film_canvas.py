@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.plotting.field import ABSORBER_COLOUR, WALL_COLOUR, absorber_places, time_stamp, wall_bands
+from coaxshell.plotting.cut_frames import Shown
+from coaxshell.plotting.field import time_stamp
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
     STRESS_COLOURS,
@@ -20,13 +20,13 @@ from coaxshell.plotting.field_scales import (
     stress_unit,
 )
 from coaxshell.plotting.frames import FieldView, Frames
+from coaxshell.plotting.panels import Band, Panel
 from coaxshell.plotting.style import literal, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from coaxshell.model import System
     from coaxshell.response import Response
 
 Bytes = npt.NDArray[np.uint8]
@@ -39,24 +39,13 @@ _LONGEST = 28
 _FEWEST_WITH_AXES = 240  # pixels of a panel: figures on smaller ones could not be read
 
 
-@dataclass(frozen=True)
-class _Band:
-    """The pixels of a shell: where they are, whose degree they show, and how much of each pixel the shell covers."""
-
-    rows: npt.NDArray[np.intp]
-    columns: npt.NDArray[np.intp]
-    degree: npt.NDArray[np.intp]
-    cover: npt.NDArray[np.float32]
-
-
 class Canvas:
     """Turn fields of one or several systems into frames.
 
     Parameters
     ----------
-    responses : sequence of Response
-    names : sequence of str
-        Written above the panels.
+    runs : sequence of Shown
+        Their panels stand side by side.
     view : FieldView
         What each panel shows; its pixels are those of the film.
     scales : FieldScales
@@ -64,31 +53,32 @@ class Canvas:
         Of the pressure; one of PRESSURE_UNITS.
     """
 
-    def __init__(self, responses: Sequence[Response], names: Sequence[str], view: FieldView, scales: FieldScales, units: str) -> None:
+    def __init__(self, runs: Sequence[Shown], view: FieldView, scales: FieldScales, units: str) -> None:
         self.view, self.scales = view, scales
         self._zoom = view.pixels / 450.0
-        count, side = len(responses), view.pixels
+        panels = [panel for run in runs for panel in run.panels]
+        count, side = len(panels), view.pixels
         self._top = self._px(_TOP)
         self._left = [self._px(_MARGIN) + i * (side + self._px(_GAP)) for i in range(count)]
         width = self._left[-1] + side + self._px(_MARGIN)
         height = self._top + side + self._px(_LABELS)
         self.width, self.height = width + width % 2, height + height % 2  # video wants even numbers
-        self._colours = _table(PRESSURE_COLOURS)
-        self._stress_colours = _table(STRESS_COLOURS)
-        self._background = self._draw_background(responses, names, units)
-        self._bands = [[self._band(*edges) for edges in wall_bands(response.system)] for response in responses]
-        self._overlays = [_Overlay(_draw_overlay(response.system, view)) for response in responses]
-        self._stamp = _Stamp(max(9, self._px(13)))
+        self._colours = colour_table(PRESSURE_COLOURS)
+        self._stress_colours = colour_table(STRESS_COLOURS)
+        self._background = self._draw_background(runs[0].response, [panel.name for panel in panels], units)
+        self._bands = [panel.bands(view) for panel in panels]
+        self._overlays = [_Overlay(_draw_overlay(panel, view)) for panel in panels]
+        self._stamp = Stamp(max(9, self._px(13)))
 
     def frame(self, parts: Sequence[Frames], index: int) -> Bytes:
-        """Return one frame, shape (height, width, 3), from the same index of each system's frames."""
+        """Return one frame, shape (height, width, 3), from the same index of each panel's frames."""
         picture = self._background.copy()
         for left, part, bands, overlay in zip(self._left, parts, self._bands, self._overlays, strict=True):
             panel = picture[self._top : self._top + self.view.pixels, left : left + self.view.pixels]
-            panel[:] = _coloured(compressed(part.field(index)[::-1] / np.float32(self.scales.pressure)), 1.0, self._colours)
+            panel[:] = coloured(compressed(part.field(index)[::-1] / np.float32(self.scales.pressure)), 1.0, self._colours)
             for band, stress in zip(bands, part.stress, strict=True):
-                if stress is not None:
-                    _blend(panel, band, _coloured(stress[index], self.scales.stress, self._stress_colours))
+                if stress is not None and band is not None:
+                    _blend(panel, band, coloured(stress[index], self.scales.stress, self._stress_colours))
             overlay.onto(panel)
             panel[[0, -1]] = panel[:, [0, -1]] = _FRAME
         self._stamp.write(picture, time_stamp(parts[0], index, mathematics=False), self._left[0], self._top)
@@ -97,26 +87,16 @@ class Canvas:
     def _px(self, at_450: float) -> int:
         return round(at_450 * self._zoom)
 
-    def _band(self, inner: float, outer: float) -> _Band:
-        """Return the pixels of a shell, rows counted from the top, with soft edges."""
-        x = self.view.centres
-        y = x[::-1, None]
-        covered = 0.5 + (0.5 * (outer - inner) - np.abs(np.hypot(x, y) - 0.5 * (inner + outer))) / self.view.pixel
-        rows, columns = np.nonzero(covered > 0)
-        angle = np.degrees(np.arctan2(y[rows, 0], x[columns]))
-        degree = np.rint(angle).astype(np.intp) % 360
-        return _Band(rows, columns, degree, np.clip(covered[rows, columns], 0.0, 1.0).astype(np.float32))
-
-    def _draw_background(self, responses: Sequence[Response], names: Sequence[str], units: str) -> Bytes:
+    def _draw_background(self, response: Response, names: Sequence[str], units: str) -> Bytes:
         """Return the page without fields: names, frames of the panels, colour bars."""
         with style():
-            figure = _page(self.width, self.height)
+            figure = page(self.width, self.height)
             size = 9.0 * self._zoom
             for left, name in zip(self._left, names, strict=True):
                 right, height = (left + self.view.pixels) / self.width, 1.0 - 0.5 * self._top / self.height
                 figure.text(right, height, literal(_shortened(name)), ha="right", va="center", fontsize=1.15 * size, fontweight="bold")
             bars = (
-                (self.scales.pressure, pressure_unit(responses[0], units, self.scales.pressure), PRESSURE_COLOURS),
+                (self.scales.pressure, pressure_unit(response, units, self.scales.pressure), PRESSURE_COLOURS),
                 (self.scales.stress, stress_unit(self.scales.stress), STRESS_COLOURS),
             )
             for number, (limit, unit, colours) in enumerate(bars):
@@ -127,7 +107,7 @@ class Canvas:
                 bar = add_colour_bar(figure.add_axes(bounds), limit, unit, colours, orientation="horizontal")
                 bar.ax.tick_params(labelsize=0.85 * size, length=2 * self._zoom, pad=1.5 * self._zoom)
                 bar.set_label(unit.label, fontsize=0.9 * size, labelpad=0.5)
-            picture = _pixels(figure)
+            picture = pixels(figure)
         return np.ascontiguousarray(picture[..., :3])
 
 
@@ -147,7 +127,7 @@ class _Overlay:
         panel[self.rows, self.columns] = (under * self._rest + self._ink + 0.5).astype(np.uint8)
 
 
-class _Stamp:
+class Stamp:
     """Writes the time at the top left in matplotlib's own font, whose figures all have the same width."""
 
     def __init__(self, size: int) -> None:
@@ -165,7 +145,8 @@ class _Stamp:
         picture[:top] = np.asarray(strip)
 
 
-def _page(width: int, height: int) -> Figure:
+def page(width: int, height: int) -> Figure:
+    """Return an empty figure of so many pixels."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -174,36 +155,30 @@ def _page(width: int, height: int) -> Figure:
     return figure
 
 
-def _pixels(figure: Figure) -> Bytes:
+def pixels(figure: Figure) -> Bytes:
+    """Return a figure as it is drawn, shape (height, width, 4)."""
     canvas: Any = figure.canvas
     canvas.draw()
     return np.array(canvas.buffer_rgba(), dtype=np.uint8)
 
 
-def _draw_overlay(system: System, view: FieldView) -> Bytes:
+def _draw_overlay(panel: Panel, view: FieldView) -> Bytes:
     """Return walls and absorbers on a transparent ground, shape (pixels, pixels, 4)."""
-    from matplotlib.patches import Circle
-
     with style():
-        figure = _page(view.pixels, view.pixels)
+        figure = page(view.pixels, view.pixels)
         figure.patch.set_alpha(0.0)
         ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         ax.set_axis_off()
         ax.set(xlim=(-view.half_width, view.half_width), ylim=(-view.half_width, view.half_width))
         zoom = view.pixels / 450.0
-        for edges in wall_bands(system):
-            for edge in edges:
-                ax.add_patch(Circle((0, 0), edge, fill=False, edgecolor=WALL_COLOUR, linewidth=0.6 * zoom))
-        if system.absorber_list:
-            x, y = absorber_places(system)
-            ax.plot(x, y, linestyle="none", marker="o", markersize=2.4 * zoom, color=ABSORBER_COLOUR, markeredgewidth=0)
+        panel.outline(ax, view, zoom)
         if view.pixels >= _FEWEST_WITH_AXES:
-            _mark_axes(ax, view.half_width, zoom)
-        return _pixels(figure)
+            _mark_axes(ax, view.half_width, zoom, panel.labels)
+        return pixels(figure)
 
 
-def _mark_axes(ax: Axes, edge: float, zoom: float) -> None:
-    """Mark x/a and y/a along the lower and the left edge, inside: a panel has no room around it."""
+def _mark_axes(ax: Axes, edge: float, zoom: float, labels: tuple[str, str]) -> None:
+    """Mark both axes along the lower and the left edge, inside: a panel has no room around it."""
     from matplotlib.ticker import MaxNLocator
 
     ink: dict[str, Any] = {"color": "0.25", "fontsize": 6.0 * zoom}
@@ -213,8 +188,8 @@ def _mark_axes(ax: Axes, edge: float, zoom: float) -> None:
         ax.plot([-edge, -0.975 * edge], [place, place], color="0.25", linewidth=0.7 * zoom)
         ax.text(place, -0.965 * edge, f"{place:g}", ha="center", va="bottom", **ink)
         ax.text(-0.96 * edge, place, f"{place:g}", ha="left", va="center", **ink)
-    ax.text(0.985 * edge, -0.965 * edge, "x/a", ha="right", va="bottom", **ink)
-    ax.text(-0.96 * edge, 0.985 * edge, "y/a", ha="left", va="top", **ink)
+    ax.text(0.985 * edge, -0.965 * edge, labels[0], ha="right", va="bottom", **ink)
+    ax.text(-0.96 * edge, 0.985 * edge, labels[1], ha="left", va="top", **ink)
 
 
 def _shortened(name: str) -> str:
@@ -222,21 +197,21 @@ def _shortened(name: str) -> str:
     return name if len(name) <= _LONGEST else name[: _LONGEST - 1].rstrip() + "…"
 
 
-def _table(name: str) -> Bytes:
+def colour_table(name: str) -> Bytes:
     """Return a colour map as a table of _LEVELS colours."""
     from matplotlib import colormaps
 
     return np.asarray(colormaps[name](np.linspace(0.0, 1.0, _LEVELS), bytes=True)[:, :3], dtype=np.uint8)
 
 
-def _coloured(values: npt.NDArray[Any], limit: float, table: Bytes) -> Bytes:
+def coloured(values: npt.NDArray[Any], limit: float, table: Bytes) -> Bytes:
     """Return the colours of values on a scale from -limit to limit, shape (..., 3)."""
     half = 0.5 * (_LEVELS - 1)
     index = np.clip(values * np.float32(half / limit) + np.float32(half + 0.5), 0, _LEVELS - 1).astype(np.intp)
     return np.asarray(table[index], dtype=np.uint8)
 
 
-def _blend(panel: Bytes, band: _Band, colours: Bytes) -> None:
+def _blend(panel: Bytes, band: Band, colours: Bytes) -> None:
     under = panel[band.rows, band.columns].astype(np.float32)
     cover = band.cover[:, None]
-    panel[band.rows, band.columns] = (under + cover * (colours[band.degree] - under) + 0.5).astype(np.uint8)
+    panel[band.rows, band.columns] = (under + cover * (colours[band.place] - under) + 0.5).astype(np.uint8)

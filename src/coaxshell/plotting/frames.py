@@ -23,7 +23,8 @@ WALL_ANGLES: FloatArray = np.arange(360.0)
 """Where the stress of a shell is taken: every degree."""
 
 _STAGE = "fields"
-_BLOCK_BYTES = 0.45e9
+BLOCK_BYTES = 0.45e9
+"""Bytes that the pressure of one block of frames may take unless told otherwise."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,8 @@ class Frames:
         Pa; columns from the lowest x, the source's side last. Rows run upward from the lowest y, or, where the field is its own mirror
         image, from the middle: ``rows`` is then half of ``pixels``, rounded up. :meth:`field` gives whole squares.
     stress : tuple of (ndarray, shape (K, 360), or None)
-        Hoop stress of each shell at WALL_ANGLES, Pa; None for a rigid one.
+        Hoop stress of each shell at WALL_ANGLES, Pa; None for a rigid one. In the plane along the axis of head and tail of each in turn,
+        at the rows that stations cover.
     """
 
     time: FloatArray
@@ -80,6 +82,12 @@ class Frames:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def one(self, index: int) -> Frames:
+        """Return one frame alone."""
+        at = slice(index, index + 1)
+        stress = tuple(None if around is None else around[at] for around in self.stress)
+        return Frames(self.time[at], self.milliseconds[at], self.pressure[at], stress)
 
     def field(self, index: int) -> npt.NDArray[np.float32]:
         """Return the pressure of one frame on the whole square, rows from the lowest y upward."""
@@ -109,7 +117,7 @@ def field_frames(
     view: FieldView | None = None,
     *,
     progress: Report | None = None,
-    memory: float = _BLOCK_BYTES,
+    memory: float = BLOCK_BYTES,
 ) -> Iterator[Frames]:
     """Yield the fields at the run's instants nearest to *times*, in blocks of frames that stay within the memory.
 

@@ -31,11 +31,14 @@ class Sheet:
         Panels of a group, side by side: one a system.
     columns : int
         Groups in a row.
+    upward : str
+        Label of the axes that point upward.
     """
 
     groups: int
     members: int
     columns: int
+    upward: str = "$y/a$"
 
     @property
     def rows(self) -> int:
@@ -78,7 +81,7 @@ class Sheet:
         leftmost, lowest = column == 0 and member == 0, group + self.columns >= self.groups
         ax.tick_params(labelleft=leftmost, left=leftmost, labelbottom=lowest, bottom=lowest, length=2.5, pad=2)
         if leftmost:
-            ax.set_ylabel("$y/a$", labelpad=1)
+            ax.set_ylabel(self.upward, labelpad=1)
         if lowest:
             ax.set_xlabel("$x/a$", labelpad=1)
         return ax

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
-from coaxshell.plotting.field import draw_frame, time_stamp
+from coaxshell.plotting.cut_frames import shown_runs
+from coaxshell.plotting.field import time_stamp
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
     STRESS_COLOURS,
     add_colour_bar,
+    check_units,
     field_scales,
     pressure_unit,
     stress_unit,
 )
-from coaxshell.plotting.frames import FieldView, Report, field_frames, gathered
+from coaxshell.plotting.frames import FieldView, Frames, Report, gathered
+from coaxshell.plotting.panels import Panel
 from coaxshell.plotting.sheets import Sheet
 from coaxshell.plotting.style import style
 
@@ -43,8 +46,11 @@ def figure_snapshots(
     absorbers: bool = True,
     columns: int = _COLUMNS,
     progress: Report | None = None,
+    station: Any = None,
 ) -> Figure:
     """Draw fields at several instants, all on the same two colour scales; several responses side by side at each instant.
+
+    Of a run in three dimensions the cross-section at a station and the plane y = 0 along the axis stand side by side.
 
     Parameters
     ----------
@@ -66,6 +72,8 @@ def figure_snapshots(
         Instants in a row.
     progress : callable, optional
         Called with the fraction done and the name of the stage.
+    station : float or str, optional
+        Of the cross-sections of runs in three dimensions, m or text; the first of each when left out.
 
     Returns
     -------
@@ -78,25 +86,34 @@ def figure_snapshots(
     """
     view = view or FieldView()
     chosen = _times(responses, times)
-    frames = [
-        gathered(field_frames(response, chosen, view, progress=share_of(progress, number, len(responses))))
-        for number, response in enumerate(responses)
-    ]
+    runs = shown_runs(responses, headings(responses, names), station)
+    check_units(units)
+    frames: list[Frames] = []
+    for number, run in enumerate(runs):
+        report = share_of(progress, number, len(runs))
+        frames += [gathered(iter(parts)) for parts in zip(*run.solved(chosen, view, report).frames(report), strict=True)]
+    panels = [panel for run in runs for panel in run.panels]
     scales = field_scales(frames, pressure_limit, stress_limit)
     bars = pressure_unit(responses[0], units, scales.pressure), stress_unit(scales.stress)
-    sheet = Sheet(len(chosen), len(responses), min(len(chosen), columns))
+    sheet = Sheet(len(chosen), len(panels), min(len(chosen), columns), _upward(panels))
     with style():
         figure = sheet.new_figure()
         for group in range(len(chosen)):
-            for member, (response, part) in enumerate(zip(responses, frames, strict=True)):
-                draw_frame(sheet.panel(figure, group, member), response.system, part, group, view, scales, absorbers=absorbers)
+            for member, (panel, part) in enumerate(zip(panels, frames, strict=True)):
+                panel.draw(sheet.panel(figure, group, member), part, group, view, scales, absorbers=absorbers)
             sheet.title(figure, group, time_stamp(frames[0], group))
-        if len(responses) > 1:
-            sheet.headings(figure, headings(responses, names))
+        if len(panels) > 1:
+            sheet.headings(figure, [panel.name for panel in panels])
         limits = ((scales.pressure, PRESSURE_COLOURS), (scales.stress, STRESS_COLOURS))
         for ax, unit, (limit, colours) in zip(sheet.bars(figure), bars, limits, strict=True):
             add_colour_bar(ax, limit, unit, colours, orientation="horizontal")
     return figure
+
+
+def _upward(panels: Sequence[Panel]) -> str:
+    """Return the label of the axes that point upward, those of all panels where they differ."""
+    labels = dict.fromkeys(panel.labels[1] for panel in panels)
+    return ", ".join(f"${label}$" for label in labels)
 
 
 def headings(responses: Sequence[Response], names: Sequence[str] = ()) -> list[str]:

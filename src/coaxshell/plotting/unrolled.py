@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.places import shell_phrase
@@ -16,6 +17,8 @@ from coaxshell.plotting.field_scales import STRESS_COLOURS, DrawnUnit, add_colou
 from coaxshell.plotting.frames import Frames, instants
 from coaxshell.plotting.scales import round_up
 from coaxshell.plotting.style import new_figure, style
+from coaxshell.response.arguments import one_of
+from coaxshell.response.quantities import STRESSES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -69,11 +72,10 @@ def plot_unrolled(
         There is one station alone, the shell or the component is unknown, or the time is outside the run.
     """
     require_stations(response)
+    require_grid(response)
     number = response.system.shell_index(shell)
     index = int(instants(response, [time])[0])
     z, stress = along_stations(response, number, ANGLES, index, component)
-    if z.size < 2:
-        raise InputError("stations", "there is one alone", "run with a grid of them, such as stations=np.linspace(0, 3, 61)")
     limit = stress_limit or round_up(float(np.quantile(abs(stress), _SHARE)))
     image: Any = mappable(limit, STRESS_COLOURS)
     with style():
@@ -88,9 +90,7 @@ def plot_unrolled(
         stamp = time_stamp(Frames(*moment, np.zeros((1, 1, 1), np.float32), ()), 0)
         ax.set_title(f"{shell_phrase(number, len(response.system.shells))}, {stamp}")
         if colour_bar:
-            unit = stress_unit(limit)
-            told = unit.label.replace("hoop", "von Mises" if component == "von_mises" else component)
-            add_colour_bar(ax.inset_axes((1.04, 0.0, 0.04, 1.0)), limit, DrawnUnit(told, unit.per_pascal), STRESS_COLOURS)
+            add_colour_bar(ax.inset_axes((1.04, 0.0, 0.04, 1.0)), limit, component_unit(component, limit), STRESS_COLOURS)
     return ax
 
 
@@ -100,19 +100,50 @@ def require_stations(response: Response) -> None:
         raise InputError("response", "is of a run in two dimensions", "run with dimensions=3 and a grid of stations")
 
 
-def along_stations(
-    response: SpatialResponse, shell: int, angles: Sequence[float] | FloatArray, index: int, component: str = "hoop"
-) -> tuple[FloatArray, FloatArray]:
-    """Return axial positions in a, ascending, and the stress there at an instant, (positions, angles), mirrored where sources are alike.
+def require_grid(response: SpatialResponse) -> None:
+    """Raise InputError for a run of a single station."""
+    if mirrored_stations(response)[0].size < 2:
+        raise InputError("stations", "there is one alone", "run with a grid of them, such as stations=np.linspace(0, 3, 61)")
 
-    The shear stress changes its sign with z, the others do not.
+
+def stress_component(name: str) -> str:
+    """Return the name of a component of the stress, words joined by - or _; InputError for an unknown one."""
+    return one_of("component", name.replace("-", "_"), (*STRESSES, "von_mises"))
+
+
+def component_unit(component: str, limit: float) -> DrawnUnit:
+    """Return the unit of the colour bar of a component of the stress."""
+    unit = stress_unit(limit)
+    return DrawnUnit(unit.label.replace("hoop", component.replace("von_mises", "von Mises")), unit.per_pascal)
+
+
+def along_stations(
+    response: SpatialResponse, shell: int, angles: Sequence[float] | FloatArray, index: int | None, component: str = "hoop"
+) -> tuple[FloatArray, FloatArray]:
+    """Return axial positions in a, ascending, and the stress there, mirrored where sources are alike on both sides.
+
+    Shape (positions, angles) at an instant by its number, (instants, positions, angles) for None. The shear stress changes its sign with
+    z, the others do not.
     """
-    found = response.stress(shell, angles, component=component).isel(time=index)
-    z, stress = response.stations / response.system.reference_radius, np.asarray(found, dtype=np.float64)
+    found = response.stress(shell, angles, component=component)
+    found = found if index is None else found.isel(time=[index])
+    z, sign = mirrored_stations(response)
+    stress = np.asarray(found, dtype=np.float64)[:, np.abs(sign) - 1]
+    if component == "shear":
+        stress = stress * np.sign(sign)[:, None]
+    return z, stress if index is None else stress[0]
+
+
+def mirrored_stations(response: SpatialResponse) -> tuple[FloatArray, npt.NDArray[np.int64]]:
+    """Return axial positions in a, ascending, with the number of the station, from 1, that each is; negative where it is its image.
+
+    Stations have images where sources are alike on both sides of z = 0.
+    """
+    z, number = response.stations / response.system.reference_radius, np.arange(1, response.stations.size + 1)
     if alike_on_both_sides(response.system):
-        z, stress = np.concatenate([z, -z]), np.concatenate([stress, -stress if component == "shear" else stress])
+        z, number = np.concatenate([z, -z]), np.concatenate([number, -number])
     z, first = np.unique(z + 0.0, return_index=True)
-    return z, stress[first]
+    return z, number[first]
 
 
 def alike_on_both_sides(system: System) -> bool:

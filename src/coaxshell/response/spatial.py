@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+import numpy as np
 import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
@@ -18,7 +19,7 @@ from coaxshell.response.response import HEAD_AND_TAIL, Response
 from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
 from coaxshell.response.stations import StationMotion, Transforms, chosen_stations, joined
 from coaxshell.response.tables import history_table
-from coaxshell.response.thinning import thinned_stations
+from coaxshell.response.thinning import some_instants, thinned_stations
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.electrodes import Segment
@@ -68,6 +69,10 @@ class SpatialResponse(Response):
         """Return the response at some of its stations alone: one axial position (m or text) or several."""
         chosen, _ = chosen_stations(self.stations, station)
         return self if chosen == list(range(self.stations.size)) else SpatialResponse(self.spatial.some(chosen))
+
+    def at_instants(self, index: npt.NDArray[np.intp]) -> SpatialResponse:
+        """Return the response with some of its instants alone, by number: for what is read of the shells at them."""
+        return SpatialResponse(some_instants(self.spatial, index))
 
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read at each of some stations, dims (time, station, ...)."""

@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import numpy.typing as npt
+
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
@@ -46,12 +49,16 @@ def thinned(solution: ModalSolution, every: int, window: Sequence[float] | None)
 
 def thinned_stations(solution: SpatialSolution, every: int, window: Sequence[float] | None) -> SpatialSolution:
     """Return a solution of three dimensions with every so many instants of a window; see :func:`thinned`."""
-    kept = _kept(solution.time, every, window)
+    fewer = some_instants(solution, _kept(solution.time, every, window))
+    return replace(fewer, warnings=with_missing(fewer))
+
+
+def some_instants(solution: SpatialSolution, kept: slice | npt.NDArray[np.intp]) -> SpatialSolution:
+    """Return a solution of three dimensions with some of its instants."""
     fields = {name: values[..., kept].copy() for name, values in solution.fields.items()}
     absorbers = {name: getattr(solution, name) for name in ("absorber_displacement", "absorber_force")}
     absorbers = {name: None if values is None else values[..., kept].copy() for name, values in absorbers.items()}
-    fewer = replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None, **absorbers)
-    return replace(fewer, warnings=with_missing(fewer))
+    return replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None, **absorbers)
 
 
 def _kept(time: FloatArray, every: int, window: Sequence[float] | None) -> slice:

@@ -95,6 +95,15 @@ PressureLimitOption = Annotated[
     str | None,
     typer.Option("--pressure-limit", metavar="PRESSURE", help="End of the pressure's colour scale in Pa.", show_default="from the fields"),
 ]
+SectionOption = Annotated[
+    str | None,
+    typer.Option(
+        "--section",
+        metavar="LENGTH",
+        help="Three dimensions: z of the cross-section, in m or as in 70 cm.",
+        show_default="the first station",
+    ),
+]
 StressLimitOption = Annotated[
     str | None,
     typer.Option("--stress-limit", metavar="PRESSURE", help="End of the stress's colour scale in Pa.", show_default="from the fields"),

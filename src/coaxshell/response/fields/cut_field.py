@@ -19,7 +19,7 @@ from coaxshell.response.fields.cuts import Cut
 from coaxshell.response.fields.evaluate import points_of
 from coaxshell.response.fields.inversion import band
 from coaxshell.response.fields.request import FieldRequest, Tell
-from coaxshell.response.fields.scattered import raster_radii
+from coaxshell.response.fields.scattered import Points, raster_radii
 from coaxshell.response.fields.spatial_incident import SpatialIncident
 from coaxshell.response.fields.spatial_waves import SpatialQuantity, SpatialWaves, cut_waves
 from coaxshell.solver.axial.solution import SpatialSolution
@@ -28,6 +28,8 @@ from coaxshell.solver.scaling import Problem
 
 _SECONDS = 90e-9
 """Of a processor's core, for an order at a wave, a node and a radius."""
+_WAVE = 4e-3
+"""Of a core, for a wave and a block of nodes: the walls and the fluids between them."""
 _SUM = 0.4e-9
 """Of a core, for a node, an instant and a row that the inverse transform of a wave has."""
 
@@ -89,8 +91,7 @@ class CutField:
         if waves is None:
             return None
         points = points_of(cut.grid)
-        exact = cut.kind != "across" or is_exact(spatial.problem, asked, cut.grid, points)
-        radii = points.radius.size if exact else raster_radii(spatial.problem, asked, points.radius)
+        exact, radii = _radii(spatial.problem, cut, asked, points)
         what = f"the field at {radii:,} radii of {len(waves.sampling.modes):,} axial wavenumbers and {times.size:,} instants"
         cost = cut_cost(waves, cut, radii, times.size, len(quantities))
         cost.require(what, "ask for fewer points, for some instants at a time, or for a coarser time_resolution")
@@ -146,12 +147,29 @@ def cut_cost(waves: SpatialWaves, cut: Cut, radii: int, instants: int, quantitie
     blocks = 16.0 * WORKERS * waves.block_size(radii) * (radii * (orders * quantities + 12.0) + rows * (cut.kind != "across"))
     held = (1.0 + WORKERS) * kept * rows
     pairs = waves.pairs(radii)
-    seconds = (1.0 + 0.4 * (quantities - 1)) * _SECONDS * pairs * waves.parities
+    count = float(len(waves.sampling.modes))
+    seconds = (1.0 + 0.2 * (quantities - 1)) * _SECONDS * pairs * waves.parities
+    seconds += _WAVE * count * -(-waves.grid.nodes.size // waves.block_size(radii))
     if cut.kind != "across":
-        families, count = waves.families, float(len(waves.sampling.modes))
+        families = waves.families
         held *= families * count
         seconds += _SUM * families * count * rows * quantities * waves.grid.nodes.size * instants
     return Cost(blocks + held, 0.1 + seconds / WORKERS)
+
+
+def field_cost(spatial: SpatialSolution, cut: Cut, asked: FieldRequest, times: FloatArray, quantities: int) -> Cost:
+    """Return what a :class:`CutField` costs that is not made yet."""
+    waves, _ = cut_waves(spatial, band(laplace_grid(spatial.settings), asked.resolution), cut.z, float(times.max()), asked)
+    if waves is None:
+        return Cost(0.0)
+    _, radii = _radii(spatial.problem, cut, asked, points_of(cut.grid))
+    return cut_cost(waves, cut, radii, times.size, quantities)
+
+
+def _radii(problem: Problem, cut: Cut, asked: FieldRequest, points: Points) -> tuple[bool, int]:
+    """Return whether a cut is solved at its points' own radii, and how many radii it needs."""
+    exact = cut.kind != "across" or is_exact(problem, asked, cut.grid, points)
+    return exact, points.radius.size if exact else raster_radii(problem, asked, points.radius)
 
 
 def require_started(spatial: SpatialSolution, cut: Cut) -> None:

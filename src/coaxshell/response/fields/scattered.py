@@ -88,6 +88,9 @@ TAPS_RADIUS = 8
 _SHAPE = np.pi * np.sqrt((TAPS_THETA * (1.0 - 0.5 / OVERSAMPLING)) ** 2 - 0.8)
 _CONTINUATION = 6.0
 """Largest growth, as the logarithm of r^M, that a field may show on its continuation beyond a wall."""
+_DEEPEST = 0.5
+"""Share of its inner wall's radius by which a fluid's field may be continued inward: at the axis, where few orders would let it go, it is
+infinite."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +113,7 @@ def raster_of(region: Region, radius: FloatArray, spacing: float, max_order: int
     """Return the raster for points at given radii of a region."""
     low, high, margin = float(radius.min()), float(radius.max()), 0.5 * TAPS_RADIUS * spacing
     reach = _CONTINUATION / max(1, max_order)
-    bottom = max(low - margin, region.inner * (1.0 - min(1.0, reach)))
+    bottom = max(low - margin, region.inner * (1.0 - min(_DEEPEST, reach)))
     top = min(high + margin, region.outer * (1.0 + reach))
     angles = int(fft.next_fast_len(int(np.ceil(OVERSAMPLING * (2 * max_order + 2) / 4)), real=True)) * 4
     if region.index == 0 and bottom <= margin:

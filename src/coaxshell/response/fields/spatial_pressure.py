@@ -129,7 +129,7 @@ def spatial_velocity(
     when = _when(spatial, time)
     require_room("velocity", (x, y, z, radius, angle), when, 3)
     cut = cut_of(x, y, z, radius, angle)
-    values = _turned(cut, _solved(spatial, cut, asked, when, FLOW))
+    values = turned(cut, _solved(spatial, cut, asked, when, FLOW))
     values *= spatial.problem.scales.velocity
     told = {"name": "velocity", "long_name": "particle velocity", "units": "m s-1", "sign": _sign(cut)}
     return _labelled(spatial.problem.scales, cut, when, values, asked, told)
@@ -159,7 +159,7 @@ def spatial_intensity(
     require_room("intensity", (x, y, z, radius, angle), when, 4)
     cut = cut_of(x, y, z, radius, angle)
     pressure, *flow = _solved(spatial, cut, asked, when, ("pressure", *FLOW))
-    values = _turned(cut, flow)
+    values = turned(cut, flow)
     values *= pressure[:, None] * (spatial.problem.scales.pressure * spatial.problem.scales.velocity)
     told = {"name": "intensity", "long_name": "acoustic intensity", "units": "W m-2", "sign": _sign(cut)}
     return _labelled(spatial.problem.scales, cut, when, values, asked, told)
@@ -195,10 +195,10 @@ def _solved(
     return [values.reshape(values.shape[0], -1) for values in found]
 
 
-def _turned(cut: Cut, flow: list[FloatArray]) -> FloatArray:
-    """Return polar components, or Cartesian ones on a Cartesian grid, and that along z, stacked after the time."""
+def turned(cut: Cut, flow: list[FloatArray], *, cartesian: bool = False) -> FloatArray:
+    """Return polar components, or Cartesian ones if asked for or on a Cartesian grid, and that along z, stacked after the time."""
     radial, angular, axial = flow
-    if not cut.grid.polar:
+    if cartesian or not cut.grid.polar:
         angle = np.radians(np.tile(cut.grid.angle, cut.z.size))
         cos, sin = np.cos(angle), np.sin(angle)
         radial, angular = cos * radial - sin * angular, sin * radial + cos * angular
