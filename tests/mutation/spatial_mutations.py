@@ -128,6 +128,14 @@ SPATIAL = (
         "response/test_whole_length_energy.py",
     ),
     Mutation(
+        "points-softness",
+        "solver/axial/softened.py",
+        "share *= 2.0 / sampling.period",
+        "share *= 4.0 / sampling.period",
+        "softness that the waves left out give a wall under a point absorber: twice of it",
+        "solver/test_point_estimates.py",
+    ),
+    Mutation(
         "points-along",
         "solver/axial/motion.py",
         "np.array([np.cos(k * points.z), -np.sin(k * points.z)])",

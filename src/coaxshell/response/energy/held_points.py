@@ -36,7 +36,7 @@ class HeldPoints:
         self._grid, self._layout = grid, layout
         self._structure = point_structure(problem, grid, sampling, layout, node_blocks(grid), on_threads)
         linked = solve_points(self._structure)
-        self.forces, self._links = linked.forces, linked.links(self._structure)
+        self.forces, self._links = linked.forces, linked.links
         self._moved: ComplexArray = np.zeros((layout.points.count, grid.nodes.size), np.complex128)
 
     def add(self, wave: WaveMotion) -> None:

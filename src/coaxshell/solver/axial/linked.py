@@ -43,22 +43,28 @@ class PointSolution:
         q of every absorber.
     error : float
         Relative error of the forces by the steps of the march; 0 where nothing was marched.
-    exact : pair of ndarray or None
-        Transforms of the forces and of q of the absorbers carried, where they are linear.
+    structure : PointStructure
+    carried : ndarray, shape (2N, nodes)
+        Transforms of the forces of the absorbers carried.
+    exact : ndarray or None
+        Those of q of the absorbers carried, (N, nodes), where they are linear.
     """
 
     forces: PointForces
     force: FloatArray
     displacement: FloatArray
-    error: float = 0.0
-    exact: tuple[ComplexArray, ComplexArray] | None = None
+    error: float
+    structure: PointStructure
+    carried: ComplexArray
+    exact: ComplexArray | None = None
 
-    def links(self, structure: PointStructure) -> LinkMotion:
-        """Return forces, motion and rates of every absorber of the description."""
-        absorbers = structure.layout.absorbers
+    @property
+    def links(self) -> LinkMotion:
+        """Forces, motion and rates of every absorber of the description."""
+        absorbers, grid = self.structure.layout.absorbers, self.structure.grid
         if self.exact is not None:
-            return exact_motion(absorbers, structure.grid, *self.exact)
-        return marched_motion(absorbers, structure.grid.time_step, self.force, self.displacement)
+            return exact_motion(absorbers, grid, self.carried, self.exact)
+        return marched_motion(absorbers, grid.time_step, self.force, self.displacement)
 
 
 class PointStructure(StructureSpectra):
@@ -160,32 +166,35 @@ def solve_points(structure: PointStructure, progress: Progress | None = None) ->
         If a step does not converge.
     """
     layout, grid = structure.layout, structure.grid
-    absorbers = layout.absorbers
+    absorbers, displacement = layout.absorbers, None
     if absorbers.is_linear:
-        force, displacement = _exact(structure)
-        spectra = layout.of_every(force)
-        histories, moved, error, exact = grid.invert(force), grid.invert(displacement), 0.0, (force, displacement)
+        carried, displacement = _exact(structure)
+        histories, moved, error = grid.invert(carried), grid.invert(displacement), 0.0
     else:
-        exact = None
         result = march(structure, absorbers, progress=progress)
         histories, moved = result.force, result.mass_displacement
-        error = _march_error(structure, histories)
-        spectra = layout.of_every(grid.transform_linear(histories))
+        error, carried = _march_error(structure, histories), grid.transform_linear(histories)
     every = layout.of_every(histories)
     sides = every.reshape(2, layout.member_count, -1).swapaxes(0, 1)
-    forces = PointForces(layout.points, spectra, layout.parities)
-    return PointSolution(forces, sides, moved[absorbers.member], error, exact)
+    forces = PointForces(layout.points, layout.of_every(carried), layout.parities)
+    return PointSolution(forces, sides, moved[absorbers.member], error, structure, carried, displacement)
+
+
+def point_law(absorbers: AbsorberSet, nodes: ComplexArray) -> ComplexArray:
+    """Return Y of linear absorbers at Laplace nodes, f = -Y w, shape (nodes, 2N, 2N), inner sides first."""
+    count, index = absorbers.count, np.arange(absorbers.count)
+    own, other, _ = admittance(absorbers, nodes)
+    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
+    for a in (0, 1):
+        law[:, a * count + index, a * count + index] = own
+        law[:, a * count + index, (1 - a) * count + index] = other
+    return law
 
 
 def _exact(structure: PointStructure) -> tuple[ComplexArray, ComplexArray]:
     """Return the transforms of the forces (2N, nodes) and of the masses' displacements (N, nodes) of linear absorbers."""
     absorbers, nodes = structure.layout.absorbers, structure.grid.nodes
-    count, index = absorbers.count, np.arange(absorbers.count)
-    own, other, mass = admittance(absorbers, nodes)
-    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
-    for a in (0, 1):
-        law[:, a * count + index, a * count + index] = own
-        law[:, a * count + index, (1 - a) * count + index] = other
+    count, mass, law = absorbers.count, admittance(absorbers, nodes)[2], point_law(absorbers, nodes)
     receptance = np.ascontiguousarray(np.moveaxis(structure.receptance, -1, 0))
     moved = np.linalg.solve(np.eye(2 * count) + receptance @ law, structure.motion.T[:, :, None])
     force = -(law @ moved)[:, :, 0].T

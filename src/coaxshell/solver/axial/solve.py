@@ -22,6 +22,7 @@ from coaxshell.solver.axial.mode_choice import resolved_sampling
 from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.softened import softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
@@ -79,8 +80,8 @@ def solve_spatial(
     stopwatch.lap("inverse transform")
     motion = StationSpectra(grid, spectra["w"], spectra["v"])
     moved = histories["w"], histories["v"]
-    force_error = 0.0 if linked is None else linked.error
-    estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, forces, force_error)
+    soft = None if linked is None else softened(problem, grid, sampling, linked)
+    estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, soft, 0.0 if linked is None else linked.error)
     stopwatch.lap("error estimates")
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
