@@ -112,6 +112,18 @@ RAW = [
     b'{"system": {}, "system": {}}',
 ]
 
+SPACE = {
+    "duration": 1.0,
+    "time_step": 0.02,
+    "modes": 4,
+    "dimensions": 3,
+    "stations": [0.0, "40 cm"],
+    "axial_modes": 4,
+    "axial_period": "20 m",
+}
+POINT = {"mass": 5.0, "linear_stiffness": 1e8, "z": "20 cm", "footprint": 0.02}
+"""A run in three dimensions and an absorber at a point, to be spoilt."""
+
 STUDY = {
     "over": {"absorbers.mass": {"from": 1, "to": 2, "count": 2}},
     "metrics": ["inner.peak_stress"],
@@ -189,6 +201,7 @@ def requests(seed=1, count=1100):
     random_ = random.Random(seed)
     schema = System.model_json_schema()
     systems = [described(name) for name in presets.names()]
+    systems += [{**described("bare"), "absorbers": [POINT]}, {**described("bare"), "source": {**described("bare")["source"], "z": 0.3}}]
     for raw in RAW:
         for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open"):
             yield "POST", path, raw
@@ -199,16 +212,20 @@ def requests(seed=1, count=1100):
         if number % 3 == 0:
             yield "POST", "/api/validate", encoded({"system": from_schema(random_, schema, schema["$defs"])})
         elif number % 3 == 1:
-            yield "POST", "/api/validate", encoded(mutated(random_, {"system": base}, random_.randrange(1, 5)))
+            body = {"system": base, **({"resolution": SPACE, "preview": SPACE} if number % 2 else {})}
+            yield "POST", "/api/validate", encoded(mutated(random_, body, random_.randrange(1, 5)))
         else:
-            kind = random_.choice(["solve", "field", "film", "sweep", "optimise", "optimise"])
+            kind = random_.choice(["solve", "field", "film", "unrolled", "sweep", "optimise", "optimise"])
             path = random_.choice(["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/studies", "/api/link", "/api/link/open"])
             body = {
                 "client": "tab",
                 "slot": "fuzz",
                 "revision": number,
                 "system": base,
-                "resolution": {**SMALL, "modes": 4},
+                "resolution": SPACE if number % 2 else {**SMALL, "modes": 4},
+                "shell": 0,
+                "quantity": "stress",
+                "frames": 3,
                 "kind": kind,
                 "title": "fuzz",
                 **STUDY,

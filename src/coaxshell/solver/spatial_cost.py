@@ -17,6 +17,8 @@ _FIELDS = 9
 """Transforms kept at each station: three displacements, four derivatives along the axis, potentials of two layers."""
 _WORKING = 40.0
 """Arrays of orders and nodes of a block that a thread works with, for each shell."""
+_SIDE_BY_SIDE = 1000
+"""Nodes below which threads take turns: there are two blocks, and NumPy lets others run only beside loops of more than 500 numbers."""
 
 
 def sampling_of(system: System, settings: Settings, highest_order: int) -> AxialSampling:
@@ -30,7 +32,8 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     pairs = float(tops.sum() + tops.size) * size.nodes
     stations, amplitudes = len(settings.stations), size.shells * size.source_parities
     kept = stations * amplitudes * (_FIELDS * (size.plane + size.history) + 6.0 * size.plane)
+    turns = 2.0 if size.nodes < _SIDE_BY_SIDE else 1.0
     return Cost(
         kept + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
-        0.1 + pairs * (0.3e-6 * size.shells + 2e-9 * _FIELDS * stations * amplitudes),
+        0.1 + turns * pairs * (0.3e-6 * size.shells + 2e-9 * _FIELDS * stations * amplitudes),
     )

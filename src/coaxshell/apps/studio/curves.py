@@ -33,7 +33,7 @@ def bars(dimensions: int = 2) -> dict[str, tuple[str, str]]:
     """Return the bars of a shell: label and unit by their keys in the summary."""
     return {
         quantity.key(where): (
-            f"peak {quantity.noun}, mean over a segment" if quantity.largest else _PLACES[where].format(quantity.noun),
+            f"peak {quantity.noun}, mean over a segment" if quantity.largest and quantity.roles else _PLACES[where].format(quantity.noun),
             quantity.unit,
         )
         for quantity in QUANTITIES.values()

@@ -30,8 +30,8 @@ BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUD
 SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABSORBERS.value
 SOURCES, SAMPLES, STATIONS = STUDIO_SOURCES.value, STUDIO_SAMPLES.value, STUDIO_STATIONS.value
 PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
-PREVIEW_SPATIAL = Settings(time_step=1e-2, modes=32, dimensions=3)
-"""The bare double shell at one station in less than 3 s of a processor."""
+PREVIEW_SPATIAL, FULL_SPATIAL = Settings(time_step=1e-2, modes=32, dimensions=3), Settings(time_step=4e-3, modes=60, dimensions=3)
+"""In three dimensions, where the bare double shell at one station takes about 3 and 12 s of a processor."""
 ENTRIES = ("duration", "time_step", "modes", "refinement", "dimensions", "stations", "axial_modes", "axial_period")
 """Entries of a resolution that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500

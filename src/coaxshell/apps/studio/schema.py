@@ -39,6 +39,7 @@ def schema() -> dict[str, Any]:
             "preview": limits.table_of(limits.PREVIEW),
             "full": limits.table_of(limits.FULL),
             "preview_spatial": limits.table_of(limits.PREVIEW_SPATIAL),
+            "full_spatial": limits.table_of(limits.FULL_SPATIAL),
         },
         "films": ["mp4", "webp"] if find_spec("imageio_ffmpeg") else ["webp"],
         "limits": limits.table(),

@@ -12,7 +12,8 @@ export function unpack(buffer) {
   return { ...header, arrays };
 }
 
-// Row i of a two-dimensional array, without a copy.
+// Row i of an array, along its last dimension, without a copy.
 export function row({ values, shape }, i) {
-  return values.subarray(i * shape[1], (i + 1) * shape[1]);
+  const length = shape.at(-1);
+  return values.subarray(i * length, (i + 1) * length);
 }

@@ -1,6 +1,7 @@
 // Histories at head and tail of the shells: the current system, the bare one, a pinned one.
 import { el, by, svg } from "./dom.js";
 import { row } from "./arrays.js";
+import { placeText } from "./space.js";
 import { colour } from "./theme.js";
 import { prefixed, show } from "./units.js";
 import { shellName } from "./words.js";
@@ -43,16 +44,16 @@ export function frame(more = {}) {
   return { style, axis, layout };
 }
 
-export function draw(runs, quantity, which, unit = "transits") {
+export function draw(runs, quantity, which, unit = "transits", station = null) {
   const current = runs.current ?? runs.bare;
   if (!current || !window.Plotly) return;
-  const wanted = panels(current, quantity.name, which);
+  const wanted = panels(current, quantity.name, which).map((panel) => ({ ...panel, station }));
   const columns = Math.max(...wanted.map((p) => p.column)) + 1, rows = Math.max(...wanted.map((p) => p.row)) + 1;
   const [low, high] = ends(wanted.flatMap((p) => ORDER.map((key) => history(runs[key], quantity.name, p))));
   const scale = prefixed(quantity.unit, Math.max(-low, high)), margin = 0.06 * (high - low) || 1;
   const { style, axis, layout } = frame(), { name, of } = UNITS[unit];
   const times = Object.fromEntries(ORDER.filter((key) => runs[key]).map((key) => [key, scaled(runs[key].arrays.time.values, 1 / of(runs[key]))]));
-  layout.uirevision = `${quantity.name}${which}${unit}`;
+  layout.uirevision = `${quantity.name}${which}${unit}${station}`;
   const traces = [];
   wanted.forEach((panel, i) => {
     const n = i ? String(i + 1) : "", gapX = 0.05, gapY = 0.15;
@@ -75,12 +76,15 @@ export function draw(runs, quantity, which, unit = "transits") {
   if (!drawn) box.on("plotly_click", ({ points }) => clicked(points[0].x / drawn.transit));
   drawn = { wanted, key: quantity.name, transit: of(current) };
   box.setAttribute("role", "group");
-  box.setAttribute("aria-label", `${quantity.label} against time: ${wanted.map((p) => `${p.title} up to ${show(largest(history(current, quantity.name, p)), quantity.unit)}`).join("; ")}`);
+  box.setAttribute("aria-label", `${quantity.label} against time${station === null ? "" : ` at ${placeText(station)}`}: ${wanted.map((p) => `${p.title} up to ${show(largest(history(current, quantity.name, p)), quantity.unit)}`).join("; ")}`);
 }
 
-function history(run, name, { shell, end }) {
+function history(run, name, { shell, end, station }) {
   const array = run?.arrays[`${name}/${shell}`];
-  return array ? row(array, Math.min(end, array.shape[0] - 1)) : null;
+  if (!array) return null;
+  if (array.shape.length < 3) return row(array, Math.min(end, array.shape[0] - 1));
+  const number = run.stations.indexOf(station);
+  return number < 0 ? null : row(array, number * array.shape[1] + end);
 }
 
 function largest(values) {

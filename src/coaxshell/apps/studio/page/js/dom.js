@@ -23,3 +23,10 @@ export function toast(text) {
   clearTimeout(timer);
   timer = setTimeout(() => { box.hidden = true; }, 5000);
 }
+
+// A sentence in the place of what a box shows; without one, what it shows comes back.
+export function instead(box, text) {
+  box.querySelector(":scope > .instead")?.remove();
+  box.classList.toggle("not-shown", Boolean(text));
+  if (text) box.prepend(el("p", { class: "empty instead" }, text));
+}

@@ -40,7 +40,7 @@ function fill(list, runs, close) {
   const query = (path) => (path.startsWith("figure") && compare ? `?${compare}` : "");
   const act = (what) => () => { close(); what(); };
   list.replaceChildren(...FILES.map(([path, name, kind]) => el("li", {}, el("a", { href: `/api/runs/${run}/${path}${query(path)}`, download: "", onclick: close }, name, el("small", {}, kind)))),
-    el("li", {}, making ? el("button", { type: "button", id: "no-film", onclick: act(() => request(`/api/jobs/${making}`, { method: "DELETE" }).catch(() => {})) }, "Cancel the film")
+    el("li", {}, runs.current.stations ? el("button", { type: "button", disabled: true }, "Film", el("small", {}, "of two dimensions only")) : making ? el("button", { type: "button", id: "no-film", onclick: act(() => request(`/api/jobs/${making}`, { method: "DELETE" }).catch(() => {})) }, "Cancel the film")
       : el("button", { type: "button", id: "film", onclick: act(() => film(runs)) }, "Film", el("small", {}, `${format === "mp4" ? "MP4" : "WebP"}, side by side`))));
 }
 

@@ -4,6 +4,7 @@ import { join, read } from "./paths.js";
 import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
 import { editor } from "./record.js";
 import { fresh, kinds, kindTitle, limits, matches, resolve, use } from "./schema.js";
+import { costText, digest, spatial } from "./space.js";
 import { editable, numeral, show } from "./units.js";
 import { capital, inWords, regionSide, shellName, shellPhrase, title } from "./words.js";
 
@@ -11,9 +12,9 @@ const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
 const KEPT_OPEN = new Map();
 const SAMPLES = new Set(["time", "pressure"]);
-const OFF_THE_PLANE = new Set(["z", "inclination"]); // of sources, in three dimensions: shown where a description has them
+const OFF_THE_PLANE = new Set(["z", "inclination"]); // of sources: shown in three dimensions, and where a description has them
 
-let world, change, shells = 1; // what /api/schema says; (path, value, { live }) => void; how many shells there are
+let world, change, shells = 1, space = false; // what /api/schema says; (path, value, { live }) => void; how many shells there are; in three dimensions
 
 export function setUp(known, onChange) {
   world = known;
@@ -26,10 +27,11 @@ export const shellCount = () => shells;
 export function render(system, problems) {
   const form = by("form");
   shells = Array.isArray(system.shells) ? system.shells.length : 1;
+  space = spatial(system.resolution);
   const focus = document.activeElement?.dataset?.path;
   const parts = resolve(world.schema).properties;
   const names = [...ORDER, ...Object.keys(parts).filter((name) => !ORDER.includes(name))];
-  form.replaceChildren(...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
+  form.replaceChildren(dimensions(system.resolution, system.costs), ...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
   mark(problems);
   if (focus) form.querySelector(`[data-path="${focus}"]`)?.focus({ preventScroll: true });
 }
@@ -43,7 +45,8 @@ export function refresh(system) {
     if (slider && typeof value === "number") place(slider, value, input.dataset.unit);
   }
   for (const box of by("form").querySelectorAll("[data-record]")) box.replaceWith(editor(box.dataset.record, change));
-  for (const digest of by("form").querySelectorAll(".digest")) digest.textContent = summary(digest.dataset.of, read(system, digest.dataset.of));
+  for (const text of by("form").querySelectorAll(".digest")) text.textContent = summary(text.dataset.of, text.dataset.of === "dimensions" ? system.resolution : read(system, text.dataset.of));
+  if (by("cost")) by("cost").textContent = costText(system.costs);
 }
 
 function group(path, name, open, text, ...body) {
@@ -72,6 +75,22 @@ const MOST = {
   "resolution.refinement": ({ refinement }) => `at most ${refinement}`,
 };
 
+const WAVES = {
+  axial_modes: { type: "number", unit: "", optional: true, exclusiveMinimum: 0, description: "Highest axial wavenumber times the outermost radius; as many as there are orders unless given" },
+  axial_period: { type: "number", unit: "m", optional: true, exclusiveMinimum: 0, description: "Distance after which the answer repeats along the axis; what causality asks unless given" },
+};
+
+// Two dimensions or three, and with three where along the axis, and what it costs.
+function dimensions(value, costs) {
+  const select = el("select", { id: "at-resolution.dimensions", "data-path": "resolution.dimensions", onchange: () => change("resolution.dimensions", Number(select.value)) },
+    ...[[2, "two: alike along the axis"], [3, "three: at stations"]].map(([number, text]) => el("option", { value: number, selected: number === (space ? 3 : 2) }, text)));
+  const choice = el("div", { class: "choice" }, el("label", { for: select.id }, "Dimensions"), select);
+  if (!space) return group("dimensions", "Dimensions", false, digest(value), choice);
+  const stations = leaf({ long: true, type: "string", list: true, description: "Axial positions at which the shells answer, such as 0, 70 cm" }, "resolution.stations", "stations", [value.stations ?? 0].flat().join(", "));
+  return group("dimensions", "Dimensions", true, digest(value), choice, stations, el("p", { class: "hint" }, `At most ${world.limits.stations}, in m or as text, with commas between: 0, 0.25, 70 cm.`),
+    ...Object.entries(WAVES).map(([name, schema]) => leaf(schema, `resolution.${name}`, name, value[name])), el("p", { class: "hint", id: "cost" }, costText(costs)));
+}
+
 function resolution(value) {
   return group("resolution", "Resolution", false, summary("resolution", value), ...Object.entries(RESOLUTION).map(([name, schema]) => leaf({ ...schema, exclusiveMinimum: 0 }, `resolution.${name}`, name, value[name])));
 }
@@ -85,7 +104,8 @@ function summary(path, value) {
   if (/^shells$/.test(path)) return value.map((shell) => show(shell.radius, "m", 3)).join(", ");
   if (/^shells\[\d+\]$/.test(path)) return show(value.radius, "m");
   if (/layers\[\d+\]$/.test(path)) return `${show(value.thickness, "m")} ${value.material?.name ?? ""}${value.role && value.role !== "core" ? `, ${value.role}` : ""}`;
-  if (/^absorbers\[\d+\]$/.test(path)) return `${show(value.angle ?? 0, "deg")}, ${show(value.mass, "kg/m")}`;
+  if (path === "dimensions") return digest(value);
+  if (/^absorbers\[\d+\]$/.test(path)) return "z" in value ? `${show(value.angle ?? 0, "deg")}, z = ${show(value.z, "m")}, ${show(value.mass, "kg")}` : `${show(value.angle ?? 0, "deg")}, ${show(value.mass, "kg/m")}`;
   if (/^source$/.test(path)) return Array.isArray(value) ? `${value.length} sources` : title(value.type.replace(/-/g, " ").toLowerCase());
   if (path === "resolution") return `${value.modes} orders, step ${value.time_step}`;
   if (/^control$/.test(path)) return `${show(value.proportional, "", 3)}, ${show(value.derivative, "", 3)}`;
@@ -107,7 +127,7 @@ function entry(schema, path, name, value, bare = false) {
 
 function table(schema, path, name, value, bare) {
   const isRecord = resolve(schema.properties?.type).const === "sampled"; // its samples are read from a file or a text, not typed one by one
-  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !(isRecord && SAMPLES.has(key)) && !(OFF_THE_PLANE.has(key) && !value[key])).map(([key, part]) => entry(part, join(path, key), key, value[key]));
+  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !(isRecord && SAMPLES.has(key)) && !(OFF_THE_PLANE.has(key) && !value[key] && !space)).map(([key, part]) => entry(part, join(path, key), key, value[key]));
   if (isRecord) fields.unshift(editor(path, change));
   return bare ? el("div", {}, ...fields) : group(path, label(path, name), false, summary(path, value), ...fields);
 }
@@ -147,7 +167,7 @@ function swap(path, value, i, j) {
 
 // A further item starts as the last one; a further shell is a quarter larger, so that it is outside.
 function following(item, value, name) {
-  const last = structuredClone(value.at(-1) ?? fresh(item, HINTS));
+  const last = structuredClone(value.at(-1) ?? fresh(itemHere(item), HINTS));
   if (name === "shells" && typeof last.radius === "number") last.radius = Number((1.25 * last.radius).toPrecision(4));
   if (typeof last.angle === "number") last.angle = (last.angle + 30) % 360;
   if (["sensor", "actuator"].includes(last.role)) last.role = "passive";
@@ -155,6 +175,7 @@ function following(item, value, name) {
 }
 
 const HINTS = {
+  z: 0,
   count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150,
   distance: 5, peak_pressure: 2.5e4, decay_time: 1.314e-4, width: 1e-4, pressure: 2.5e4, charge_mass: 1, stand_off: 10,
   density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
@@ -180,7 +201,7 @@ function union(schema, choices, path, name, value, bare) {
 function start(index, choices, value) {
   if (index === "none") return [];
   const kind = choices[index];
-  if (kind.type === "array") return value && !Array.isArray(value) ? singles(value, kind) : [fresh(kind.items, HINTS)];
+  if (kind.type === "array") return value && !Array.isArray(value) ? singles(value) : [fresh(itemHere(kind.items), HINTS)];
   const kept = Array.isArray(value) ? (value[0] ?? {}) : value && typeof value === "object" ? value : {};
   const common = Object.fromEntries(Object.entries(kept).filter(([key]) => key !== "type"));
   const fits = ([key, one]) => kinds(kind.properties?.[key] ?? {}).some((part) => matches(part, one));
@@ -196,9 +217,12 @@ function sampled({ peak_pressure = HINTS.peak_pressure, decay_time = HINTS.decay
   return { time, pressure: time.map((t) => Number((peak_pressure * Math.exp(-t / decay_time)).toPrecision(6))) };
 }
 
-function singles(ring, kind) {
+// What a new item of a list is: in three dimensions an absorber at a point.
+const itemHere = (item) => (space && kinds(item).find((kind) => kind.required?.includes("z"))) || item;
+
+function singles(ring) {
   if (!("count" in ring)) return [ring];
-  const { count, offset = 0, ...shared } = ring;
+  const { count, offset = 0, ...rest } = ring, shared = space ? { ...rest, z: 0 } : rest;
   return Array.from({ length: Math.min(count, 60) }, (_, k) => ({ ...shared, angle: Number(((offset + (360 * k) / count) % 360).toPrecision(8)) }));
 }
 
@@ -242,7 +266,7 @@ function leaf(schema, path, name, value) {
   }
   if (schema.type === "string") {
     const input = el("input", { ...shared, type: "text", class: "name", value: value ?? schema.default ?? "", onchange: () => change(path, schema.list ? listed(input.value) : input.value) });
-    return el("div", { class: "field" }, text, input);
+    return el("div", { class: schema.long ? "field long" : "field" }, text, input);
   }
   return quantity(schema, path, text, value ?? (schema.optional ? "" : schema.default), shared);
 }
@@ -254,7 +278,7 @@ function listed(text) {
 function quantity(schema, path, text, value, shared) {
   const unit = schema.unit ?? "";
   const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: editable(value, unit),
-    placeholder: schema.optional ? ({ field_limit: "material’s own", centre: "6 widths" }[path.split(".").at(-1)] ?? "none") : null,
+    placeholder: schema.optional ? ({ field_limit: "material’s own", centre: "6 widths", footprint: "wall’s thickness", axial_modes: "as the orders", axial_period: "by causality" }[path.split(".").at(-1)] ?? "none") : null,
     onchange: () => change(path, schema.optional && !input.value.trim() ? null : numeral(input.value)) });
   const field = el("div", { class: "field" }, text, input, path in MOST ? el("small", { class: "hint" }, MOST[path](world.limits)) : null);
   const range = rangeOf(path);
@@ -298,7 +322,8 @@ function beside(form, problem, number) {
   if (spot.matches("input, select, textarea")) {
     spot.setAttribute("aria-invalid", "true");
     spot.setAttribute("aria-describedby", id);
-    spot.parentElement.append(message);
+    if (spot.parentElement.matches(".choice")) spot.parentElement.after(message);
+    else spot.parentElement.append(message);
   } else (spot.querySelector(":scope > .body") ?? spot).prepend(message);
   return true;
 }

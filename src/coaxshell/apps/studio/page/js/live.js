@@ -1,9 +1,11 @@
 // The conversation with the solver: a preview at once, full resolution by itself afterwards, and never an older answer over a newer one.
+// Three dimensions take seconds: there the preview is a job too, with progress, and full resolution waits until it is asked for.
 import { client, request } from "./api.js";
 import { finished } from "./events.js";
 
 const PATIENCE = 900; // ms without a change before full resolution starts
 const PAUSE = 150; // and before errors and warnings are asked for
+const QUIET = 350; // ms without a change before a preview in three dimensions starts
 let revision = 0;
 export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
@@ -18,12 +20,13 @@ export class Slot {
   want(system, { resolution = "preview", full = null, since = performance.now() } = {}) {
     this.wanted = { system, resolution, full, since, revision: ++revision };
     this.stopFull();
-    if (!this.busy) this.next();
+    if (resolution.dimensions === 3) this.timer = setTimeout(() => this.carryOut(resolution, false), QUIET);
+    else if (!this.busy) this.next();
   }
 
   async next() {
     const wish = this.wanted;
-    if (!wish || wish.revision <= this.shown) return;
+    if (!wish || wish.revision <= this.shown || wish.resolution.dimensions === 3) return;
     this.busy = true;
     try {
       const { system, resolution } = wish;
@@ -56,7 +59,7 @@ export class Slot {
     const result = { estimates, warnings, judged: false, ...answer, full, revision: wish.revision, system: wish.system };
     this.result = result;
     this.tell.show(result);
-    if (this.tell.judged) setTimeout(() => this.judge(result), full ? 0 : PAUSE);
+    if (this.tell.judged && !result.judged) setTimeout(() => this.judge(result), full ? 0 : PAUSE);
   }
 
   async judge(result) {
@@ -69,17 +72,24 @@ export class Slot {
   }
 
   // Full resolution of what is shown.
-  refine() {
+  refine() { this.carryOut(this.wanted.full, true); }
+
+  // What is wanted, as a job with progress: its full resolution, or a preview that takes seconds.
+  carryOut(resolution, full) {
     const wish = this.wanted;
     this.stopFull();
-    const { system, full } = wish;
-    const work = finished({ kind: "solve", slot: `${this.name}-full`, revision: ++revision, system, resolution: full }, (job) => this.full === work && this.tell.progress?.(job));
+    const work = finished({ kind: "solve", slot: `${this.name}-full`, revision: ++revision, system: wish.system, resolution }, (job) => this.full === work && this.tell.progress?.({ ...job, full }));
     this.full = work;
+    if (!full) this.tell.progress?.({ fraction: 0, stage: "", full });
     work.promise.then(async (job) => {
       const answer = await request(`/api/runs/${job.run}`);
-      if (this.full === work && this.wanted.revision === wish.revision && answer?.run) this.keep(wish, { ok: true, ...answer }, true);
+      if (this.full !== work || this.wanted.revision !== wish.revision || !answer?.run) return;
+      this.shown = wish.revision;
+      this.keep(wish, { ok: true, ...answer }, full);
     }).catch((error) => { // what preview could show stays
-      if (this.full === work && !error.cancelled) this.tell.fail(error, true);
+      if (this.full !== work || error.cancelled) return;
+      if (!full && error.problem?.problem) this.tell.problem([error.problem], wish);
+      else this.tell.fail(error, full);
     }).finally(() => {
       if (this.full !== work) return;
       this.full = null;

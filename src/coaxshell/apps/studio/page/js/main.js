@@ -1,7 +1,7 @@
 // The page as a whole: what the person describes, its runs, and who draws them.
 import { request } from "./api.js";
 import * as curves from "./curves.js";
-import { by, el, toast } from "./dom.js";
+import { by, el, instead, toast } from "./dom.js";
 import * as energy from "./energy.js";
 import * as events from "./events.js";
 import * as files from "./files.js";
@@ -13,18 +13,20 @@ import { read, written } from "./paths.js";
 import * as peaks from "./peaks.js";
 import * as record from "./record.js";
 import * as section from "./section.js";
+import * as space from "./space.js";
 import * as studies from "./studies.js";
 import * as tabs from "./tabs.js";
 import { show } from "./units.js";
+import * as wall from "./wall.js";
 import * as wave from "./wave.js";
 import { capital, inWords, placeName, refusal, shellName, told } from "./words.js";
 
-const page = { world: null, system: null, resolution: null, problems: [], runs: {}, quantity: "stress", which: "ends", unit: "transits", reachable: true, metrics: [] };
+const page = { world: null, system: null, resolution: null, problems: [], runs: {}, quantity: "stress", which: "ends", unit: "transits", reachable: true, metrics: [], jobs: {}, station: null };
 
 const slots = {
-  current: new Slot("current", { show: (result) => take("current", result), judged: () => peaks.drawJudgement(page.runs.current), problem: (problems) => refuse(problems), fail, progress }),
+  current: new Slot("current", { show: (result) => take("current", result), judged: () => peaks.drawJudgement(page.runs.current), problem: (problems) => refuse(problems), fail, progress: (job) => progress("current", job) }),
   // A refusal of these is the current one's too, told there; what they showed last stays beside what it showed last.
-  bare: new Slot("bare", { show: (result) => take("bare", result), problem: () => {}, fail: () => { page.bareKey = ""; } }),
+  bare: new Slot("bare", { show: (result) => take("bare", result), problem: () => {}, fail: () => { page.bareKey = ""; }, progress: (job) => progress("bare", job) }),
   pinned: new Slot("pinned", { show: (result) => take("pinned", result), problem: () => drop("pinned"), fail: () => {} }),
 };
 
@@ -35,13 +37,18 @@ const bareOf = (system) => ({ ...system, absorbers: [], control: null });
 
 // A coarse resolution within the limits of what is solved at once, whatever was typed: those of full resolution are what a person is told.
 function preview() {
-  const { duration, time_step, modes, refinement } = page.resolution, coarse = page.world.resolutions.preview, most = page.world.limits.preview_steps;
+  const { duration, time_step, modes, refinement } = page.resolution, most = page.world.limits.preview_steps;
+  const coarse = page.world.resolutions[inSpace() ? "preview_spatial" : "preview"];
   const step = Math.max(time_step, coarse.time_step, Math.ceil((1e3 * duration) / most) / 1e3);
-  return { duration, time_step: step, modes: Math.min(modes, coarse.modes), refinement: Math.max(1, Math.min(refinement, Math.floor((most * step) / duration))) };
+  const plane = { duration, time_step: step, modes: Math.min(modes, coarse.modes), refinement: Math.max(1, Math.min(refinement, Math.floor((most * step) / duration))) };
+  return inSpace() ? { ...plane, ...space.ofSpace(page.resolution, plane) } : plane;
 }
+
+const inSpace = () => space.spatial(page.resolution);
 
 function solve(since = performance.now()) {
   const how = { resolution: preview(), full: page.resolution, since };
+  page.stopped = false;
   slots.current.want(page.system, how);
   if (isBare(page.system)) { slots.bare.stopFull(); drop("bare"); page.bareKey = ""; return; }
   const bare = bareOf(page.system), key = JSON.stringify([{ ...bare, name: "" }, page.resolution]);
@@ -72,7 +79,8 @@ let checking = 0;
 async function change(path, value, { live = false } = {}) {
   const since = performance.now(), ofResolution = path.startsWith("resolution.");
   past.keep(state(), path, live);
-  if (ofResolution) page.resolution = { ...page.resolution, [path.slice(11)]: value };
+  if (path === "resolution.dimensions") page.resolution = space.inDimensions(page.resolution, value, page.world.resolutions);
+  else if (ofResolution) page.resolution = { ...page.resolution, [path.slice(11)]: value };
   else page.system = path === "shells" ? withShells(page.system, value) : written(page.system, path, value);
   if (live && !page.problems.length) {
     form.refresh(forForm());
@@ -80,7 +88,7 @@ async function change(path, value, { live = false } = {}) {
     solve(since);
     return keepLink();
   }
-  const whole = typeof value === "object" || value === undefined || (!ofResolution && !read(page.system, path));
+  const whole = typeof value === "object" || value === undefined || path === "resolution.dimensions" || (!ofResolution && !read(page.system, path));
   return check({ since, path, whole, keepForm: !whole });
 }
 
@@ -89,15 +97,14 @@ async function check({ since, path = "", whole = false, keepForm }) {
   const mine = ++checking;
   let answer;
   try {
-    answer = await request("/api/validate", { body: { system: page.system, resolution: page.resolution } });
+    answer = await request("/api/validate", { body: { system: page.system, resolution: given(page.resolution), ...(inSpace() ? { preview: preview() } : {}) } });
   } catch (error) { return fail(error); }
   if (mine !== checking) return;
   if (!answer.ok) { // what was typed stays as it was typed, the reason beside it
     if (whole || !keepForm) form.render(forForm(), []);
     return refuse(answer.problems, path);
   }
-  page.metrics = answer.metrics ?? [];
-  record.understood(answer.records);
+  understood(answer);
   page.resolution = { ...page.resolution, ...answer.resolution };
   const finer = JSON.stringify(page.resolution) !== page.resolved;
   page.resolved = JSON.stringify(page.resolution);
@@ -114,7 +121,17 @@ function withShells(system, shells) {
 }
 
 const shape = (system) => JSON.stringify(system, (_, value) => (typeof value === "number" ? 0 : value));
-const forForm = () => ({ ...page.system, resolution: page.resolution });
+const forForm = () => ({ ...page.system, resolution: page.resolution, costs: page.costs });
+
+// What is left open is the library's to choose.
+const given = (resolution) => Object.fromEntries(Object.entries(resolution).filter(([, value]) => value !== null));
+
+function understood(answer) {
+  page.metrics = answer.metrics ?? page.metrics;
+  page.costs = answer.costs ?? null;
+  Object.assign(page.world.metric_units, answer.metric_units);
+  record.understood(answer.records);
+}
 
 // A system that the library has accepted: into the form, the drawing, the solver, the address.
 function adopt(system, { since, keepForm = false } = {}) {
@@ -151,19 +168,21 @@ function opened(answer, from) {
   checking += 1;
   startedFrom(typeof answer.view?.from === "string" ? answer.view.from.slice(0, 60) : from);
   if (answer.resolution) page.resolution = { ...page.world.resolutions.full, ...answer.resolution };
+  else if (space.needsSpace(answer.system)) page.resolution = space.inDimensions(page.resolution, 3, page.world.resolutions);
   page.resolved = JSON.stringify(page.resolution);
   const view = answer.view ?? {};
   if (view.quantity) page.quantity = view.quantity;
   if (view.unit in curves.UNITS) page.unit = by("unit").value = view.unit;
+  if (typeof view.station === "number") page.station = view.station;
   if (view.tab && document.getElementById(`tab-${view.tab}`)) tabs.choose(view.tab);
-  page.metrics = answer.metrics ?? page.metrics;
-  record.understood(answer.records);
-  adopt(answer.system);
+  understood(answer);
+  if (!inSpace()) adopt(answer.system);
+  else { page.system = answer.system; check({ keepForm: false }); } // what it costs is told with its resolution alone
   return answer;
 }
 
 let linkTimer;
-const content = () => ({ system: page.system, resolution: page.resolution, view: { quantity: page.quantity, tab: tabs.shown(), unit: page.unit, from: page.from } });
+const content = () => ({ system: page.system, resolution: page.resolution, view: { quantity: page.quantity, tab: tabs.shown(), unit: page.unit, from: page.from, station: page.station ?? undefined } });
 function keepLink() {
   clearTimeout(linkTimer);
   linkTimer = setTimeout(() => link.put(content()).catch(() => {}), 400);
@@ -174,7 +193,7 @@ function keepLink() {
 function take(slot, result) {
   page.runs[slot] = result;
   if (slot === "current") { // an answer to an older wish says nothing about what is in the form now
-    if (result.system === page.system && !page.problems.length) stale(false);
+    if (result.system === page.system && result.revision === slots.current.wanted.revision && !page.problems.length) stale(false);
     if (isBare(result.system)) drop("bare");
   }
   drawRuns();
@@ -187,14 +206,17 @@ function drop(slot) {
 }
 
 // Curves, peaks, warnings, wave and energy of a state that is no longer in the form are dimmed, and a line above says so.
-function stale(is) {
+function stale(is, solving = false) {
   document.documentElement.classList.toggle("stale", is);
-  for (const note of document.querySelectorAll(".of-old")) note.hidden = !is || !page.runs.current;
+  for (const note of document.querySelectorAll(".of-old")) {
+    note.hidden = !is || !page.runs.current;
+    note.textContent = `Of the last description that ${solving ? "was solved: what the form holds now is still being solved." : "could be solved, not of what the form holds now."}`;
+  }
 }
 
 // The description is refused: everything that is wrong beside its field, that of the field just edited told first.
 function refuse(problems, edited = "") {
-  const found = problems.map(refusal).map((one) => (/^(duration|time_step|modes|refinement)/.test(one.where) ? { ...one, where: `resolution.${one.where}` } : one));
+  const found = problems.map(refusal).map((one) => (/^(duration|time_step|modes|refinement|dimensions|stations|axial_modes|axial_period)/.test(one.where) ? { ...one, where: `resolution.${one.where}` } : one));
   const mine = ({ where }) => edited && (where === edited || where.startsWith(`${edited}.`) || where.startsWith(`${edited}[`));
   page.problems = [...found.filter(mine), ...found.filter((one) => !mine(one))];
   slots.current.stopFull();
@@ -222,10 +244,14 @@ function later(problems) {
   }, 1500);
 }
 
-function progress(job) {
-  page.job = job;
+// Of the current system, then of the bare one where it takes as long.
+function progress(slot, told) {
+  page.jobs[slot] = told && (slot === "current" || inSpace()) ? told : null;
+  page.job = page.jobs.current ?? page.jobs.bare;
+  const { job } = page;
   by("progress").hidden = !job;
   if (job) by("progress").querySelector("progress").value = job.fraction;
+  if (slot === "current" && page.jobs.current && !job.full) stale(true, true);
   say();
 }
 
@@ -236,7 +262,7 @@ function drawRuns() {
     quantities();
     shellsShown();
     curves.legend(page.runs);
-    curves.draw(page.runs, quantityShown(), whichShells(), page.unit);
+    curves.draw(page.runs, quantityShown(), whichShells(), page.unit, space.stationShown(page.runs.current, page.station));
     drawTab(tabs.shown());
     by("pin").textContent = page.runs.pinned ? "Unpin" : "Pin";
     by("pin").disabled = !page.runs.current;
@@ -251,9 +277,15 @@ function drawTab(name) {
   if (name === "peaks") peaks.draw(page.runs);
   if (name === "studies") studies.offer();
   if (!page.runs.current) return;
-  if (name === "energy") tabTimer = setTimeout(() => energy.draw(page.runs.current, page.unit), 300);
-  if (name === "wave") tabTimer = setTimeout(() => wave.load(page.runs), 300);
-  if (name !== "wave") { wave.pause(); curves.cursor(null); } else wave.draw();
+  const { current } = page.runs, around = Boolean(current.stations);
+  instead(by("wave"), around && "The wave is not shown in three dimensions yet: in Python, response.pressure and plotting.figure_cuts have it on cuts.");
+  instead(by("energy"), around && "The energy is not shown in three dimensions yet: the command coaxshell run draws it, over the whole length of the shells.");
+  instead(by("wall"), !(current.stations?.length > 1) && "The stress on a wall laid flat, over angle and axial position, is there in three dimensions with several stations: choose them under Dimensions.");
+  if (name === "energy" && !around) tabTimer = setTimeout(() => energy.draw(current, page.unit), 300);
+  if (name === "wave" && !around) tabTimer = setTimeout(() => wave.load(page.runs), 300);
+  if (name === "wall" && current.stations?.length > 1) tabTimer = setTimeout(() => wall.draw(current, page.unit), 300);
+  if (around) wave.halt();
+  if (name !== "wave") { wave.pause(); curves.cursor(null); } else if (!around) wave.draw();
 }
 
 const quantityShown = () => all().find((one) => one.name === page.quantity) ?? all()[0];
@@ -284,18 +316,21 @@ function shellsShown() {
 
 function say() {
   const { current } = page.runs, box = by("state");
-  by("refine").hidden = Boolean(page.job) || !current || current.full || page.problems.length > 0;
+  by("refine").hidden = Boolean(page.job) || (!page.stopped && (!current || current.full)) || page.problems.length > 0;
+  by("refine").textContent = page.stopped ? "Solve the preview" : `Full resolution${inSpace() && page.costs ? `, about ${page.costs.full.duration.replace(" ", "\u202f")}` : ""}`;
   if (!page.reachable) box.textContent = "The server does not answer; trying again. Is coaxshell studio still running?";
   else if (page.problems.length) {
     const [{ where, problem, full }] = page.problems, more = page.problems.length - 1;
     const place = where && (where === "resolution" || /[.[]/.test(where)) ? capital(placeName(where.replace(/^resolution\./, ""), page.system?.shells?.length ?? 1)) : where;
     box.textContent = `Not solved${full ? " at full resolution" : ""}: ${[place, inWords(problem)].filter(Boolean).join(": ")}${more ? ` (and ${more} more)` : ""}`;
   }
+  else if (page.job && !page.job.full) box.textContent = `Solving the ${page.jobs.current ? "preview" : "bare system"} in three dimensions: ${Math.round(100 * page.job.fraction)}\u202f% ${page.job.stage ?? ""}`.trim();
+  else if (page.stopped) box.textContent = "Stopped: not solved as it stands in the form.";
   else if (!current) box.textContent = "Solving…";
   else {
     const { modes, time_step } = current.resolution;
-    const how = `${modes} orders, step ${show(time_step, "")} a/c${current.seconds > 0.002 ? `, ${show(current.seconds, "s", 2)}` : ""}`; // less: it was there
-    box.textContent = page.job ? `Preview (${how}); full resolution: ${Math.round(100 * page.job.fraction)}\u202f% ${page.job.stage ?? ""}` : `${current.full ? "Full resolution" : "Preview"} (${how})`;
+    const how = `${current.stations ? "three dimensions, " : ""}${modes} orders, step ${show(time_step, "")} a/c${current.seconds > 0.002 ? `, ${show(current.seconds, "s", 2)}` : ""}`; // less: it was there
+    box.textContent = page.job ? `${current.full ? "Full resolution" : "Preview"} (${how}); full resolution: ${Math.round(100 * page.job.fraction)}\u202f% ${page.job.stage ?? ""}` : `${current.full ? "Full resolution" : "Preview"} (${how})`;
   }
 }
 
@@ -304,6 +339,7 @@ function say() {
 function wire() {
   by("preset").addEventListener("change", (event) => { const preset = page.world.presets[event.target.value]; if (preset) open({ system: preset.system }, preset.name); });
   by("quantity").addEventListener("change", (event) => { page.quantity = event.target.value; drawRuns(); keepLink(); });
+  by("station").addEventListener("change", (event) => { page.station = Number(event.target.value); drawRuns(); keepLink(); });
   by("shells").addEventListener("change", (event) => { page.which = event.target.value; drawRuns(); });
   by("unit").addEventListener("change", (event) => { page.unit = event.target.value; drawRuns(); keepLink(); });
   const back = (way) => () => { const found = way(state()); if (found) page.system = found.system; goTo(found); };
@@ -316,8 +352,18 @@ function wire() {
     take("pinned", page.runs.current);
     slots.pinned.want(system, { resolution: preview(), full: page.resolution });
   });
-  by("cancel").addEventListener("click", () => slots.current.stopFull());
-  by("refine").addEventListener("click", () => slots.current.refine());
+  by("cancel").addEventListener("click", () => {
+    page.stopped = Boolean(page.jobs.current && !page.jobs.current.full);
+    if (inSpace()) { slots.bare.stopFull(); if (page.stopped) page.bareKey = ""; }
+    slots.current.stopFull();
+    if (page.stopped) stale(true);
+    say();
+  });
+  by("refine").addEventListener("click", () => {
+    if (page.stopped) return solve();
+    slots.current.refine();
+    return inSpace() && page.runs.bare && slots.bare.refine();
+  });
   by("form").addEventListener("submit", (event) => event.preventDefault());
   document.addEventListener("theme", () => { if (page.runs.current) drawRuns(); });
   tabs.onTab((name) => { drawTab(name); if (name === "studies") studies.fit(); if (page.system) keepLink(); });
@@ -325,8 +371,9 @@ function wire() {
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
   wave.setUp(curves.cursor);
-  curves.onTime((time) => { wave.pause(); wave.seek(time); });
-  events.onRestart(() => { wave.forget(); energy.forget(); again(); });
+  wall.setUp(curves.cursor);
+  curves.onTime((time) => { if (page.runs.current?.stations) wall.seek(time); else { wave.pause(); wave.seek(time); } });
+  events.onRestart(() => { wave.forget(); energy.forget(); wall.forget(); again(); });
   events.onConnection((reachable) => { page.reachable = reachable; if (page.world) say(); });
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=text], textarea")) return;

@@ -16,6 +16,9 @@ function mixed(stops, share) {
 const LINEAR = 0.1, WHOLE = Math.asinh(1 / LINEAR);
 const compressed = (share) => Math.asinh(share / LINEAR) / WHOLE;
 
+// The same colours of the stress as plotly takes them.
+export const STRESS_SCALE = STRESS.map((stop, i) => [i / (STRESS.length - 1), `rgb(${stop.join(",")})`]);
+
 const theme = () => (document.documentElement.dataset.theme === "dark" ? "dark" : "light");
 
 // Colours of the bytes 0..255, 128 in the centre, as little-endian RGBA words, of the present theme.

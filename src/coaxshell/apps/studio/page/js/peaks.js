@@ -1,6 +1,7 @@
 // Peak and RMS values as bars, with how they stand to others; warnings in plain words above them.
 import { el, by, svg } from "./dom.js";
 import { RUNS } from "./curves.js";
+import { placeText } from "./space.js";
 import { inComparison, percent, show } from "./units.js";
 import { capital, inWords, shellPhrase } from "./words.js";
 
@@ -9,13 +10,27 @@ export function draw(runs) {
   if (!current) return;
   const others = ["bare", "pinned"].filter((key) => runs[key]);
   const table = el("table", { class: "peaks" },
-    el("caption", {}, `Largest magnitudes over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
-    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), el("td", {}), el("th", { scope: "col", class: "number" }, "Current"), ...others.flatMap((key) => [el("th", { scope: "col", class: "number" }, RUNS[key].name.replace(/^./, (c) => c.toUpperCase())), el("th", { scope: "col", class: "number" }, "Change")]))),
-    ...groups(current).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title)), ...bars.map((bar) => line(bar, runs, others, extent(bar, current, runs, others))))));
+    el("caption", {}, `Largest magnitudes ${current.stations ? "over all stations and " : ""}over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), el("td", {}), el("th", { scope: "col", class: "number" }, "Current"), current.stations && el("th", { scope: "col", class: "number" }, "Station"), ...others.flatMap((key) => [el("th", { scope: "col", class: "number" }, RUNS[key].name.replace(/^./, (c) => c.toUpperCase())), el("th", { scope: "col", class: "number" }, "Change")]))),
+    ...groups(current).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 3 + Boolean(current.stations) + 2 * others.length }, title)), ...bars.map((bar) => line(bar, runs, others, extent(bar, current, runs, others))))));
   const region = el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Peak and RMS values" }, table);
-  by("peaks").replaceChildren(region, el("p", { class: "scroll-hint", "aria-hidden": "true" }, "← swipe the table to see all of it →"), el("p", { class: "note accuracy" }));
+  const wide = [region, ...(current.stations?.length > 1 ? [along(current)] : [])], hint = () => el("p", { class: "scroll-hint", "aria-hidden": "true" }, "← swipe the table to see all of it →");
+  by("peaks").replaceChildren(...wide.flatMap((one) => [one, hint()]), el("p", { class: "note accuracy" }));
   drawJudgement(current);
-  region.classList.toggle("scrolls", region.scrollWidth > region.clientWidth + 1);
+  for (const one of wide) one.classList.toggle("scrolls", one.scrollWidth > one.clientWidth + 1);
+}
+
+// What is largest at each station of a run in three dimensions: a row a quantity, a column a station.
+function along(current) {
+  const { stations, station_bars: each } = current;
+  const rows = groups({ ...current, bars: each[0] }).map(([title, bars]) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 1 + stations.length }, title)),
+    ...bars.map((bar) => {
+      const values = each.map((of) => of.find((one) => one.name === bar.name && one.shell === bar.shell).value), most = Math.max(...values);
+      return el("tr", {}, el("th", { scope: "row" }, bar.label), ...values.map((value) => el("td", { class: `number${value === most ? " most" : ""}` }, show(value, bar.unit))));
+    })));
+  return el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Largest magnitudes at each station" }, el("table", { class: "peaks along" },
+    el("caption", {}, "Largest magnitudes of the current system at each station"),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), ...stations.map((z) => el("th", { scope: "col", class: "number" }, placeText(z))))), ...rows));
 }
 
 // Warnings above the table and the accuracy below it. They come a moment after the rest; until then those of the run before stand there, dimmed.
@@ -50,6 +65,7 @@ function line(bar, runs, others, most) {
     ...pairs.map(([key, other], i) => svg("rect", { x: 0, y: 2 + (i + 1) * height, height: height - 1, width: width(other?.value ?? 0), rx: 1, fill: `var(--${RUNS[key].colour})` })));
   const where = bar.time === null || bar.time === undefined ? "" : `at t = ${show(bar.time, "")} a/c (${show(bar.time * runs.current.transit_time_seconds, "s")})${bar.angle === null || bar.angle === undefined ? "" : `, ${show(bar.angle, "deg")}`}${bar.growing ? ", still growing" : ""}`;
   return el("tr", { title: where }, el("th", { scope: "row" }, bar.label), el("td", { class: "bars" }, picture), el("td", { class: "number", "data-bar": `${bar.name}/${bar.shell ?? ""}` }, show(bar.value, bar.unit)),
+    runs.current.stations && el("td", { class: "number" }, bar.station === undefined ? "" : placeText(bar.station)),
     ...pairs.flatMap(([, other]) => {
       // What still grows at the end of its run depends on the length of the run: how it stands to another says nothing.
       const grows = bar.growing || other?.growing;
@@ -63,7 +79,9 @@ function accuracy({ estimates, full, judged, unjudged, resolution }) {
   if (!judged) return "Errors and warnings of this run follow.";
   if (unjudged) return `Errors and warnings of this run cannot be given: ${unjudged}.`;
   const worst = Math.max(...estimates.stress.filter((one) => one !== null), 0);
-  return `Estimated relative error of the stress from the orders left out: ${show(worst, "", 2)} at ${resolution.modes} orders, step ${show(resolution.time_step, "")} a/c${full ? "" : " (preview)"}.`;
+  const axial = Math.max(...estimates.errors.map(({ stress }) => stress["axial wavenumbers"] ?? 0), 0);
+  const waves = resolution.dimensions === 3 ? `, from the axial wavenumbers left out: ${show(axial, "", 2)}` : "";
+  return `Estimated relative error of the stress from the orders left out: ${show(worst, "", 2)}${waves} at ${resolution.modes} orders, step ${show(resolution.time_step, "")} a/c${full ? "" : " (preview)"}.`;
 }
 
 const sentence = (text) => capital(inWords(text)) + (/[.!?]$/.test(text) ? "" : ".");

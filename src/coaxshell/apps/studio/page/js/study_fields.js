@@ -10,7 +10,7 @@ import { regionSide, shellName } from "./words.js";
 export function fields(each = false) {
   const found = [...by("form").querySelectorAll("input[data-unit]")].map((input) => ({ path: input.dataset.path, unit: input.dataset.unit, label: spelt(input.dataset.path) }))
     .filter(({ path }) => !/\.(time|pressure)$|^resolution\./.test(path)).sort((a, b) => Boolean(rangeOf(b.path)) - Boolean(rangeOf(a.path)));
-  const own = each ? found.filter(({ path }) => /^absorbers(\[0\])?\.(mass|damping|linear_stiffness|cubic_stiffness)$/.test(path))
+  const own = each ? found.filter(({ path }) => /^absorbers(\[0\])?\.(mass|damping|linear_stiffness|cubic_stiffness|z)$/.test(path))
     .map(({ path, unit }) => { const name = path.split(".").at(-1); return { path: `absorbers[*].${name}`, unit, label: `each absorber’s ${spelt(name)}` }; }) : [];
   return [...found, ...own];
 }

@@ -76,6 +76,9 @@ export async function load(runs) {
   if (loading === mine) { loading = null; parts.stop.hidden = true; }
 }
 
+// Nothing is asked for, and nothing plays, where a sentence stands in the place of the wave.
+export function halt() { pause(); loading?.abort(); }
+
 // The film of an earlier state stays until the new one is there, and says so.
 function aged(name, old) {
   parts[name].classList.toggle("old", old);

@@ -21,7 +21,7 @@ export function regionSide(number, shells) {
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 const FIELDS = {
-  proportional: "Proportional gain (V/V)", derivative: "Derivative gain (V per V/transit)", inner_shell: "Between", duration: "Duration (a/c)", time_step: "Time step (a/c)", modes: "Orders",
+  proportional: "Proportional gain (V/V)", derivative: "Derivative gain (V per V/transit)", inner_shell: "Between", z: "Axial position z", dimensions: "Dimensions", stations: "Stations z (m)", axial_modes: "Axial wavenumbers (1/a)", axial_period: "Axial period", duration: "Duration (a/c)", time_step: "Time step (a/c)", modes: "Orders",
   youngs_modulus: "Young’s modulus", poisson_ratio: "Poisson’s ratio",
 };
 
@@ -63,6 +63,8 @@ export function told(error) {
 export function inWords(text) {
   return text
     .replace(/\bset ([\w.[\]]+) ?= ?(true|false)\b/g, (_, path, value) => `${value === "true" ? "tick" : "untick"} ${title(path.split(".").at(-1))}`)
+    .replace(/\buse axial_modes ?= ?([\d.e]+) or modes ?= ?"auto"/g, "set Axial wavenumbers to $1 under Dimensions")
+    .replace(/\buse dimensions ?= ?([23])/g, (_, number) => `choose ${number === "2" ? "two" : "three"} under Dimensions`)
     .replace(/\buse modes ?= ?(\d+) or modes ?= ?"auto"/g, "set Orders to $1 under Resolution")
     .replace(/\bmodes ?= ?(\d+)/g, "Orders $1")
     .replace(/\btime_step ?= ?([\d.e-]+)/g, "a time step of $1 a/c")
