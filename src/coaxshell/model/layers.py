@@ -16,6 +16,7 @@ from coaxshell.model.units import Length
 
 Role = Literal["core", "sensor", "actuator", "passive"]
 Wetted = Literal["mid-surface", "faces"]
+Theory = Literal["thin", "elastic"]
 
 
 class Layer(Described):
@@ -73,6 +74,8 @@ class Shell(Described):
     """The layers, innermost (z < 0) first."""
     wetted: Wetted = "mid-surface"
     """Where the fluids meet the wall: "mid-surface", as in the paper, or its true "faces", which is more exact for thick walls."""
+    theory: Theory = "thin"
+    """Theory of the wall: "thin" (Kirchhoff and Love), or its layers as "elastic" solids, wetted at the faces; for thick or soft walls."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -108,7 +111,8 @@ class Shell(Described):
     @property
     def wetted_radii(self) -> tuple[float, float]:
         """Radii of the surfaces that the fluids inside and outside wet (m)."""
-        return (self.inner_radius, self.outer_radius) if self.wetted == "faces" else (self.radius, self.radius)
+        at_faces = self.wetted == "faces" or self.theory == "elastic"
+        return (self.inner_radius, self.outer_radius) if at_faces else (self.radius, self.radius)
 
     @property
     def core(self) -> Layer:

@@ -30,6 +30,8 @@ ERRORS = "estimated error relative to the answer, L2 over the shell's surface an
 ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "normal": (MODAL, "a", "modal normal displacement W, positive inward: w = sum W[0] cos(m theta) + W[1] sin(m theta)"),
     "tangential": (MODAL, "a", "modal tangential displacement V: v = sum V[0] sin(m theta) - V[1] cos(m theta)"),
+    "hoop": (MODAL, "rho_e c_e^2", "modal hoop stress of elastic walls at their design depths, positive in tension; 0 of other walls"),
+    "potentials": (("piezoelectric_layer", *MODAL), "V", "modal open-circuit voltages of elastic walls' piezoelectric layers"),
     "normal_rate": (MODAL, "c_e", "dW/dt"),
     "tangential_rate": (MODAL, "c_e", "dV/dt"),
     "absorber_displacement": (("absorber", "time"), "a", "displacement q of the absorbers' masses, positive inward"),

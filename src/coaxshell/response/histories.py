@@ -9,9 +9,10 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
-from coaxshell.response.labels import history, modal_array
+from coaxshell.response.labels import COUNTERCLOCKWISE, TENSION, history, modal_array
 from coaxshell.response.modal import amplitudes, combined, elastic_wall, stress_gain_of, voltage_gain
 from coaxshell.response.quantities import QUANTITIES, SIDES, STRESSES, Quantity, von_mises
+from coaxshell.response.solid_histories import component_of, solid_stress
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.voltages import actuator_limit, actuator_values, mean_shares
 from coaxshell.response.wall_motion import WallMotion
@@ -146,14 +147,12 @@ def _of_component(motion: WallMotion, shell: int, angle: npt.ArrayLike, componen
     return of_quantity(motion, shell, name if component == "normal" else QUANTITIES[name].partner, angle)
 
 
-def stress(
-    solution: ModalSolution, shell: int, angle: npt.ArrayLike, depth: float | str | None = None, component: str = "hoop"
-) -> xr.DataArray:
+def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | str | None = None, component: str = "hoop") -> xr.DataArray:
     """Return the stress at angles, Pa: the core's design stress at the mid-surface (Eq. 22), or the stress at a depth (Eqs. A.4, A.5).
 
     Parameters
     ----------
-    solution : ModalSolution
+    motion : WallMotion
     shell : int
     angle : array_like, shape () or (A,)
         Degrees from the source direction.
@@ -162,7 +161,8 @@ def stress(
         outer one on a boundary), bending is included, and in a piezoelectric layer the field of its own open-circuit potential and,
         in the actuator of a controlled shell, of the control voltage (-e32 u/t, Eq. A.10).
     component : str
-        "hoop", and at stations of three-dimensional runs "axial", "shear" (between hoop and axis) and "von_mises".
+        "hoop", and at stations of three-dimensional runs "axial", "shear" (between hoop and axis) and "von_mises"; of an elastic wall in
+        two dimensions "hoop", "axial", "radial", "radial_hoop" (the shear across the wall) and "von_mises".
 
     Returns
     -------
@@ -173,21 +173,31 @@ def stress(
     InputError
         If the shell is rigid, or the angle, the depth or the component is not allowed.
     """
-    theta = arguments.angles(angle)
-    component = arguments.one_of("component", component, (*STRESSES, "von_mises"))
-    if component != "hoop" and solution.along is None:
-        raise InputError("component", f"{component!r} belongs to three dimensions", "run with dimensions=3")
+    theta, solution = arguments.angles(angle), motion.solution
     wall = elastic_wall(solution.problem, shell)
+    if wall.faces_move_alike:
+        component = arguments.one_of("component", component, (*STRESSES, "von_mises"))
+    else:
+        component = component_of(wall, component)
+    if wall.faces_move_alike and component != "hoop" and solution.along is None:
+        raise InputError("component", f"{component!r} belongs to three dimensions", "run with dimensions=3")
     z, long_name = None, ""
     if depth is not None:
         length = solution.problem.scales.length
         z = arguments.depth_of((length * wall.faces[0], length * wall.faces[1]), depth)
         long_name = f"{component.replace('_', ' ')} stress at {z:g} m outward of the mid-surface"
-    if component == "von_mises":
+    if not wall.faces_move_alike and (z is not None or component != "hoop"):
+        values = solid_stress(motion, shell, theta, z, component)
+    elif component == "von_mises":
         values = von_mises(*(_stress(solution, shell, theta, z, name) for name in STRESSES))
     else:
         values = _stress(solution, shell, theta, z, component)
-    labelled = _labelled(solution, shell, QUANTITIES[_STRESS_NAMES[component]], values, theta, long_name)
+    if component in _STRESS_NAMES:
+        labelled = _labelled(solution, shell, QUANTITIES[_STRESS_NAMES[component]], values, theta, long_name)
+    else:
+        told = long_name or f"{component.replace('_', ' ')} stress of the core"
+        sign = COUNTERCLOCKWISE if component == "radial_hoop" else TENSION
+        labelled = history(solution, values, theta, shell, name=f"{component}_stress", long_name=told, units="Pa", sign=sign)
     if z is not None:
         labelled.attrs["depth"] = z
     return labelled

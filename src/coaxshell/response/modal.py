@@ -52,10 +52,14 @@ def axial_gain(solution: ModalSolution) -> FieldGain:
 def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None, component: str = "hoop") -> Gain | FieldGain:
     """Return the gain of a stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5).
 
+    Of an elastic wall at its design depth alone: the middle of the wall, or of its core; the rest is in :mod:`coaxshell.response.through`.
     At a station of a three-dimensional run the hoop stress feels the axial strain, and "axial" and "shear" are others.
     """
     scales, wall = solution.problem.scales, elastic_wall(solution.problem, shell)
     depth, modes = None if depth is None else depth / scales.length, Modes(orders(solution))
+    if not wall.faces_move_alike:
+        assert depth is None  # the rest is read from the transforms
+        return FieldGain(hoop=np.full_like(modes.orders, scales.pressure))
     if solution.along is None:
         gain = wall.stress_gain(modes, depth)
         return Gain(scales.pressure * gain.v, scales.pressure * gain.w)
@@ -67,7 +71,7 @@ def voltage_gain(solution: ModalSolution, shell: int, role: str = "sensor") -> G
     wall = elastic_wall(solution.problem, shell)
     if not wall.has(role):
         raise InputError(f"shells[{shell}].layers", f"there is no {role}", f'give a piezoelectric layer the role "{role}"')
-    if solution.along is not None:
+    if solution.along is not None or not wall.faces_move_alike:
         return FieldGain(potential=np.ones(solution.normal.shape[2]), layer=wall.layer_number(role))
     return wall.sensor_gain(Modes(orders(solution)), role)
 
@@ -84,8 +88,8 @@ def _parts(solution: ModalSolution, shell: int, gain: Gain | FieldGain) -> list[
     if isinstance(gain, Gain):
         return [(solution.normal[shell], gain.w)] + ([(solution.tangential[shell], gain.v)] if np.any(gain.v) else [])
     parts = [(solution.field(name)[shell], factor) for name, factor in gain.fields.items()]
-    if gain.layer is not None and solution.along is not None:
-        parts.append((solution.along.potentials[gain.layer][shell], np.broadcast_to(gain.potential, solution.normal.shape[2:3])))
+    if gain.layer is not None:
+        parts.append((solution.potential(gain.layer)[shell], np.broadcast_to(gain.potential, solution.normal.shape[2:3])))
     return parts
 
 

@@ -18,6 +18,7 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage
 from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
+from coaxshell.response.solid_histories import displacement_at_depth
 from coaxshell.response.summary import Summary, response_card, summarise
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
@@ -139,14 +140,19 @@ class Response:
         component: str = "normal",
         *,
         relative: bool = False,
+        depth: float | str | None = None,
         station: Any = None,
     ) -> xr.DataArray:
         """Return the displacement of the mid-surface, m, dims (time, angle): "normal" (positive inward) or "tangential".
 
-        ``relative=True`` takes the translation of the shell's section off it, so that only what deforms the shell is left.
-        See :func:`coaxshell.response.histories.displacement`.
+        ``relative=True`` takes the translation of the shell's section off it, so that only what deforms the shell is left. An elastic
+        wall is read at any *depth* (m outward of its middle, or a face). See :func:`coaxshell.response.histories.displacement`.
         """
         number = self._index(shell)
+        if depth is not None:
+            if relative:
+                raise InputError("relative", "True is of the mid-surface", "leave out depth")
+            return self._read(station, lambda motion: displacement_at_depth(motion, number, angle, depth, component))
         return self._read(station, lambda motion: histories.displacement(motion.solution, number, angle, component, relative=relative))
 
     def translation(self, shell: int | str, *, station: Any = None) -> xr.DataArray:
@@ -168,11 +174,12 @@ class Response:
     ) -> xr.DataArray:
         """Return the stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
 
-        The component is "hoop"; three-dimensional runs have "axial", "shear" and "von_mises" too.
+        The component is "hoop"; three-dimensional runs have "axial", "shear" and "von_mises" too, elastic walls "axial", "radial",
+        "radial_hoop" and "von_mises".
         See :func:`coaxshell.response.histories.stress`.
         """
         number = self._index(shell)
-        return self._read(station, lambda motion: histories.stress(motion.solution, number, angle, depth, component))
+        return self._read(station, lambda motion: histories.stress(motion, number, angle, depth, component))
 
     def shell_velocity(
         self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, station: Any = None

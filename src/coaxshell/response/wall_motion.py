@@ -15,13 +15,18 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.response import through
 from coaxshell.response.modal import amplitudes
 from coaxshell.response.peaks import Amplitudes
 from coaxshell.response.synthesis import at_angles
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.structure.elastic_depth import Shown
 from coaxshell.structure.shell_model import FieldGain, Gain
+
+_KEPT_DEPTHS = 8
+"""Quantities within elastic walls that are kept."""
 
 
 class MotionSpectra(NamedTuple):
@@ -42,6 +47,7 @@ class WallMotion:
 
     def __init__(self, solution: ModalSolution) -> None:
         self.solution = solution
+        self._within: dict[tuple[int, str, float], FloatArray] = {}
 
     @cached_property
     def spectra(self) -> SolvedSpectra:
@@ -53,6 +59,18 @@ class WallMotion:
         """Transforms of W and V whose derivatives do not feel that the forces of a march end with the run."""
         found = spectra_of(self.solution, continued=True) if marches(self.solution) else self.spectra
         return MotionSpectra(found.grid, found.normal, found.tangential)
+
+    def within(self, shell: int, what: Shown, depth: float) -> FloatArray:
+        """Return modal histories of a quantity at a depth (m) of an elastic wall, SI, (parities, M + 1, T).
+
+        See :func:`coaxshell.response.through.within`; InputError if instants are missing. The last few are kept.
+        """
+        key = (shell, what, depth)
+        if key not in self._within:
+            while len(self._within) >= _KEPT_DEPTHS:
+                self._within.pop(next(iter(self._within)))
+            self._within[key] = through.within(self.spectra, shell, what, depth)[..., :: self.solution.settings.refinement]
+        return self._within[key]
 
     def has_rate(self, rate: int) -> bool:
         """Return whether derivatives of an order can be given: 0 always, others of a run with all its instants."""

@@ -19,6 +19,7 @@ H is nearly of rank one where a wall is thin; it is never inverted. A thin wall,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.operators import annulus
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.scaling import Problem
+from coaxshell.structure.shell_model import FaceReceptance
 
 Entry = ComplexArray | float
 
@@ -67,6 +69,8 @@ class CascadeSystem:
     modes : Modes
     like : CascadeSystem, optional
         One of the same fluids, radii, nodes and modes, whose Bessel ratios are shared.
+    walls : sequence of FaceReceptance, optional
+        Their receptances, if known.
 
     Attributes
     ----------
@@ -75,10 +79,17 @@ class CascadeSystem:
     walls : list of FaceReceptance
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, like: CascadeSystem | None = None) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        s: ComplexArray,
+        modes: Modes,
+        like: CascadeSystem | None = None,
+        walls: Sequence[FaceReceptance] | None = None,
+    ) -> None:
         self.problem, self.s, self.modes = problem, s, modes
         self.radial: RadialBasis = RadialBasis(modes, s) if like is None else like.radial
-        self.walls = [wall.receptance(modes, s) for wall in problem.shells]
+        self.walls = [wall.receptance(modes, s) for wall in problem.shells] if walls is None else list(walls)
         self._radii = [wall.wetted for wall in problem.shells]
         self._fluids = [self._fluid(i) for i in range(len(problem.fluids))]
         self._factor()

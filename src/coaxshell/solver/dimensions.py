@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from coaxshell.errors import InputError
+from coaxshell.model.layers import Shell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
@@ -25,9 +26,27 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
                 raise InputError(f"{where}.{name}", problem, f"use dimensions=3, or {name} = 0")
 
 
+def require_sources_alone(system: System, dimensions: int) -> None:
+    """Raise InputError if more than sources in two dimensions is asked of a system with elastic walls."""
+    solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
+    if solid is None:
+        return
+    thin = f'or shells[{solid}].theory = "thin"'
+    if dimensions == 3:
+        raise InputError(f"shells[{solid}].theory", "'elastic' is solved in two dimensions only", f"use dimensions=2, {thin}")
+    if system.absorber_list:
+        problem = f"a line force has no finite displacement on shells[{solid}], an elastic wall"
+        raise InputError("absorbers", problem, f"leave them out, {thin}")
+    if system.control is not None:
+        raise InputError("control", f"the paper's law acts on thin walls, and shells[{solid}] is elastic", f"leave it out, {thin}")
+
+
 def require_mid_surfaces(system: System) -> None:
     """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know."""
     for number, shell in enumerate(system.shells):
+        if isinstance(shell, Shell) and shell.theory == "elastic":
+            problem = "'elastic' is not known to the direct engine, which steps thin walls"
+            raise InputError(f"shells[{number}].theory", problem, 'use engine="spectral", or theory = "thin"')
         if len(set(shell.wetted_radii)) == 2:
             problem = "'faces' is not known to the direct engine, the paper's scheme at the mid-surfaces"
             raise InputError(f"shells[{number}].wetted", problem, 'use engine="spectral", or wetted = "mid-surface"')

@@ -65,6 +65,8 @@ def require_finite_solution(solution: ModalSolution, where: str = "response", re
         ("time", solution.time, ()),
         ("the normal displacement", solution.normal, shells),
         ("the tangential displacement", solution.tangential, shells),
+        ("the hoop stress", solution.hoop, shells),
+        ("the potentials", solution.potentials, ("layer", *shells)),
         ("the normal velocity", solution.normal_rate, shells),
         ("the tangential velocity", solution.tangential_rate, shells),
         ("the displacement of the absorbers", solution.absorber_displacement, ("absorber",)),

@@ -126,6 +126,7 @@ def asked_above(problem: Problem, above: SampledOrders, squares: FloatArray) -> 
     for i in pressure_limits(problem):
         wall = problem.shells[i]
         assert wall.gains is not None
+        assert above.modal is not None
         law = wall.gains.at(above.nodes) * wall.fed_back(above.modal.modes, above.modal.shells[i])
         found[i] = 0.5 * (above.weight @ (np.abs(law) ** 2 * squares[i]))
     return found

@@ -21,6 +21,7 @@ from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
 from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.solver.solid_spectra import FacedSystem, band
 
 NODES = slice(0, None, 16)
 """Every sixteenth node: poles are at least sigma from the contour; sums over nodes 4 sigma apart err by half for one such pole, by less
@@ -46,6 +47,13 @@ def standing_for(orders: FloatArray) -> FloatArray:
     return weight
 
 
+def _weights(orders: FloatArray) -> FloatArray:
+    """Return how many orders each of a sample stands for, with those above the last."""
+    weight = standing_for(orders)
+    weight[-1] += 0.5 * orders[-1]
+    return weight
+
+
 @dataclass(frozen=True)
 class SampledOrders:
     """Responses of some orders at every sixteenth node of a grid.
@@ -60,7 +68,8 @@ class SampledOrders:
         |W|^2 under the sources, both parities together.
     strain : ndarray, shape (shells, orders, nodes)
         |m V/W - 1|^2: the strain's share of |W|^2.
-    modal : ModalSystem
+    modal : ModalSystem or None
+        None where faces of walls move differently: nothing but the sources acts there.
     """
 
     problem: Problem
@@ -69,25 +78,40 @@ class SampledOrders:
     nodes: ComplexArray
     excited: FloatArray
     strain: FloatArray
-    modal: ModalSystem
+    modal: ModalSystem | None
 
     @classmethod
     def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> SampledOrders:
         """Solve a problem at some ascending orders."""
         count, nodes = len(problem.shells), grid.nodes[NODES]
         modes = Modes(orders, sparse=True)
+        if problem.two_faced:
+            return cls._of_faces(problem.resolving(band(grid)), grid, modes, shared)
         modal = ModalSystem(problem, nodes, modes, shared=shared)
         excited = np.zeros((count, orders.size, nodes.size))
         for load in SurfaceLoads(problem, grid.sparser(NODES.step), modes, shared)(modal.radial, slice(0, nodes.size)):
             excited += np.abs(np.stack(modal.solve_outside(load))) ** 2
         strain = [np.abs(orders[:, None] * wall.tangential - 1.0) ** 2 for wall in modal.shells]
-        weight = standing_for(orders)
-        weight[-1] += 0.5 * orders[-1]  # those above the last
-        return cls(problem, orders, weight, nodes, excited, np.stack(strain), modal)
+        return cls(problem, orders, _weights(orders), nodes, excited, np.stack(strain), modal)
+
+    @classmethod
+    def _of_faces(cls, problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None) -> SampledOrders:
+        """Solve a problem some of whose walls have two faces; one answer has the V/W of all, as all sources press on the same face."""
+        nodes = grid.nodes[NODES]
+        system = FacedSystem(problem, nodes, modes)
+        answers = [
+            system.under_sources(load)
+            for load in SurfaceLoads(problem, grid.sparser(NODES.step), modes, shared)(system.radial, slice(0, nodes.size))
+        ]
+        excited = np.sum([[np.abs(wall.normal) ** 2 for wall in walls] for walls in answers], axis=0)
+        strained = np.sum([[np.abs(modes.column * wall.tangential - wall.normal) ** 2 for wall in walls] for walls in answers], axis=0)
+        strain = np.divide(strained, excited, out=np.zeros_like(strained), where=excited > 0)
+        return cls(problem, modes.orders, _weights(modes.orders), nodes, excited, strain, None)
 
     @cached_property
     def compliance(self) -> ComplexArray:
         """C_ij, shape (shells, shells, orders, nodes): W of shell i per modal pressure on shell j."""
+        assert self.modal is not None
         return np.stack([np.stack(self.modal.solve(j, 1.0)) for j in range(len(self.problem.shells))], axis=1)
 
     def norms(self, squares: FloatArray) -> FloatArray:

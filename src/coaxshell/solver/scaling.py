@@ -11,14 +11,17 @@ from dataclasses import dataclass, replace
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import SourceGeometry, source_geometry
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.shells import RigidShell
+from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.solver.dimensions import require_sources_alone
 from coaxshell.solver.point_forces import PointForceShares, point_force_shares
+from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
 from coaxshell.structure.shell_model import ControlGains, ShellModel
+from coaxshell.structure.solid import require_solid, solid_layers
 from coaxshell.structure.thin_wall import ThinWall
 
 
@@ -113,6 +116,16 @@ class Problem:
         return self.shells[-1].wetted[1]
 
     @property
+    def two_faced(self) -> bool:
+        """Whether any wall has faces that move differently."""
+        return not all(wall.faces_move_alike for wall in self.shells)
+
+    def resolving(self, frequency: float) -> Problem:
+        """Return the problem with walls that resolve waves up to a frequency, radians per transit: itself where none has such a choice."""
+        shells = tuple(wall.resolving(frequency) for wall in self.shells)
+        return replace(self, shells=shells) if self.two_faced else self
+
+    @property
     def open_loop(self) -> Problem:
         """The problem without feedback."""
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
@@ -120,6 +133,7 @@ class Problem:
 
 def dimensionless(system: System, dimensions: int = 2) -> Problem:
     """Return the dimensionless problem of a system in two or three dimensions."""
+    require_sources_alone(system, dimensions)
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
@@ -140,8 +154,16 @@ def _wall(system: System, index: int, scales: Scales) -> ShellModel:
     shell = system.shells[index]
     if isinstance(shell, RigidShell):
         return RigidWall(radius=shell.radius / scales.length)
+    if shell.theory == "elastic":
+        return _solid(shell, index, scales, system.exterior.density)
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     return ThinWall.of(in_units, _gains(system, index), wetted_faces=shell.wetted == "faces")
+
+
+def _solid(shell: Shell, index: int, scales: Scales, density: float) -> ElasticWall:
+    require_solid(shell, f"shells[{index}]")
+    layers = tuple(layer.in_units(scales.length, scales.pressure, density) for layer in solid_layers(shell))
+    return ElasticWall.of(layers, shell.layers.index(shell.core))
 
 
 def _gains(system: System, index: int) -> ControlGains | None:

@@ -144,6 +144,10 @@ class ModalSolution:
         Physics warnings, one sentence each with both numbers and the remedy. Both may be made when first read (:meth:`judge_when_read`).
     timings : dict
         Seconds by stage.
+    hoop : ndarray, same shape, or None
+        Hoop stress of elastic walls at their design depths, in rho_e c_e^2, 0 of others; None without elastic walls.
+    potentials : ndarray, shape (layers, shells, parities, M + 1, T), or None
+        Open-circuit voltages of the piezoelectric layers of elastic walls, V, by their number from the inside out; 0 of walls with fewer.
     normal_rate, tangential_rate : ndarray, same shape, or None
         dW/dt and dV/dt, kept where feedback needs them.
     absorber_displacement : ndarray, shape (absorbers, T)
@@ -167,6 +171,8 @@ class ModalSolution:
     estimates: Estimates
     warnings: tuple[str, ...] = field(default_factory=tuple)
     timings: dict[str, float] = field(default_factory=dict)
+    hoop: FloatArray | None = None
+    potentials: FloatArray | None = None
     normal_rate: FloatArray | None = None
     tangential_rate: FloatArray | None = None
     absorber_displacement: FloatArray | None = None
@@ -208,14 +214,23 @@ class ModalSolution:
         return {**vars(self), **judged, "spectra": None}
 
     def field(self, name: str) -> FloatArray:
-        """Return one of :data:`coaxshell.structure.shell_model.FIELDS` at a station of a three-dimensional run.
+        """Return one of :data:`coaxshell.structure.shell_model.FIELDS`: W and V, the hoop stress of elastic walls, or what a station has.
 
         Shape (shells, parities, M + 1, T).
         """
         if name in ("w", "v"):
             return self.normal if name == "w" else self.tangential
+        if name == "hoop":
+            assert self.hoop is not None
+            return self.hoop
         found: FloatArray = getattr(self.along, name)
         return found
+
+    def potential(self, layer: int) -> FloatArray:
+        """Return the open-circuit voltages of a piezoelectric layer, V, (shells, parities, M + 1, T), of elastic walls or at a station."""
+        found = self.potentials if self.along is None else self.along.potentials
+        assert found is not None
+        return found[layer]
 
     @property
     def whole(self) -> bool:

@@ -143,6 +143,10 @@ def _solved(
         stopwatch.lap("absorbers and saturation")
     require_finite_stages(solved)
     w, v = (grid.invert(x)[..., keep] for x in (solved.normal, solved.tangential))
+    hoop = potentials = None
+    if solved.solid is not None:
+        hoop = grid.invert(solved.solid.hoop)[..., keep]
+        potentials = grid.invert(solved.solid.potentials)[..., keep] if solved.solid.potentials.size else None
     correction = np.zeros_like(w) if saturate else None
     w_rate = v_rate = asked = None
     if any(shell.gains is not None for shell in problem.shells):
@@ -159,6 +163,8 @@ def _solved(
         v,
         Estimates.unknown(len(problem.shells)),
         timings=stopwatch.seconds,
+        hoop=hoop,
+        potentials=potentials,
         normal_rate=w_rate,
         tangential_rate=v_rate,
         absorber_displacement=solved.displacement[:, keep] if links.count else None,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -11,7 +12,15 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solid_spectra import SolidSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
+
+
+class FaceSpectra(NamedTuple):
+    """Transforms of the displacements of the inner and the outer faces of all walls, each (shells, parities, M + 1, nodes)."""
+
+    inner: ComplexArray
+    outer: ComplexArray
 
 
 @dataclass(frozen=True)
@@ -64,6 +73,16 @@ class SolvedSpectra:
         return self.structure.modes
 
     @property
+    def solid(self) -> SolidSpectra | None:
+        """What walls whose faces move differently do; None where there are none."""
+        return self.structure.solid if self.problem.two_faced else None
+
+    @property
+    def face_motion(self) -> FaceSpectra:
+        """W of the inner and of the outer face of every wall: what the fluids feel."""
+        return FaceSpectra(self.normal, self.normal) if self.solid is None else FaceSpectra(*self.solid.faces)
+
+    @property
     def passive(self) -> StructureSpectra:
         """What the forces moved: the structure, without feedback where saturating actuators acted as forces."""
         return self.structure if self.actuation is None else self.structure.open_loop
@@ -78,7 +97,8 @@ class SolvedSpectra:
         """Bytes of all transforms, those of the structure that forces need included."""
         structure = self.passive if self.absorbers.count or self.actuation is not None else None
         unit = 0 if structure is None else structure.compliance.nbytes + structure.tangential_ratio.nbytes
-        return self.normal.nbytes + self.tangential.nbytes + unit
+        solid = 0 if self.solid is None else self.solid.nbytes
+        return self.normal.nbytes + self.tangential.nbytes + unit + solid
 
     @cached_property
     def links(self) -> LinkMotion | None:

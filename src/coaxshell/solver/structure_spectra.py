@@ -20,6 +20,7 @@ from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.sampled_orders import SampledOrders, orders_above
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts, shared_parts
+from coaxshell.solver.solid_spectra import SolidSpectra, band, solid_spectra
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 
 
@@ -80,10 +81,11 @@ class StructureSpectra:
         units: _UnitAnswers | None = None,
         notes: tuple[str, ...] = (),
     ) -> None:
-        self.problem, self.grid, self.modes, self.shared = problem, grid, modes, shared
+        self.problem, self.grid, self.modes, self.shared = problem.resolving(band(grid)), grid, modes, shared
         self.units, self.notes = units or _UnitAnswers(), notes
         self._progress = progress
         self._under_sources: tuple[ComplexArray, ComplexArray] | None = None
+        self._solid: SolidSpectra | None = None
 
     def same_structure(self, problem: Problem) -> bool:
         """Return whether a problem differs at most in its sources, absorbers and field limits."""
@@ -110,6 +112,11 @@ class StructureSpectra:
             Whether absorbers or actuators will need the answers to unit pressures too.
         """
         problem, grid, modes = self.problem, self.grid, self.modes
+        if problem.two_faced:
+            if self._under_sources is None:
+                self._solid = solid_spectra(problem, grid, modes, self.shared, self._progress)
+                self._under_sources = self._solid.normal, self._solid.tangential
+            return
         count, each = len(problem.shells), (modes.count, grid.nodes.size)
         loads = SurfaceLoads(problem, grid, modes, self.shared) if self._under_sources is None else None
         units = units and self.units.compliance is None
@@ -142,6 +149,12 @@ class StructureSpectra:
         self.solve(units=False)
         assert self._under_sources is not None
         return self._under_sources
+
+    @property
+    def solid(self) -> SolidSpectra | None:
+        """What walls of two faces do under the sources; None where there is none."""
+        self.solve(units=False)
+        return self._solid
 
     @property
     def normal(self) -> ComplexArray:

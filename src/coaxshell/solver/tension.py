@@ -60,7 +60,7 @@ def watched(problem: Problem) -> bool:
     return sum(abs(source.pulse.peak) for source in problem.system.sources) > HARMLESS * AMBIENT
 
 
-def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[Tension]:
+def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer: ComplexArray | None = None) -> list[Tension]:
     """Return the wetted surfaces on which the total pressure falls below -AMBIENT within the run.
 
     Parameters
@@ -69,15 +69,17 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> list[
     grid : LaplaceGrid
     normal : ndarray, shape (shells, parities, M + 1, nodes)
         Transforms of W.
+    outer : ndarray, optional
+        Those of the outer faces, where faces move differently and ``normal`` holds the inner ones.
     """
     if not watched(problem):
         return []
     coarse = _first_nodes(grid)
     within = coarse.time <= grid.time[-1] * (1 + 1e-12)
     window = np.exp(-20.0 * np.linspace(0.0, 1.0, coarse.nodes.size) ** 4)
-    few = normal[:, :, : _MOST_ORDERS + 1, : coarse.nodes.size]
+    few, few_outer = (x[:, :, : _MOST_ORDERS + 1, : coarse.nodes.size] for x in (normal, normal if outer is None else outer))
     found = []
-    for region, shell, spectra in wall_pressures(problem, coarse, few):
+    for region, shell, spectra in wall_pressures(problem, coarse, few, few_outer):
         modal = problem.scales.pressure * coarse.invert(spectra, window)[..., within]
         lowest = _lowest(modal, coarse.time[within])
         if lowest is not None:
@@ -115,10 +117,16 @@ def spectra_of_motion(grid: LaplaceGrid, histories: FloatArray) -> ComplexArray:
     return spectra
 
 
-def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) -> Iterator[tuple[int, int, ComplexArray]]:
-    """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (parities, M + 1, nodes)."""
+def wall_pressures(
+    problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer_faces: ComplexArray | None = None
+) -> Iterator[tuple[int, int, ComplexArray]]:
+    """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (parities, M + 1, nodes).
+
+    W is given of all walls, or of their inner and of their outer faces.
+    """
     radial = RadialBasis(Modes.up_to(normal.shape[2] - 1), grid.nodes)
     acceleration = grid.nodes**2 * normal
+    beyond = acceleration if outer_faces is None else grid.nodes**2 * outer_faces
     count = len(problem.shells)
     for region, fluid in enumerate(problem.fluids):
         if fluid is None:
@@ -129,12 +137,12 @@ def wall_pressures(problem: Problem, grid: LaplaceGrid, normal: ComplexArray) ->
             yield region, region, fluid.density * outer.disc * acceleration[region]
         elif outer is None and inner is not None:
             incident, slope = incident_on_surface(problem, grid, radial)
-            total = inner.exterior * acceleration[-1]
+            total = inner.exterior * beyond[-1]
             total[: len(incident)] += incident - inner.exterior * slope
             yield region, region - 1, total
         elif inner is not None and outer is not None:
             walls = annulus(inner, outer)
-            below, above = fluid.density * acceleration[region - 1], fluid.density * acceleration[region]
+            below, above = fluid.density * beyond[region - 1], fluid.density * acceleration[region]
             yield region, region - 1, walls.aa * below + walls.ab * above
             yield region, region, walls.ba * below + walls.bb * above
 

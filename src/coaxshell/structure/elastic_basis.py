@@ -20,6 +20,7 @@ from itertools import pairwise
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, degree, strains, wall_mesh
 from coaxshell.structure.solid import AXIAL, HOOP, PLANE, RADIAL, RADIAL_AXIAL, RADIAL_HOOP, STRAINS, SolidLayer
@@ -104,7 +105,8 @@ def orders_basis(mesh: WallMesh, members: slice, orders: FloatArray, wavenumber:
     root = np.sqrt(mesh.mass)
     rows = strain_rows(mesh, orders, wavenumber) / root
     stacked = rows.reshape(*rows.shape[:2], -1)
-    _, values, vectors = np.linalg.svd(stacked, full_matrices=False)
+    with one_blas_thread():  # many small matrices
+        _, values, vectors = np.linalg.svd(np.linalg.qr(stacked, mode="r"))
     values, vectors = values[:, ::-1], vectors[:, ::-1]
     for row, order in zip(values, orders, strict=True):
         row[: rigid_motions(float(order), wavenumber)] = 0.0
@@ -178,28 +180,46 @@ class PotentialOfLayer:
         return np.pad(inner, ((0, 0), (1, 1), (0, 0), (0, 0)))
 
 
+FAR = 4.0
+"""Shapes whose frequency is this many times the largest |s| answer by a series."""
+TERMS = 11
+"""Terms of that series: the rest is (1/FAR^2)^TERMS, 6e-14 of what they give."""
+
+
 def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> ComplexArray:
     """Return sums over the shapes of weight/(omega^2 + s^2), shape (orders, rows, nodes), by matrix products of real numbers.
 
-    With x + i y = s^2, a = omega^2 + x and G = 1/(a^2 + y^2), the sum is sum (weight a) G - i y sum weight G.
+    With x + i y = s^2 and a = omega^2 + x a term is (a - i y)/(a^2 + y^2). Shapes far above all nodes together are a polynomial in s^2,
+    sum over j of (-s^2)^j sum weight/omega^(2 + 2 j).
 
     Parameters
     ----------
     weights : ndarray, shape (orders, rows, shapes)
     squares : ndarray, shape (orders, shapes)
-        omega^2.
+        omega^2, ascending.
     s : ndarray, shape (nodes,)
     """
-    rows = weights.shape[1]
-    both = np.concatenate([weights, weights * squares[:, None]], axis=1)
     x, y = (s * s).real, (s * s).imag
-    y2, found = y * y, np.empty((weights.shape[0], rows, s.size), np.complex128)
-    for m, square in enumerate(squares):
-        term = square[:, None] + x
-        term *= term
-        term += y2
-        np.reciprocal(term, out=term)
-        plain, stiff = np.split(both[m] @ term, 2)
-        found[m].real = stiff + x * plain
-        found[m].imag = -y * plain
+    y2, largest = y * y, float(np.abs(s).max()) ** 2
+    far = squares > FAR**2 * largest
+    found = _far_sums(weights, np.where(far, -largest / np.where(far, squares, 1.0), 0.0), largest, s)
+    parts = found.view(np.float64)
+    for m, near in enumerate(np.count_nonzero(~far, axis=1)):
+        above = squares[m, :near, None] + x
+        scale = np.reciprocal(above * above + y2)
+        terms = np.empty((near, s.size, 2))
+        np.multiply(above, scale, out=terms[..., 0])
+        np.multiply(-y, scale, out=terms[..., 1])
+        parts[m] += weights[m, :, :near] @ terms.reshape(near, 2 * s.size)
     return found
+
+
+def _far_sums(weights: FloatArray, ratio: FloatArray, largest: float, s: ComplexArray) -> ComplexArray:
+    """Return the sums over shapes far above the nodes by their series; ``ratio`` is -max|s|^2/omega^2 of these, and 0 of others."""
+    orders, rows, _ = weights.shape
+    terms: FloatArray = np.cumprod(np.broadcast_to(ratio[..., None], (*ratio.shape, TERMS)), axis=-1) / -largest
+    powers = np.empty((TERMS, s.size), np.complex128)
+    powers[0] = 1.0
+    np.cumprod(np.broadcast_to(s * s / largest, (TERMS - 1, s.size)), axis=0, out=powers[1:])
+    coefficients = (weights @ terms).reshape(orders * rows, TERMS)
+    return (coefficients @ powers.view(np.float64)).view(np.complex128).reshape(orders, rows, s.size)

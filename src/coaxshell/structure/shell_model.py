@@ -68,8 +68,8 @@ class Gain(NamedTuple):
         return found if self.u is None or axial is None else found + self.u * axial
 
 
-FIELDS = ("w", "w_z", "w_zz", "v", "v_z", "u", "u_z")
-"""Displacements and their derivatives along the axis, at a station."""
+FIELDS = ("w", "w_z", "w_zz", "v", "v_z", "u", "u_z", "hoop")
+"""Displacements and their derivatives along the axis, at a station; the hoop stress of an elastic wall at its design depth."""
 
 
 class FieldGain(NamedTuple):
@@ -77,8 +77,8 @@ class FieldGain(NamedTuple):
 
     Attributes
     ----------
-    w, w_z, w_zz, v, v_z, u, u_z : ndarray or None
-        Per unit amplitude of w, dw/dz, d2w/dz2, v, dv/dz, u and du/dz.
+    w, w_z, w_zz, v, v_z, u, u_z, hoop : ndarray or None
+        Per unit amplitude of w, dw/dz, d2w/dz2, v, dv/dz, u, du/dz and of the hoop stress of an elastic wall.
     potential : float or ndarray
         Per volt of the potential of a piezoelectric layer, such as that in which the point lies.
     layer : int or None
@@ -92,6 +92,7 @@ class FieldGain(NamedTuple):
     v_z: FloatArray | None = None
     u: FloatArray | None = None
     u_z: FloatArray | None = None
+    hoop: FloatArray | None = None
     potential: FloatArray | float = 0.0
     layer: int | None = None
 
@@ -239,6 +240,10 @@ class ShellModel(ABC):
     def wetted(self) -> tuple[float, float]:
         """Radii r_i and r_o, in a, of the surfaces that the fluids inside and outside wet: the reference surface unless said otherwise."""
         return self.radius, self.radius
+
+    def resolving(self, frequency: float) -> Self:
+        """Return the wall resolving waves up to a frequency, radians per transit: itself where its theory has no such choice."""
+        return self
 
     @property
     def leverage(self) -> tuple[float, float]:

@@ -186,7 +186,7 @@ class ThinWall(ShellModel):
         if ratio > THIN_SHELL_LIMIT:
             found.append(
                 f"thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell theory loses accuracy; use a thinner "
-                "shell or compare with a solid model"
+                'shell, or theory = "elastic" (in two dimensions, without feedback and absorbers)'
             )
         if self.mid_surface_error > LOAD_LIMIT:
             found.append(

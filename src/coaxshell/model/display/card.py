@@ -99,7 +99,8 @@ def _shell_rows(number: int, shells: int, shell: Shell | RigidShell) -> list[Cel
     name = shell_phrase(number, shells)
     if isinstance(shell, RigidShell):
         return [("", name, f"rigid, radius {_length(shell.radius)}")]
-    wetted = ", wetted at its faces" if shell.wetted == "faces" else ""
+    theory = "elastic solids" if shell.theory == "elastic" else ""
+    wetted = f", {theory or 'wetted at its faces'}" if shell.wetted == "faces" or theory else ""
     rows: list[Cells] = [("", name, f"radius {_length(shell.radius)}, {_length(shell.thickness)} thick{wetted}")]
     return rows + [(ROLE_COLOURS[x.role], "", f"{_length(x.thickness)} {x.material.name}, {x.role}") for x in shell.layers]
 

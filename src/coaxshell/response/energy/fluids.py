@@ -168,7 +168,7 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     band = band_of(motion, tuple(walls))
     sampler = Sampler(motion.grid, motion.every)
     width = max(16, _BLOCK_ELEMENTS // motion.modes.count)
-    blocks = [_block(motion, fluid, walls, band.window, part) for part in sampler.blocks(band.window.size, width)]
+    blocks = [_block(motion, region, walls, band.window, part) for part in sampler.blocks(band.window.size, width)]
     steepest = motion.modes.count + motion.wavenumber * outer  # r^m e^{kr}
     points, weights = np.polynomial.legendre.leggauss(radii or radii_needed(band, fluid.slowness * (outer - inner), steepest))
     places = 0.5 * (inner + outer) + 0.5 * (outer - inner) * points
@@ -184,12 +184,15 @@ def fluid_energy(motion: Motion, region: int, progress: ShareDone | None = None,
     return FluidEnergy(*total)
 
 
-def _block(motion: Motion, fluid: FluidRegion, walls: dict[int, float], window: FloatArray, nodes: slice) -> _Block:
+def _block(motion: Motion, region: int, walls: dict[int, float], window: FloatArray, nodes: slice) -> _Block:
     """Return what the fields at a block of nodes share: functions and weighted slopes at the walls, given with their wetted radii."""
+    fluid = motion.problem.fluids[region]
+    assert fluid is not None
     radial = RadialBasis(motion.modes, motion.grid.nodes[nodes])
     at_walls = [radial(fluid.slowness, radius) for radius in walls.values()]
     # Slope of Pi at a wall: rho s w.
-    slopes = [fluid.density * motion.normal_velocity[wall, :, :, nodes] * window[nodes] for wall in walls]
+    moving = [motion.face_velocity(wall, int(wall < region)) for wall in walls]
+    slopes = [fluid.density * velocity[..., nodes] * window[nodes] for velocity in moving]
     inner, outer = at_walls[0], at_walls[-1]
     amplitudes = annulus_amplitudes(inner, outer) if len(walls) == 2 else None
 

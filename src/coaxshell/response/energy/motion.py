@@ -16,6 +16,7 @@ from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.interface.link_motion import LinkMotion
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solid_spectra import SolidSpectra, band
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
@@ -48,6 +49,8 @@ class Motion:
         Of the absorbers, if there are any.
     actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
+    solid : SolidSpectra or None
+        What walls whose faces move differently do.
     usual_power : ndarray, shape (shells,), or None
         Of a motion that is one of many: all :meth:`power` of each wall in such a one on average. What is left out of a motion is measured
         by it where the motion has less.
@@ -63,6 +66,7 @@ class Motion:
     incident: Incident
     links: LinkMotion | None = None
     actuation: FloatArray | None = None
+    solid: SolidSpectra | None = None
     usual_power: FloatArray | None = None
 
     @classmethod
@@ -79,7 +83,7 @@ class Motion:
         """
         known = spectra_of(solution) if spectra is None else spectra
         return cls(
-            problem=solution.problem,
+            problem=solution.problem.resolving(band(known.grid)),
             grid=known.grid,
             modes=known.modes,
             normal=known.normal,
@@ -89,6 +93,7 @@ class Motion:
             incident=partial(incident_on_surface, known.problem, known.grid),
             links=known.links,
             actuation=known.actuation,
+            solid=known.solid,
         )
 
     @property
@@ -112,9 +117,25 @@ class Motion:
         """Transform of dW/dt, shape (shells, parities, M + 1, nodes)."""
         return self.normal * self.grid.nodes
 
+    def face_velocity(self, shell: int, side: int) -> ComplexArray:
+        """Return the transform of dW/dt of the inner (0) or the outer (1) face of a wall, shape (parities, M + 1, nodes)."""
+        if self.solid is None:
+            return np.asarray(self.normal_velocity[shell])
+        return np.asarray(self._face_velocities[side, shell])
+
+    @cached_property
+    def _face_velocities(self) -> ComplexArray:
+        assert self.solid is not None
+        return np.asarray(self.solid.faces * self.grid.nodes)
+
     def power(self, wall: int) -> FloatArray:
-        """Return how the kinetic energy of a wall's normal motion is spread over the nodes, in a unit of its own, shape (nodes,)."""
-        return np.asarray(np.einsum("m,hmk->k", self.circle, np.abs(self.normal_velocity[wall]) ** 2) * self.grid.taper() ** 2)
+        """Return how the kinetic energy of a wall's normal motion is spread over the nodes, in a unit of its own, shape (nodes,).
+
+        Of walls of two faces that of both: thickness resonances show at the faces and leave the middle at rest.
+        """
+        moving = [self.normal_velocity[wall]] if self.solid is None else self._face_velocities[:, wall]
+        total = sum(np.einsum("m,hmk->k", self.circle, np.abs(velocity) ** 2) for velocity in moving)
+        return np.asarray(total * self.grid.taper() ** 2)
 
     def histories(self, shell: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Return W, V, dW/dt and dV/dt of one shell, each of shape (parities, M + 1, T)."""

@@ -38,7 +38,7 @@ def parts_of(motion: Motion, report: Progress) -> dict[str, Entry]:
 def _surface(motion: Motion) -> dict[str, Entry]:
     """Return the work of the exterior pressure and its parts on the outermost shell, and the energy radiated."""
     parts = surface_pressures(motion)
-    work = SurfaceWork(motion.grid, motion.problem.head * motion.circle, motion.normal_velocity[-1])
+    work = SurfaceWork(motion.grid, motion.problem.head * motion.circle, motion.face_velocity(-1, 1))
     incident, scattered, radiated = (work(part)[motion.kept] for part in parts)
     where = "on the outer shell, since the start"
     return {

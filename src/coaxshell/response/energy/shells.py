@@ -7,12 +7,15 @@ import numpy as np
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.solids import solid_energy
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.shell_model import WallEnergy, WallMotion
 
 
 def shell_energy(motion: Motion, shell: int) -> WallEnergy:
     """Return the energies of one shell at the kept instants."""
+    if not motion.problem.shells[shell].faces_move_alike:
+        return solid_energy(motion, shell)
     return motion.problem.shells[shell].energy(_of_wall(motion, shell, motion.kept))
 
 

@@ -44,7 +44,8 @@ def surface_pressures(motion: Motion) -> SurfacePressures:
     radial = RadialBasis(motion.modes, s)
     surface = radial(1.0, motion.problem.head)
     incident, slope = motion.incident(radial)
-    return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * motion.normal[-1])
+    outermost = motion.normal[-1] if motion.solid is None else motion.solid.faces[1, -1]
+    return SurfacePressures(incident, -surface.exterior * slope, surface.exterior * s**2 * outermost)
 
 
 _LEAD = 64

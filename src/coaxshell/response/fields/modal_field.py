@@ -52,11 +52,17 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     def incident() -> ComplexArray:
         return incident_on_surface(spectra.problem, grid, radial)[1]
 
-    return region_slopes(region, part, spectra.normal[..., : grid.nodes.size], incident, radial)
+    inner, outer = (faces[..., : grid.nodes.size] for faces in spectra.face_motion)
+    return region_slopes(region, part, inner, incident, radial, outer)
 
 
 def region_slopes(
-    region: Region, part: str, normal: ComplexArray, incident: Callable[[], ComplexArray], radial: RadialBasis
+    region: Region,
+    part: str,
+    normal: ComplexArray,
+    incident: Callable[[], ComplexArray],
+    radial: RadialBasis,
+    outer_faces: ComplexArray | None = None,
 ) -> WallSlopes | None:
     """Return the slopes at the walls of a region from the motion of all walls; None if the part vanishes there.
 
@@ -70,22 +76,25 @@ def region_slopes(
         Gives the slope of the incident wave at the outermost surface, shape (1 or 2, orders, nodes).
     radial : RadialBasis
         Of the same orders and nodes.
+    outer_faces : ndarray, optional
+        W of the outer faces, where faces move differently and ``normal`` holds the inner ones.
     """
+    beyond = normal if outer_faces is None else outer_faces
     parts = SCATTERED.get(part, ())
     if region.fluid is None or not parts or (parts == ("diffracted",) and not region.exterior):
         return None
     fluid, acceleration = region.fluid, region.fluid.density * radial.s * radial.s
 
-    def radiated(shell: int) -> ComplexArray:
-        return np.asarray(normal[shell] * acceleration * fluid.wall_motion_factor(shell, radial))
+    def radiated(shell: int, faces: ComplexArray) -> ComplexArray:
+        return np.asarray(faces[shell] * acceleration * fluid.wall_motion_factor(shell, radial))
 
     inner: ComplexArray | None = None
     outer: ComplexArray | None = None
     if "radiated" in parts:
         if region.index > 0:
-            inner = radiated(region.index - 1)
+            inner = radiated(region.index - 1, beyond)
         if not region.exterior:
-            outer = radiated(region.index)
+            outer = radiated(region.index, normal)
     if "diffracted" in parts and region.exterior:
         rigid = -incident()
         inner = rigid if inner is None else _sum_of_parities(inner, rigid)

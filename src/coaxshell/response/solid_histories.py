@@ -1,0 +1,90 @@
+"""Displacements and stresses at angles and depths of elastic walls."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import xarray as xr
+from coaxshell.response import arguments
+from coaxshell.response.labels import COUNTERCLOCKWISE, INWARD, history
+from coaxshell.response.synthesis import angle_basis, at_angles
+from coaxshell.response.wall_motion import WallMotion
+from coaxshell.structure.elastic_depth import SIDES, STRESSES, Shown
+from coaxshell.structure.elastic_wall import ElasticWall
+
+COMPONENTS = ("hoop", "axial", "radial", "radial_hoop", "von_mises")
+"""Stresses of a plane problem; those with the axis in their shear vanish."""
+
+
+def solid_stress(motion: WallMotion, shell: int, theta: FloatArray, depth: float | None, component: str) -> FloatArray:
+    """Return a stress of an elastic wall at angles (degrees), Pa, shape (T, A).
+
+    Parameters
+    ----------
+    motion : WallMotion
+    shell : int
+    theta : ndarray, shape () or (A,)
+    depth : float or None
+        z, m, outward from the middle; None for the design depth.
+    component : str
+        One of :data:`COMPONENTS`; "von_mises" is sqrt(((s_r - s_t)^2 + (s_t - s_z)^2 + (s_z - s_r)^2)/2 + 3 tau^2).
+    """
+    wall = motion.solution.problem.shells[shell]
+    assert isinstance(wall, ElasticWall)
+    z = motion.solution.problem.scales.length * wall.design_depth if depth is None else depth
+    if component != "von_mises":
+        return _at(motion, shell, theta, component, z)  # type: ignore[arg-type]
+    radial, hoop, axial, shear = (_at(motion, shell, theta, name, z) for name in ("radial", "hoop", "axial", "radial_hoop"))
+    squares = (radial - hoop) ** 2 + (hoop - axial) ** 2 + (axial - radial) ** 2
+    return np.asarray(np.sqrt(0.5 * squares + 3.0 * shear**2))
+
+
+def _at(motion: WallMotion, shell: int, theta: FloatArray, what: Shown, depth: float) -> FloatArray:
+    modal = motion.within(shell, what, depth)
+    return at_angles(modal, angle_basis(np.atleast_1d(theta), modal.shape[1], modal.shape[0], SIDES[what]))
+
+
+def displacement_at_depth(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: object, component: str = "normal") -> xr.DataArray:
+    """Return the displacement of an elastic wall at angles and a depth, m, dims (time, angle).
+
+    Parameters
+    ----------
+    motion : WallMotion
+    shell : int
+    angle : array_like, shape () or (A,)
+        Degrees from the source direction.
+    depth : float or str
+        z in metres from the middle of the wall, positive outward, or a face, "inner" or "outer".
+    component : str
+        "normal" (positive inward) or "tangential" (positive towards increasing angle).
+
+    Raises
+    ------
+    InputError
+        If the wall is no elastic one, or an argument is not allowed.
+    """
+    solution = motion.solution
+    wall, length = solution.problem.shells[shell], solution.problem.scales.length
+    component = arguments.one_of("component", component, ("normal", "tangential"))
+    if not isinstance(wall, ElasticWall):
+        raise InputError("depth", "a thin wall moves as its mid-surface does", 'leave it out, or use theory = "elastic"')
+    z = arguments.depth_of((length * wall.faces[0], length * wall.faces[1]), depth)
+    theta = arguments.angles(angle)
+    values = _at(motion, shell, theta, component, z)  # type: ignore[arg-type]
+    sign = INWARD if component == "normal" else COUNTERCLOCKWISE
+    told = f"{component} displacement at {z:g} m outward of the middle"
+    labelled = history(solution, values, theta, shell, name=f"{component}_displacement", long_name=told, units="m", sign=sign)
+    labelled.attrs["depth"] = z
+    return labelled
+
+
+def component_of(wall: object, component: str) -> str:
+    """Return the component asked for of an elastic wall in a plane problem; InputError if it has none of that name."""
+    if component in STRESSES and component not in COMPONENTS:
+        raise InputError(
+            "component", f"{component!r} vanishes where nothing changes along the axis", f"must be one of {', '.join(COMPONENTS)}"
+        )
+    return arguments.one_of("component", component, COMPONENTS)

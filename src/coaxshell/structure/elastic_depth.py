@@ -1,0 +1,97 @@
+"""What the shapes of a wall of solid layers show at a depth: displacements, stresses, the potential of a ceramic, per unit of each shape.
+
+Displacements have the signs of all walls, W = -u_r inward, V = u_theta, U = u_z. Stresses are C eps - e'E with the field
+E = (-Phi', (m/r) Phi, k Phi) of the layer's condensed potential; the layer is that which the caller names, as stresses along a wall jump
+from one to the next.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.lobatto import interpolation
+from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, displacements
+from coaxshell.structure.elastic_mesh import LayerMesh, strains
+from coaxshell.structure.solid import AXIAL, HOOP, HOOP_AXIAL, RADIAL, RADIAL_AXIAL, RADIAL_HOOP
+
+Shown = Literal[
+    "normal", "tangential", "along_axis", "radial", "hoop", "axial", "shear", "radial_axial", "radial_hoop", "potential"
+]  # fmt: skip
+"""Displacements, stresses (``shear`` is that between hoop and axis, as of thin walls) and the potential."""
+
+DISPLACEMENTS: dict[str, tuple[int, float]] = {"normal": (0, -1.0), "tangential": (1, 1.0), "along_axis": (2, 1.0)}
+"""Place among (u_r, u_theta, u_z), and sign."""
+
+STRESSES = {
+    "radial": RADIAL,
+    "hoop": HOOP,
+    "axial": AXIAL,
+    "shear": HOOP_AXIAL,
+    "radial_axial": RADIAL_AXIAL,
+    "radial_hoop": RADIAL_HOOP,
+}  # fmt: skip
+"""Components of the stress by their names."""
+
+SIDES: dict[str, str] = {
+    name: "tangential" if name in ("tangential", "shear", "radial_hoop") else "normal" for name in (*DISPLACEMENTS, *STRESSES, "potential")
+}
+"""Whether a quantity goes around as w does or as v."""
+
+
+def shown_by_shapes(basis: OrdersBasis, number: int, radius: float, what: Shown) -> FloatArray:
+    """Return a quantity at a radius of a layer per unit of each shape, shape (orders, shapes).
+
+    Parameters
+    ----------
+    basis : OrdersBasis
+    number : int
+        Of the layer, from the inside out.
+    radius : float
+    what : str
+        The potential only of a piezoelectric layer.
+    """
+    part = basis.mesh.layers[number]
+    place = 2.0 * (radius - part.layer.inner) / part.layer.thickness - 1.0
+    at = interpolation(part.degree, min(max(place, -1.0), 1.0))
+    shapes = basis.shapes[..., part.nodes]
+    if what in DISPLACEMENTS:
+        which, sign = DISPLACEMENTS[what]
+        if which >= shapes.shape[2]:
+            return np.zeros(shapes.shape[:2])
+        return np.asarray(sign * (shapes[:, :, which] @ at))
+    rows = potential_rows(basis, part, at) if what == "potential" else stress_rows(basis, part, radius, at, STRESSES[what])
+    return np.asarray(np.einsum("mcp,mncp->mn", rows, shapes))
+
+
+def potential_rows(basis: OrdersBasis, part: LayerMesh, at: FloatArray) -> FloatArray:
+    """Return the potential at a place per displacement at the points of a layer, shape (orders, displacements, points)."""
+    values = PotentialOfLayer(part, basis.orders, basis.wavenumber).values
+    return np.asarray(np.einsum("q,mqcp->mcp", at, values))
+
+
+def stress_rows(basis: OrdersBasis, part: LayerMesh, radius: float, at: FloatArray, component: int) -> FloatArray:
+    """Return one stress at a place per displacement at the points of a layer, shape (orders, displacements, points).
+
+    Parameters
+    ----------
+    basis : OrdersBasis
+    part : LayerMesh
+    radius : float
+    at : ndarray, shape (points,)
+        From values at the points to the value there.
+    component : int
+        Place among the stresses.
+    """
+    slope = at @ part.derivative
+    local = strains(basis.orders, basis.wavenumber, np.array([radius]), slope[None], at[None])[:, :, 0, : displacements(basis.wavenumber)]
+    found = np.einsum("j,mjcp->mcp", part.layer.matrix[component], local)
+    if part.layer.coupling is None:
+        return np.asarray(found)
+    values = PotentialOfLayer(part, basis.orders, basis.wavenumber).values
+    phi, phi_slope = (np.einsum("q,mqcp->mcp", row, values) for row in (at, slope))
+    e = np.array(part.layer.coupling)[:, component]
+    per_radius = (basis.orders / radius)[:, None, None]
+    return np.asarray(found + e[0] * phi_slope - (e[1] * per_radius + e[2] * basis.wavenumber) * phi)

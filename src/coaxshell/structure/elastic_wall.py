@@ -1,0 +1,202 @@
+"""A wall whose layers are three-dimensional elastic solids, wetted at its true faces.
+
+Its two faces move differently, so that it answers by receptances (:class:`coaxshell.structure.shell_model.FaceReceptance`), and everything
+within it by the loads on both: with u_r = phi_a at face a of a shape of its eigenbasis and an inward load q_a at the radius r_a there,
+
+    x = -sum over shapes of (shape) sum_a phi_a r_a q_a/(omega^2 + s^2),      H_ab = sum phi_a phi_b/(omega^2 + s^2).
+
+All of it is a matrix product for each order (:func:`coaxshell.structure.elastic_basis.modal_sums`), so that it costs hardly more than a
+thin wall. The reference surface, whose motion stands for the wall's, is its middle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes, kept_with_modes
+from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
+from coaxshell.structure.elastic_depth import Shown, shown_by_shapes
+from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
+from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
+
+UNSTATED_FREQUENCY = 300.0
+"""Up to which waves are resolved where no run has said so, radians per transit."""
+
+
+class Asked(NamedTuple):
+    """A quantity at a depth z, outward from the middle of the wall in a; see :data:`coaxshell.structure.elastic_depth.Shown`."""
+
+    what: Shown
+    depth: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticWall(ShellModel):
+    """A wall of solid layers.
+
+    Attributes
+    ----------
+    layers : tuple of SolidLayer
+        From the inside out, dimensionless.
+    core : int
+        Number of the layer whose stress is reported.
+    frequency : float
+        Up to which waves are resolved, radians per transit; a matter of a run's resolution, not of the wall.
+    """
+
+    layers: tuple[SolidLayer, ...]
+    core: int
+    frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
+
+    @classmethod
+    def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
+        """Return the wall of dimensionless layers."""
+        radius = 0.5 * (layers[0].inner + layers[-1].outer)
+        mass = sum(0.5 * layer.density * (layer.outer**2 - layer.inner**2) for layer in layers) / radius
+        return cls(radius=radius, mass=mass, layers=layers, core=core)
+
+    def resolving(self, frequency: float) -> Self:
+        """Return the wall with degrees for waves up to a frequency, radians per transit."""
+        return replace(self, frequency=frequency)
+
+    # Geometry
+
+    @property
+    def wetted(self) -> tuple[float, float]:
+        """Radii of its faces."""
+        return self.layers[0].inner, self.layers[-1].outer
+
+    @property
+    def faces(self) -> tuple[float, float]:
+        """Depths of its inner and its outer face."""
+        return self.layers[0].inner - self.radius, self.layers[-1].outer - self.radius
+
+    @property
+    def faces_move_alike(self) -> bool:
+        """No."""
+        return False
+
+    @property
+    def design_depth(self) -> float:
+        """Depth whose stress is reported unless another is asked for: the middle of the wall if its core is there, else the core's."""
+        core = self.layers[self.core]
+        inside = core.inner <= self.radius <= core.outer
+        return 0.0 if inside else 0.5 * (core.inner + core.outer) - self.radius
+
+    def layer_at(self, depth: float) -> int:
+        """Return the number of the layer at a depth; between two layers the outer one is meant, but for the core at its design depth."""
+        radius, slack = self.radius + depth, 1e-9 * (self.layers[-1].outer - self.layers[0].inner)
+        return next((i for i, layer in enumerate(self.layers) if radius < layer.outer - slack), len(self.layers) - 1)
+
+    # Answers
+
+    @kept_with_modes
+    def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
+        """Return the shapes of some modes, made once as long as these are in use; nobody may change them."""
+        if np.ndim(modes.wavenumber):
+            raise InputError(
+                "source.inclination",
+                "a wave along the axis meets an elastic wall at complex wavenumbers, which its shapes do not have",
+                'use inclination = 0, or theory = "thin"',
+            )
+        return elastic_basis(self.layers, modes, self.frequency)
+
+    def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
+        """Return how its faces answer loads on them."""
+        return FaceReceptance(*self._summed(modes, s, [_of_faces(part) for part in self.basis(modes)]))
+
+    def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
+        """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes).
+
+        W and V of the middle, hoop stress at the design depth and potentials in the middle of the piezoelectric layers, whose faces are
+        grounded, in the sign of the sensor equation.
+        """
+        found = self._summed(modes, s, self._of_port(modes))
+        return FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
+
+    def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
+        """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
+        found = self._summed(modes, s, self._weights(modes, asked))
+        return found.reshape(-1, 2, *found.shape[1:])
+
+    @kept_with_modes
+    def _of_port(self, modes: Modes) -> list[FloatArray]:
+        """Return the weights of all shapes in what :meth:`two_port` gives, (orders, rows, shapes) of each part of the basis."""
+        middles = [0.5 * (self.layers[i].inner + self.layers[i].outer) - self.radius for i in self.piezoelectric]
+        motion = [Asked("normal", 0.0), Asked("tangential", 0.0), Asked("hoop", self.design_depth)]
+        found = self._weights(modes, [*motion, *(Asked("potential", middle) for middle in middles)])
+        for each in found:
+            each[:, 2 * len(motion) :] *= -1.0  # Phi = -cos(pi z'/t) phi: a half cosine has no sign of its own
+        return [np.concatenate([_of_faces(part), each], axis=1) for part, each in zip(self.basis(modes), found, strict=True)]
+
+    def _weights(self, modes: Modes, asked: Sequence[Asked]) -> list[FloatArray]:
+        """Return the weights of all shapes in quantities per load on either face, (orders, 2 quantities, shapes) of each part."""
+        found = []
+        for part in self.basis(modes):
+            shown = np.stack([shown_by_shapes(part, self.layer_at(one.depth), self.radius + one.depth, one.what) for one in asked], axis=1)
+            pressed = -part.faces * np.array(self.wetted)[:, None]
+            found.append((shown[:, :, None] * pressed[:, None]).reshape(part.orders.size, 2 * len(asked), -1))
+        return found
+
+    def _summed(self, modes: Modes, s: ComplexArray, weights: list[FloatArray]) -> ComplexArray:
+        """Return the sums over all shapes, (rows, orders, nodes), from their weights in each part of the basis."""
+        found = np.empty((weights[0].shape[1], modes.count, s.size), np.complex128)
+        for part, each in zip(self.basis(modes), weights, strict=True):
+            found[:, part.members] = np.moveaxis(modal_sums(each, part.squares, s), 1, 0)
+        return found
+
+    @property
+    def piezoelectric(self) -> tuple[int, ...]:
+        """Numbers of the piezoelectric layers, from the inside out."""
+        return tuple(i for i, layer in enumerate(self.layers) if layer.coupling is not None)
+
+    def has(self, role: str) -> bool:
+        """Return whether it has a piezoelectric layer of a role."""
+        return self.layer_number(role) is not None
+
+    def layer_number(self, role: str) -> int | None:
+        """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
+        return next((number for number, i in enumerate(self.piezoelectric) if self.layers[i].role == role), None)
+
+    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
+        """Refuse: two faces have no one impedance."""
+        raise NotImplementedError("the faces of an elastic wall move differently: it answers by receptances")
+
+    # What else is asked of a wall
+
+    def highest_frequency(self, modes: Modes) -> FloatArray:
+        """Return the frequency at which each order stretches along the wall, that of its fastest layer's plate waves."""
+        return np.asarray(self.plate_speed * np.sqrt(modes.gradient_squared(self.radius)))
+
+    @property
+    def plate_speed(self) -> float:
+        """Speed of stretching waves along the wall at low frequencies, sqrt(sum of t (c22 - c23^2/c33) per mass)."""
+        moduli = [x.stiffness[HOOP][HOOP] - x.stiffness[HOOP][RADIAL] ** 2 / x.stiffness[RADIAL][RADIAL] for x in self.layers]
+        stiff = sum(x.thickness * modulus for x, modulus in zip(self.layers, moduli, strict=True))
+        return math.sqrt(stiff / sum(x.thickness * x.density for x in self.layers))
+
+    def fastest_wave(self, max_wavenumber: float) -> float:
+        """Return the speed of the fastest pressure wave of any layer."""
+        return max(math.sqrt(x.stiffness[AXIAL][AXIAL] / x.density) for x in self.layers)
+
+    @property
+    def crossing_order(self) -> float:
+        """R sqrt(12)/t, about where stretching and bending frequencies of a thin wall of one layer would cross."""
+        return self.radius * math.sqrt(12.0) / (self.faces[1] - self.faces[0])
+
+    def energy(self, motion: WallMotion) -> WallEnergy:
+        """Refuse: the energy of a solid wall needs its motion through the thickness."""
+        raise NotImplementedError("the energy of an elastic wall is that of its shapes")
+
+
+def _of_faces(part: OrdersBasis) -> FloatArray:
+    """Return the weights of the shapes in H_ii, H_io and H_oo, shape (orders, 3, shapes)."""
+    inner, outer = part.faces[:, 0], part.faces[:, 1]
+    return np.stack([inner * inner, inner * outer, outer * outer], axis=1)
