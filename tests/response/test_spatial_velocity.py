@@ -203,3 +203,10 @@ def test_a_run_keeps_the_forces_of_its_absorbers_for_fields(smooth: SpatialRespo
     monkeypatch.setattr(solve, "_linked", refuse)
     np.testing.assert_array_equal(smooth.at(0.4).pressure(**asked), expected)
     np.testing.assert_array_equal(again.pressure(**asked), expected)
+
+
+@pytest.mark.parametrize("name", ["pressure", "velocity", "intensity"])
+def test_an_axial_position_is_not_of_two_dimensions(name: str) -> None:
+    flat = cx.simulate("bare", duration=0.2, time_step=5e-2, modes=2)
+    with pytest.raises(InputError, match=r"^z: 0\.5 belongs to three dimensions; leave it out, or run with dimensions=3"):
+        getattr(flat, name)(x=[0.0], y=[0.0], z=0.5, time=0.1)

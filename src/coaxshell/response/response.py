@@ -272,26 +272,35 @@ class Response:
         *part* is "total", "incident", "diffracted", "radiated" or "scattered", *front* "sharp" or, for pictures, "matched".
         A *z* belongs to three dimensions. See :func:`coaxshell.response.fields.evaluate.pressure`.
         """
-        if z is not None:
-            raise InputError("z", f"{shown(z)} belongs to three dimensions", "leave it out, or run with dimensions=3")
+        _refuse_z(z)
         return fields.pressure(self._spectra, x, y, **options)
 
     def velocity(
-        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.PartOptions]
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        **options: Unpack[fields.PartOptions],
     ) -> xr.DataArray:
         """Return the particle velocity, m/s, with a dimension component, on the same grids as the pressure.
 
         See :func:`coaxshell.response.fields.evaluate.velocity`.
         """
+        _refuse_z(z)
         return fields.velocity(self._spectra, x, y, **options)
 
     def intensity(
-        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.FieldOptions]
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: npt.ArrayLike | None = None,
+        **options: Unpack[fields.FieldOptions],
     ) -> xr.DataArray:
         """Return the acoustic intensity p v, W/m^2, with a dimension component, on the same grids as the pressure.
 
         See :func:`coaxshell.response.fields.evaluate.intensity`.
         """
+        _refuse_z(z)
         return fields.intensity(self._spectra, x, y, **options)
 
     def pressure_rms(self, region: str | int, radius: float | None = None, **options: Unpack[fields.RmsOptions]) -> xr.DataArray:
@@ -390,3 +399,9 @@ class Response:
     def __repr__(self) -> str:
         name = f"{self.system.name!r}, " if self.system.name else ""
         return f"<Response: {name}{self.shells} shell{'s' * (self.shells != 1)}, {self.modes} modes, t = 0 to {self.time[-1]:g} transits>"
+
+
+def _refuse_z(z: npt.ArrayLike | None) -> None:
+    """Refuse an axial position of a field of two dimensions."""
+    if z is not None:
+        raise InputError("z", f"{shown(z)} belongs to three dimensions", "leave it out, or run with dimensions=3")
