@@ -1,6 +1,7 @@
 """Six hundred axial wavenumbers on a local Dask cluster, one of whose workers is killed on the way: time, memory, and the bits.
 
-Scheduler and workers are processes of their own, so that the memory of each is its own too.
+Scheduler and workers are processes of their own, so that the memory of each is its own too. Blocks are of 64 Laplace nodes instead of 600,
+so that there are as many of them as in a run of 5000 steps.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ from pathlib import Path
 import numpy as np
 
 import coaxshell as cx
+from coaxshell.solver.axial import blocks
 
-SETTINGS = {"modes": 30, "time_step": 8e-3, "duration": 5.0, "dimensions": 3, "stations": (0.0, 1.0), "axial_period": 126.0}
-_WORKERS = 3
+SETTINGS = {"modes": 20, "time_step": 8e-3, "duration": 5.0, "dimensions": 3, "stations": (0.0, 1.0), "axial_period": 190.0}
+_WORKERS, _NODES = 3, 64
 
 
 def peak_of(process: subprocess.Popen[bytes]) -> float:
@@ -55,6 +57,7 @@ def cluster(folder: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]
 def main() -> None:
     """Print what the run took, with a worker killed at a third of it, and whether its bits are those of threads."""
     warnings.simplefilter("ignore", cx.PhysicsWarning)
+    blocks.BLOCK_NODES = _NODES
     start, used = time.perf_counter(), time.process_time()
     threads = cx.simulate("bare", **SETTINGS)
     print(f"bare, {len(threads.spatial.sampling.modes)} axial wavenumbers, M = k_max = {SETTINGS['modes']}, 625 steps")

@@ -1,7 +1,7 @@
 """How the cost of a run in three dimensions grows with M and k_max, with either alone, with T, the steps in it and the stations.
 
 Processor seconds of the paper's bare double shell, which other work on the machine disturbs less than the clock: the median of some turns,
-and the exponent of the last doubling.
+and the exponent of the last step.
 """
 
 from __future__ import annotations
