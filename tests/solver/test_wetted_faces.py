@@ -16,8 +16,11 @@ from coaxshell.apps.verification.independent import RadialElements
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.cascade import CascadeSystem
 from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.kernels import initial_decay
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.tension import wall_pressures
+from coaxshell.solver.wetted_surfaces import remarks
 from coaxshell.structure.rigid import RigidWall
 
 WATER = cx.Fluid(density=1000, sound_speed=1400)
@@ -192,16 +195,27 @@ def test_true_faces_come_near_exact_elastic_walls() -> None:
     assert middle[1].max() > 0.1
 
 
-def test_a_thick_wall_at_its_mid_surface_is_remarked_with_both_numbers() -> None:
-    def remarks(wetted: str, thickness: float) -> str:
-        return " ".join(dimensionless(double(wetted, (0.01, thickness))).shells[1].remarks())
+def test_thick_walls_at_their_mid_surfaces_are_remarked_with_both_numbers() -> None:
+    def told(wetted: str, *thickness: float) -> list[str]:
+        return remarks(dimensionless(double(wetted, thickness)))
 
-    assert "off by about 6.0%, more than 5%" in remarks("mid-surface", 0.12)
-    assert 'use wetted = "faces"' in remarks("mid-surface", 0.12)
-    assert "mid-surface" not in remarks("faces", 0.12)
-    assert "mid-surface" not in remarks("mid-surface", 0.09)
+    load, gap = told("mid-surface", 0.01, 0.12)
+    assert "outer shell: fluids at its mid-surface" in load
+    assert "about 6.0% off, more than 5%" in load
+    assert 'use wetted = "faces"' in load
     thin, exact = -1.0 / 0.12, lame(1.0, 0.94, 1.06, 0.0, 1.0)
     assert abs(thin / exact - 1.0) == pytest.approx(0.06, rel=0.1)
+    assert f"{0.5 / (0.94 - 0.505) - 1.0:.1%} wider" in gap
+    (alone,) = told("mid-surface", 0.03, 0.05)  # of which the inner shell's history is a third off
+    assert "gap: from mid-surface to mid-surface it is 8.7% wider" in alone
+    assert not told("faces", 0.01, 0.12)
+    assert not told("mid-surface", 0.012, 0.012)
+
+
+def test_a_run_at_mid_surfaces_warns() -> None:
+    run = {"modes": 4, "duration": 0.2, "time_step": 2e-2}
+    assert any("wetted" in one for one in cx.simulate(double("mid-surface"), **run).warnings)
+    assert not any("wetted" in one for one in cx.simulate(double("faces"), **run).warnings)
 
 
 def test_fluids_on_faces_slow_a_wall_at_once_by_their_resistance_there() -> None:
@@ -236,3 +250,16 @@ def test_energy_over_the_whole_length_closes_at_true_faces() -> None:
     energy = response.energy(every=25)
     assert float(np.abs(energy["closure_relative"]).max()) < 5e-6
     assert float(energy["exterior_work"].max()) > 0.0
+
+
+def test_pressures_on_the_faces_are_what_moves_the_walls() -> None:
+    # What the warning of cavitation reads: Z W = p_out r_out/R - p_in r_in/R of every wall, at every order and node.
+    problem, grid, modes = dimensionless(double("faces")), LaplaceGrid(0.1, 30), Modes(np.arange(6.0))
+    modal = ModalSystem(problem, grid.nodes, modes)
+    moved = modal.solve_outside(SurfaceLoads(problem, grid, modes)(modal.radial, slice(None))[0])
+    net = [np.zeros((6, grid.nodes.size), complex) for _ in moved]
+    for region, shell, pressure in wall_pressures(problem, grid, np.stack(moved)[:, None]):
+        inside = region == shell
+        net[shell] += (-1 if inside else 1) * problem.shells[shell].leverage[0 if inside else 1] * pressure[0]
+    for wall, w, load in zip(modal.shells, moved, net, strict=True):
+        np.testing.assert_allclose(wall.impedance * w, load, rtol=0, atol=1e-9 * np.abs(load).max())

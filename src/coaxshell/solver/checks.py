@@ -18,6 +18,7 @@ from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver import wetted_surfaces
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import InterfacePoints
 from coaxshell.solver.interface.saturation import voltage_limit
@@ -48,6 +49,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
     return (
         cut(problem, float(grid.time[-1]))
         + [f"{shell_phrase(i, len(problem.shells))}: {one}" for i, wall in enumerate(problem.shells) for one in wall.remarks()]
+        + wetted_surfaces.remarks(problem)
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)

@@ -36,8 +36,6 @@ from coaxshell.structure.thin import bending_strain, open_circuit_stiffness, pot
 
 THIN_SHELL_LIMIT = 0.1
 """Thickness over radius up to which thin-shell theory is taken without a remark."""
-LOAD_LIMIT = 0.05
-"""Error of the load up to which fluids at the mid-surface are taken without a remark: half the thickness over the radius."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,23 +178,12 @@ class ThinWall(ShellModel):
         )
 
     def remarks(self) -> list[str]:
-        """Return a sentence if it is too thick for its theory, and one if its load at the mid-surface is too far from that on its faces."""
+        """Return a sentence if it is too thick for its theory."""
         inner, outer = self.faces
-        ratio, found = (outer - inner) / self.radius, []
-        if ratio > THIN_SHELL_LIMIT:
-            found.append(
-                f"thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell theory loses accuracy; use a thinner "
-                'shell, or theory = "elastic" (in two dimensions, without feedback and absorbers)'
-            )
-        if self.mid_surface_error > LOAD_LIMIT:
-            found.append(
-                f"fluids at its mid-surface instead of its faces: static loads are off by about {self.mid_surface_error:.1%}, more than "
-                f'{LOAD_LIMIT:.0%}, and fronts in a gap late by half the thickness; use wetted = "faces"'
-            )
-        return found
-
-    @property
-    def mid_surface_error(self) -> float:
-        """Relative error of a static load by wetting the mid-surface, the larger of h_in/R and h_out/R; 0 if true faces are wetted."""
-        inner, outer = self.faces
-        return 0.0 if self.wetted_faces else max(-inner, outer) / self.radius
+        ratio = (outer - inner) / self.radius
+        if ratio <= THIN_SHELL_LIMIT:
+            return []
+        return [
+            f"thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell theory loses accuracy; use a thinner "
+            'shell, or theory = "elastic" (in two dimensions, without feedback and absorbers)'
+        ]
