@@ -6,6 +6,7 @@ One row a mistake that a person could make: a sign, a factor, an index, a power 
 from __future__ import annotations
 
 from elastic_mutations import ELASTIC
+from loss_mutations import LOSSES
 from reading_mutations import READING
 from spatial_mutations import SPATIAL
 from wetted_mutations import WETTED
@@ -484,4 +485,5 @@ MUTATIONS = (
     *WETTED,
     *READING,
     *ELASTIC,
+    *LOSSES,
 )

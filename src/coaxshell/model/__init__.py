@@ -25,6 +25,7 @@ from coaxshell.model.sources import (
     source_distance,
 )
 from coaxshell.model.system import System
+from coaxshell.model.viscoelastic import Viscoelastic
 
 __all__ = [
     "EXPLOSIVES",
@@ -56,6 +57,7 @@ __all__ = [
     "System",
     "UnderwaterExplosion",
     "Vacuum",
+    "Viscoelastic",
     "absorber_ring",
     "fluids",
     "materials",

@@ -59,7 +59,7 @@ class Layer(Described):
         elif self.role in ("sensor", "actuator"):
             raise InputError(
                 "role",
-                f"{self.role!r} is not allowed for the elastic {self.material.name!r}",
+                f"{self.role!r} is not allowed for the {self.material.type} {self.material.name!r}",
                 "must be 'core' or 'passive', or the material piezoelectric",
             )
         return self

@@ -1,4 +1,4 @@
-"""The materials room, as ``coaxshell.materials``: the two kinds of material, and a library of known constants, each with its source."""
+"""The materials room, as ``coaxshell.materials``: the three kinds of material, and a library of known constants, each with its source."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from coaxshell.model.base import shown
 from coaxshell.model.elastic import Elastic
 from coaxshell.model.naming import lookup
 from coaxshell.model.piezoelectric import Piezoelectric
+from coaxshell.model.viscoelastic import Viscoelastic
 
 __all__ = [
     "ALIASES",
@@ -19,6 +20,7 @@ __all__ = [
     "ALUMINIUM_STRUCTURAL",
     "BRASS",
     "COPPER",
+    "LOSS_FACTORS",
     "PZT4",
     "PZT4_STANDARD",
     "PZT5A",
@@ -33,6 +35,7 @@ __all__ = [
     "Elastic",
     "Material",
     "Piezoelectric",
+    "Viscoelastic",
     "as_material",
     "get",
     "names",
@@ -175,7 +178,16 @@ PZT5H = Piezoelectric(
     reference=BERLINCOURT,
 )
 
-_LIBRARY: dict[str, Elastic | Piezoelectric] = {
+CREMER = "Cremer, Heckl, Structure-Borne Sound, 2nd ed. (1988), table of bending loss factors at about 20 degrees C"
+LOSS_FACTORS: dict[str, tuple[float, float, str]] = {
+    "aluminium": (1e-4, 1e-4, CREMER),
+    "steel": (2e-4, 6e-4, f"{CREMER} (iron)"),
+    "copper": (2e-3, 2e-3, f"{CREMER} (polycrystalline)"),
+    "brass": (0.0, 1e-3, f"{CREMER} (an upper bound)"),
+}
+"""Least and largest loss factor of metals by themselves, and where it comes from; structures with joints lose far more."""
+
+_LIBRARY: dict[str, Elastic | Viscoelastic | Piezoelectric] = {
     material.name.lower(): material
     for material in (
         ALUMINIUM, ALUMINIUM_STRUCTURAL, STEEL_IAKOVLEV_2008, STEEL_IAKOVLEV_2014, STEEL_IAKOVLEV_2015, STRUCTURAL_STEEL,
@@ -198,26 +210,32 @@ def names() -> tuple[str, ...]:
     return tuple(_LIBRARY)
 
 
-def get(name: str) -> Elastic | Piezoelectric:
+def get(name: str) -> Elastic | Viscoelastic | Piezoelectric:
     """Return the library's material of that name (case and punctuation ignored); InputError with a suggestion otherwise."""
     return lookup({**_LIBRARY, **{alias: _LIBRARY[meant] for alias, meant in ALIASES.items()}}, name, "material")
 
 
-Material = Elastic | Piezoelectric
+Material = Elastic | Viscoelastic | Piezoelectric
 
-KINDS: dict[str, type[Material]] = {"elastic": Elastic, "piezoelectric": Piezoelectric}
+KINDS: dict[str, type[Material]] = {"elastic": Elastic, "viscoelastic": Viscoelastic, "piezoelectric": Piezoelectric}
 
 
 def as_material(value: Any) -> Material:
-    """Return a material from an instance, a library name, or a mapping of constants (kind told by ``type`` or by ``c22``)."""
-    if isinstance(value, Elastic | Piezoelectric):
+    """Return a material from an instance, a library name, or a mapping of constants (kind told by ``type``, ``c22`` or ``prony``)."""
+    if isinstance(value, Elastic | Viscoelastic | Piezoelectric):
         return value
     if isinstance(value, str):
         return get(value)
     if isinstance(value, Mapping):
         guess = "piezoelectric" if "c22" in value or "c33" in value else "elastic"
+        if "prony" in value or "long_term_modulus" in value:
+            guess = "viscoelastic"
         return lookup(KINDS, str(value.get("type", guess)), "kind of material", "type").model_validate(dict(value))
-    raise InputError("", f"{shown(value)} is not a material", "give an Elastic, a Piezoelectric, or the name of one: " + ", ".join(names()))
+    raise InputError(
+        "",
+        f"{shown(value)} is not a material",
+        "give an Elastic, a Viscoelastic, a Piezoelectric, or the name of one: " + ", ".join(names()),
+    )
 
 
-AnyMaterial = Annotated[Elastic | Piezoelectric, BeforeValidator(as_material)]
+AnyMaterial = Annotated[Elastic | Viscoelastic | Piezoelectric, BeforeValidator(as_material)]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import model_validator
+from pydantic import SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
+from coaxshell.model.losses import REFERENCE_FREQUENCY, Frequency, LossFactor, LossModel, written
 from coaxshell.model.units import Density, Modulus, quantity
 
 Stiffness = Annotated[float, quantity("stress")]
@@ -64,8 +65,18 @@ class Piezoelectric(Described):
     """Coupling of the actuator: "plane-stress" is e32 - c23 e33/c33, "printed" is the paper's bare e32 (Eq. 4)."""
     field_limit: Field = 590e3
     """Largest electric field the material stands before it depoles (V/m); 590 V/mm is PZT-4's."""
+    loss_factor: LossFactor = 0.0
+    """Loss factor eta of its stiffness, the same at all frequencies of a run, from 0 (no losses) to 1; the fields lose nothing."""
+    reference_frequency: Frequency = REFERENCE_FREQUENCY
+    """Frequency at which the stiffness has the magnitudes given (Hz): with losses it grows with the frequency."""
+    loss_model: LossModel = "prony"
+    """How losses are carried: "prony" fits a series of springs and dampers over the band of the run, "constant-q" is a power law."""
     reference: str = ""
     """Where the constants come from."""
+
+    @model_serializer(mode="wrap")
+    def _without_idle_losses(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return written(handler(self))
 
     @model_validator(mode="after")
     def _stable(self) -> Self:

@@ -8,7 +8,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
-from coaxshell.model.materials import Elastic, Material, Piezoelectric, as_material, get, names
+from coaxshell.model.materials import Material, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
 from coaxshell.model.parts import SystemParts
 from coaxshell.model.paths import within
@@ -163,7 +163,7 @@ def _materials(tables: Any) -> dict[str, Material]:
     return known
 
 
-def _found(name: str, known: dict[str, Material], where: str) -> Elastic | Piezoelectric:
+def _found(name: str, known: dict[str, Material], where: str) -> Material:
     if name in known:
         return known[name]
     try:

@@ -28,6 +28,7 @@ USUAL: dict[str, dict[str, float]] = {
     "kg": {"kg": 1.0, "g": 1e-3, "t": 1000.0},
     "kg/m": {"kg/m": 1.0},
     "kg/m^3": {"kg/m^3": 1.0, "kg/m3": 1.0, "g/cm^3": 1000.0, "g/cm3": 1000.0},
+    "Hz": {"Hz": 1.0, "kHz": 1000.0, "MHz": 1e6},
     "m/s": {"m/s": 1.0, "km/s": 1000.0},
     "m/s^2": {"m/s^2": 1.0, "m/s2": 1.0},
     "Pa": {"Pa": 1.0, "kPa": 1000.0, "MPa": 1e6, "GPa": 1e9, "bar": 1e5},
@@ -60,6 +61,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "time": Dimension("a time", "s", "0.13 ms"),
     "mass": Dimension("a mass", "kg", "250 g"),
     "density": Dimension("a density", "kg/m^3", "7.8 g/cm^3"),
+    "frequency": Dimension("a frequency", "Hz", "1 kHz"),
     "speed": Dimension("a speed", "m/s", "1.4 km/s"),
     "acceleration": Dimension("an acceleration", "m/s^2", "9.81 m/s^2"),
     "pressure": Dimension("a pressure", "Pa", "25 kPa"),
@@ -267,6 +269,7 @@ Delay = Annotated[float, quantity("time", least=0)]
 AnyTime = Annotated[float, quantity("time")]
 Mass = Annotated[float, quantity("mass", above=0)]
 Density = Annotated[float, quantity("density", above=0)]
+Frequency = Annotated[float, quantity("frequency", above=0)]
 Speed = Annotated[float, quantity("speed", above=0)]
 Pressure = Annotated[float, quantity("pressure", nonzero=True)]
 AnyPressure = Annotated[float, quantity("pressure")]

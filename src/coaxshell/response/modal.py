@@ -13,9 +13,11 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.response.relaxing import Relaxing, relaxed
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.shell_model import FieldGain, Gain, ShellModel
 
 
@@ -49,21 +51,25 @@ def axial_gain(solution: ModalSolution) -> FieldGain:
     return FieldGain(u=np.full_like(orders(solution), solution.problem.scales.length))
 
 
-def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None, component: str = "hoop") -> Gain | FieldGain:
+def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None, component: str = "hoop") -> Gain | FieldGain | Relaxing:
     """Return the gain of a stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5).
 
     Of an elastic wall at its design depth alone: the middle of the wall, or of its core; the rest is in :mod:`coaxshell.response.through`.
-    At a station of a three-dimensional run the hoop stress feels the axial strain, and "axial" and "shear" are others.
+    At a station of a three-dimensional run the hoop stress feels the axial strain, and "axial" and "shear" are others. In a wall whose
+    layers have losses it is a sum of parts, each under a factor g(s).
     """
     scales, wall = solution.problem.scales, elastic_wall(solution.problem, shell)
     depth, modes = None if depth is None else depth / scales.length, Modes(orders(solution))
     if not wall.faces_move_alike:
         assert depth is None  # the rest is read from the transforms
         return FieldGain(hoop=np.full_like(modes.orders, scales.pressure))
+    parts: list[tuple[Relaxation | None, Gain | FieldGain]]
     if solution.along is None:
-        gain = wall.stress_gain(modes, depth)
-        return Gain(scales.pressure * gain.v, scales.pressure * gain.w)
-    return wall.field_gain(modes.orders, depth, component).times(scales.pressure)
+        plane = wall.stress_parts(modes, depth)
+        parts = [(factor, Gain(scales.pressure * gain.v, scales.pressure * gain.w)) for factor, gain in plane]
+    else:
+        parts = [(factor, gain.times(scales.pressure)) for factor, gain in wall.field_parts(modes.orders, depth, component)]
+    return parts[0][1] if len(parts) == 1 and parts[0][0] is None else Relaxing(tuple(parts))
 
 
 def voltage_gain(solution: ModalSolution, shell: int, role: str = "sensor") -> Gain | FieldGain:
@@ -93,14 +99,14 @@ def _parts(solution: ModalSolution, shell: int, gain: Gain | FieldGain) -> list[
     return parts
 
 
-def amplitudes(solution: ModalSolution, shell: int, gain: Gain | FieldGain, window: slice = slice(None)) -> FloatArray:
+def amplitudes(solution: ModalSolution, shell: int, gain: Gain | FieldGain | Relaxing, window: slice = slice(None)) -> FloatArray:
     """Return the modal amplitudes of a quantity, gain.v V + gain.w W, or that of all fields, in SI.
 
     Parameters
     ----------
     solution : ModalSolution
     shell : int
-    gain : Gain or FieldGain
+    gain : Gain, FieldGain or Relaxing
     window : slice
         Time indices.
 
@@ -108,6 +114,9 @@ def amplitudes(solution: ModalSolution, shell: int, gain: Gain | FieldGain, wind
     -------
     ndarray, shape (parities, M + 1, T)
     """
+    if isinstance(gain, Relaxing):
+        relaxing = [relaxed(solution, factor, amplitudes(solution, shell, part)) for factor, part in gain.parts]
+        return np.asarray(sum(each[..., window] for each in relaxing), dtype=np.float64)
     (first, factor), *others = _parts(solution, shell, gain)
     result: FloatArray = first[:, :, window] * factor[:, None]
     for values, factor in others:
@@ -118,12 +127,15 @@ def amplitudes(solution: ModalSolution, shell: int, gain: Gain | FieldGain, wind
 def combined(
     solution: ModalSolution,
     shell: int,
-    gain: Gain | FieldGain,
+    gain: Gain | FieldGain | Relaxing,
     theta: FloatArray,
     component: str = "normal",
     window: slice = slice(None),
 ) -> FloatArray:
     """Return a quantity at angles, shape (T, A); the gains go into the basis, so no modal array is built."""
+    if isinstance(gain, Relaxing):
+        relaxing = [relaxed(solution, factor, combined(solution, shell, part, theta, component).T) for factor, part in gain.parts]
+        return np.asarray(sum(each[:, window].T for each in relaxing), dtype=np.float64)
     parities, modes = solution.normal.shape[1:3]
     basis = angle_basis(np.atleast_1d(theta), modes, parities, component)
     if isinstance(gain, Gain):

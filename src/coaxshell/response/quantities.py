@@ -26,6 +26,7 @@ from coaxshell.response.modal import (
     voltage_gain,
 )
 from coaxshell.response.peaks import Amplitudes, Peak, peak_of_values
+from coaxshell.response.relaxing import Relaxing
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values, largest_demanded_voltage, largest_sensor_voltage
@@ -89,6 +90,8 @@ class Quantity:
         Whether it holds the translation of the section, which grows for as long as water flows past.
     array : str
         Name of its labelled arrays, where that is another.
+    relaxes : bool
+        Whether losses of a wall's layers are in it.
     summary, metrics : tuple of str
         Where the summary shows its largest magnitude, and where a study can ask for it: "head", "tail", "anywhere"; "rms".
     dimensions : int
@@ -101,7 +104,7 @@ class Quantity:
     long_name: str
     unit: str
     sign: str
-    gain: Callable[[ModalSolution, int], Gain | FieldGain] | None = None
+    gain: Callable[[ModalSolution, int], Gain | FieldGain | Relaxing] | None = None
     values: Callable[[WallMotion, int, FloatArray], FloatArray] | None = None
     largest: Largest | None = None
     rate: int = 0
@@ -113,6 +116,7 @@ class Quantity:
     column: bool = False
     drifts: bool = False
     array: str = ""
+    relaxes: bool = False
     summary: tuple[Where, ...] = ()
     metrics: tuple[Where, ...] = ()
     dimensions: int = 2
@@ -170,7 +174,9 @@ class Quantity:
         if self.rate:
             parities, modes = motion.solution.normal.shape[1:3]
             basis = angle_basis(np.atleast_1d(theta), modes, parities, self.component)
-            return motion.rates_at(shell, self.gain(motion.solution, shell), self.rate, basis)
+            gain = self.gain(motion.solution, shell)
+            assert not isinstance(gain, Relaxing)  # no rate of a stress is a quantity
+            return motion.rates_at(shell, gain, self.rate, basis)
         return combined(motion.solution, shell, self.gain(motion.solution, shell), theta, self.component)
 
     def amplitudes(self, motion: WallMotion, shell: int) -> Amplitudes:
@@ -179,10 +185,11 @@ class Quantity:
         return motion.amplitudes(shell, self.gain(motion.solution, shell), self.rate)
 
     def given(self, motion: WallMotion, shell: int) -> bool:
-        """Return whether a run gives it for a shell: the shell has it, and for a rate the run all its instants."""
+        """Return whether a run gives it for a shell: the shell has it, and where its transform is needed the run all its instants."""
         solution = motion.solution
         there = self.dimensions == 2 or solution.along is not None
-        return there and motion.has_rate(self.rate) and self.lack(solution.problem.system, shell) is None
+        needed = self.rate or int(self.relaxes and solution.problem.shells[shell].relaxes)
+        return there and motion.has_rate(needed) and self.lack(solution.problem.system, shell) is None
 
 
 def _displacement(motion: WallMotion, shell: int, theta: FloatArray, component: str = "normal") -> FloatArray:
@@ -238,6 +245,7 @@ _TABLE: tuple[Quantity, ...] = (
         unit="Pa",
         sign=TENSION,
         gain=stress_gain_of,
+        relaxes=True,
         shown=("MPa", 1e-6),
         column=True,
         summary=("head", "tail", "anywhere", "rms"),
@@ -410,6 +418,7 @@ _TABLE += (
         unit="Pa",
         sign=TENSION,
         gain=lambda solution, shell: stress_gain_of(solution, shell, component="axial"),
+        relaxes=True,
         shown=("MPa", 1e-6),
         column=True,
         summary=("head", "tail", "anywhere"),
@@ -424,6 +433,7 @@ _TABLE += (
         unit="Pa",
         sign=COUNTERCLOCKWISE,
         gain=lambda solution, shell: stress_gain_of(solution, shell, component="shear"),
+        relaxes=True,
         component="tangential",
         shown=("MPa", 1e-6),
         dimensions=3,
@@ -436,6 +446,7 @@ _TABLE += (
         unit="Pa",
         sign="a magnitude",
         values=_von_mises,
+        relaxes=True,
         largest=_largest_von_mises,
         shown=("MPa", 1e-6),
         column=True,

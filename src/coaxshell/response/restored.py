@@ -89,7 +89,7 @@ def solution_of(file: ForeignFile) -> ModalSolution:
     known = {field.name for field in fields(ModalSolution)}
     arrays: dict[str, Any] = {name: file.array(name) for name in ("time", "error_estimate", *ARRAYS) if name in file}
     solution = ModalSolution(
-        problem=dimensionless(told.system),
+        problem=dimensionless(told.system, settings=told.settings),
         settings=told.settings,
         estimates=_estimates(file, arrays),
         warnings=told.warnings,

@@ -146,7 +146,9 @@ class PreparedSystem:
         InputError
             If the feedback is unstable.
         """
-        return PreparedSystem(dimensionless(as_system(system)), self._settings, self._progress, like=self.structure)
+        return PreparedSystem(
+            dimensionless(as_system(system), settings=self._settings), self._settings, self._progress, like=self.structure
+        )
 
 
 @showing(SettingsKeywords, Settings)
@@ -174,7 +176,7 @@ def prepare(
     """
     system = as_system(system)
     settings = Settings.asked(system, keywords)
-    return PreparedSystem(dimensionless(system), settings, progress, shared=shared_parts() if retunable else None)
+    return PreparedSystem(dimensionless(system, settings=settings), settings, progress, shared=shared_parts() if retunable else None)
 
 
 def load_response(path: str | Path) -> Response:

@@ -99,7 +99,7 @@ def solution_of(file: ForeignFile) -> SpatialSolution:
     """Return the solution that a file holds; see :func:`coaxshell.response.restored.solution_of`."""
     told = restored.described(file)
     sizes = sizes_of(file)
-    problem = dimensionless(told.system, dimensions=3)
+    problem = dimensionless(told.system, dimensions=3, settings=told.settings)
     sampling = _sampling(told.about["axial_sampling"], problem, told.settings)
     grid = LaplaceGrid(told.settings.time_step / told.settings.refinement, told.settings.steps * told.settings.refinement)
     _agree(sizes, file, problem, told.settings, grid)

@@ -43,7 +43,7 @@ def save(solution: ModalSolution | SpatialSolution, path: str | Path, *, compres
     InputError
         If the file cannot be written there, or if the run was made with other formulas than its description stands for.
     """
-    if solution.problem != dimensionless(solution.problem.system, solution.problem.dimensions):
+    if solution.problem != dimensionless(solution.problem.system, solution.problem.dimensions, solution.settings):
         raise InputError("response", "was made with other formulas than a file could repeat", "save its histories as tables instead")
     dataset = to_dataset(solution) if isinstance(solution, ModalSolution) else station_files.to_dataset(solution)
     SAVED_TEXT.check(len(dataset["scenario"].item().encode()), "response", "resample its record, or cut it")

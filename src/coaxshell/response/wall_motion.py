@@ -18,6 +18,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response import through
 from coaxshell.response.modal import amplitudes
 from coaxshell.response.peaks import Amplitudes
+from coaxshell.response.relaxing import Relaxing
 from coaxshell.response.synthesis import at_angles
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
@@ -76,21 +77,24 @@ class WallMotion:
         """Return whether derivatives of an order can be given: 0 always, others of a run with all its instants."""
         return rate == 0 or self.solution.whole
 
-    def amplitudes(self, shell: int, gain: Gain | FieldGain, rate: int = 0) -> Amplitudes:
+    def amplitudes(self, shell: int, gain: Gain | FieldGain | Relaxing, rate: int = 0) -> Amplitudes:
         """Return what gives the modal amplitudes gain.v V + gain.w W of a shell at a slice of time indices.
 
         Parameters
         ----------
         shell : int
-        gain : Gain or FieldGain
+        gain : Gain, FieldGain or Relaxing
         rate : int
             0, 1 or 2: order of the time derivative; SI, per second each.
 
         Raises
         ------
         InputError
-            For a derivative of a run that lacks instants.
+            For a derivative, or the stress of a wall with losses, of a run that lacks instants.
         """
+        if isinstance(gain, Relaxing):
+            all_of_it = amplitudes(self.solution, shell, gain)
+            return lambda window: all_of_it[..., window]
         if rate == 0:
             return lambda window: amplitudes(self.solution, shell, gain, window)
         values = self._differences(shell, gain, rate) if self._direct else self._inverse(self._spectrum(shell, gain, rate))

@@ -17,7 +17,11 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.dimensions import require_sources_alone
 from coaxshell.solver.point_forces import PointForceShares, point_force_shares
+from coaxshell.solver.settings import Settings
+from coaxshell.structure.constituents import constituents, loses
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.losses import USUAL_BAND, Band
+from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
 from coaxshell.structure.shell_model import ControlGains, ShellModel
@@ -131,13 +135,22 @@ class Problem:
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
 
 
-def dimensionless(system: System, dimensions: int = 2) -> Problem:
-    """Return the dimensionless problem of a system in two or three dimensions."""
+def dimensionless(system: System, dimensions: int = 2, settings: Settings | None = None) -> Problem:
+    """Return the dimensionless problem of a system in two or three dimensions.
+
+    Parameters
+    ----------
+    system : System
+    dimensions : int
+    settings : Settings, optional
+        Of the run, whose band loss factors are fitted over; that of the default settings unless given.
+    """
+    band = USUAL_BAND if settings is None else Band.of(settings.duration, settings.time_step / settings.refinement)
     require_sources_alone(system, dimensions)
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
-    shells = tuple(_wall(system, i, scales) for i in range(len(system.shells)))
+    shells = tuple(_wall(system, i, scales, band) for i in range(len(system.shells)))
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
     sources = tuple(_geometry(system, source, dimensions) for source in system.sources)
     return Problem(system, scales, shells, fluids, sources, dimensions=dimensions)
@@ -150,14 +163,18 @@ def _geometry(system: System, source: Source, dimensions: int) -> SourceGeometry
     return source_geometry(source.geometry, None if distance is None else distance / a, dimensions, inclination, system.head_radius / a)
 
 
-def _wall(system: System, index: int, scales: Scales) -> ShellModel:
+def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
     shell = system.shells[index]
     if isinstance(shell, RigidShell):
         return RigidWall(radius=shell.radius / scales.length)
     if shell.theory == "elastic":
         return _solid(shell, index, scales, system.exterior.density)
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
-    return ThinWall.of(in_units, _gains(system, index), wetted_faces=shell.wetted == "faces")
+    faces = shell.wetted == "faces"
+    if not any(loses(layer.material) for layer in shell.layers):
+        return ThinWall.of(in_units, _gains(system, index), wetted_faces=faces)
+    parts = tuple(part.in_units(scales.pressure) for part in constituents(shell, scales.time, band))
+    return LossyWall.with_losses(in_units, parts, shell.layers.index(shell.core), _gains(system, index), wetted_faces=faces)
 
 
 def _solid(shell: Shell, index: int, scales: Scales, density: float) -> ElasticWall:

@@ -12,6 +12,10 @@ from coaxshell.solver.settings import Settings
 def require_solvable(system: System, settings: Settings) -> None:
     """Raise InputError if a system has what the dimensions asked for do not know."""
     if settings.dimensions == 3:
-        require_known(dimensionless(system, dimensions=3), settings)
+        require_known(dimensionless(system, dimensions=3, settings=settings), settings)
     else:
         require_two_dimensions(system, settings)
+        if settings.engine == "direct":
+            from coaxshell.solver.direct.solve import require_steps
+
+            require_steps(dimensionless(system, settings=settings))

@@ -51,7 +51,7 @@ def solve(system: System, *, settings: Settings | None = None, progress: Progres
         from coaxshell.solver.direct.solve import solve_by_marching
 
         return solve_by_marching(system, settings, progress)
-    problem, stopwatch = dimensionless(system), Stopwatch()
+    problem, stopwatch = dimensionless(system, settings=settings), Stopwatch()
     return solve_prepared(prepare(problem, settings, progress, stopwatch=stopwatch), problem, settings, progress, stopwatch)
 
 

@@ -23,7 +23,7 @@ _SIDE_BY_SIDE = 1000
 
 def sampling_of(system: System, settings: Settings, highest_order: int) -> AxialSampling:
     """Return the axial wavenumbers of a run, *highest_order* in the place of "auto"; InputError for a period that is too short."""
-    return axial_sampling(dimensionless(system, dimensions=3), replace(settings, modes=highest_order))
+    return axial_sampling(dimensionless(system, dimensions=3, settings=settings), replace(settings, modes=highest_order))
 
 
 def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:

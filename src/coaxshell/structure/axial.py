@@ -137,14 +137,33 @@ def axial_operator(section: Section, modes: Modes, s: ComplexArray) -> WallOpera
     stiffness = axial_stiffness(section, modes)
     if stiffness.ndim == 3:
         stiffness = stiffness[..., None]
-    inertia = section.mass * s * s
-    uv, uw, vw = stiffness[U, V], stiffness[U, W], stiffness[V, W]
-    uu = inertia + np.where(np.equal(modes.wavenumber, 0.0), stiffness[V, V], stiffness[U, U])
-    vv = inertia + np.where(modes.column == 0, stiffness[U, U], stiffness[V, V])
+    return eliminated(AxialStiffness(*(stiffness[a, b] for a, b in ENTRIES)), section.mass * s * s, modes)
+
+
+ENTRIES = ((U, U), (U, V), (U, W), (V, V), (V, W), (W, W))
+"""Places of the six entries of a symmetric stiffness on (U, V, W)."""
+
+
+class AxialStiffness(NamedTuple):
+    """Entries of K on (U, V, W), each of shape (orders, 1) or (orders, nodes), real or, with losses, complex."""
+
+    uu: npt.NDArray[Any]
+    uv: npt.NDArray[Any]
+    uw: npt.NDArray[Any]
+    vv: npt.NDArray[Any]
+    vw: npt.NDArray[Any]
+    ww: npt.NDArray[Any]
+
+
+def eliminated(k: AxialStiffness, inertia: ComplexArray, modes: Modes) -> WallOperator:
+    """Return impedance, V/W and U/W of a wall of a stiffness K and an inertia I s^2."""
+    uv, uw, vw = k.uv, k.uw, k.vw
+    uu = inertia + np.where(np.equal(modes.wavenumber, 0.0), k.vv, k.uu)
+    vv = inertia + np.where(modes.column == 0, k.uu, k.vv)
     inverse = np.reciprocal(uu * vv - uv * uv)
     axial = (uv * vw - vv * uw) * inverse
     tangential = (uv * uw - uu * vw) * inverse
-    impedance = (inertia + stiffness[W, W]) + (uw * axial + vw * tangential)
+    impedance = (inertia + k.ww) + (uw * axial + vw * tangential)
     return WallOperator(impedance, tangential, axial)
 
 

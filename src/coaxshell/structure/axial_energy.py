@@ -18,20 +18,31 @@ def axial_energy(section: Section, motion: WallMotion) -> WallEnergy:
     the open-circuit stiffening. Along the axis they go with cos^2 kz and sin^2 kz, whose integrals over a period L are both L/2: a
     field (2/L) (F_0 + 2 sum_j F_j cos k_j z) holds (4/L) (E_0 + 2 sum_j E_j).
     """
-    assert motion.u is not None
     assert motion.u_rate is not None
-    weight = 0.5 * section.radius * motion.circle
-    modes = Modes(motion.orders, motion.wavenumber)
-    at, displacements = strain(modes, section.radius), (motion.u, motion.v, motion.w)
-
-    def form(stiffness: FloatArray) -> FloatArray:
-        diagonal = sum(square(weight * stiffness[a, a], x, x) for a, x in enumerate(displacements))
-        mixed = sum(square(weight * stiffness[a, b], displacements[a], displacements[b]) for a, b in ((0, 1), (0, 2), (1, 2)))
-        return np.asarray(diagonal + 2.0 * mixed)
-
+    weight, modes = _weight(section, motion), Modes(motion.orders, motion.wavenumber)
+    at = strain(modes, section.radius)
     kinetic = sum(square(weight, rate, rate) for rate in (motion.u_rate, motion.v_rate, motion.w_rate))
     return WallEnergy(
         kinetic=np.asarray(section.mass * kinetic),
-        strain=form(layer_stiffness(section, at)),
-        piezoelectric=form(open_circuit_stiffness(section, modes, at)),
+        strain=axial_strain_energy(section, motion),
+        piezoelectric=_form(weight, open_circuit_stiffness(section, modes, at), motion),
     )
+
+
+def axial_strain_energy(section: Section, motion: WallMotion) -> FloatArray:
+    """Return what the layers hold by their own stiffness, shape (T,)."""
+    at = strain(Modes(motion.orders, motion.wavenumber), section.radius)
+    return _form(_weight(section, motion), layer_stiffness(section, at), motion)
+
+
+def _weight(section: Section, motion: WallMotion) -> FloatArray:
+    return 0.5 * section.radius * motion.circle
+
+
+def _form(weight: FloatArray, stiffness: FloatArray, motion: WallMotion) -> FloatArray:
+    """Return the sum over the orders of (U, V, W) K (U, V, W)."""
+    assert motion.u is not None
+    displacements = motion.u, motion.v, motion.w
+    diagonal = sum(square(weight * stiffness[a, a], x, x) for a, x in enumerate(displacements))
+    mixed = sum(square(weight * stiffness[a, b], displacements[a], displacements[b]) for a, b in ((0, 1), (0, 2), (1, 2)))
+    return np.asarray(diagonal + 2.0 * mixed)

@@ -17,7 +17,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
-from coaxshell.model.materials import Elastic, Piezoelectric
+from coaxshell.model.materials import Material, Piezoelectric
 from coaxshell.numerics.arrays import FloatArray
 
 AXIAL_CONSTANTS = ("c11", "c12", "c13", "c66", "e31", "permittivity_11")
@@ -67,7 +67,7 @@ class Laminate:
         return Laminate((membrane, cross, bending), self.core.times(1.0 / pressure), layers)
 
 
-def missing_constants(material: Elastic | Piezoelectric) -> list[str]:
+def missing_constants(material: Material) -> list[str]:
     """Return the names of the constants that a material lacks in three dimensions."""
     return [name for name in AXIAL_CONSTANTS if getattr(material, name) is None] if isinstance(material, Piezoelectric) else []
 
@@ -94,9 +94,9 @@ def require_axial_constants(shell: Shell, where: str) -> None:
             raise InputError(f"{path}.c11", f"the constants of {layer.material.name} make it unstable along the axis", remedy)
 
 
-def plane_stiffness(material: Elastic | Piezoelectric) -> PlaneStiffness:
+def plane_stiffness(material: Material) -> PlaneStiffness:
     """Return Q of a material, Pa; a piezoelectric one must have its axial constants."""
-    if isinstance(material, Elastic):
+    if not isinstance(material, Piezoelectric):
         modulus, ratio = material.youngs_modulus, material.poisson_ratio
         plane = modulus / (1.0 - ratio**2)
         return PlaneStiffness(plane, ratio * plane, plane, modulus / (2.0 * (1.0 + ratio)))

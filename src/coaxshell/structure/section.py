@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from coaxshell.model.layers import Layer, Shell
-from coaxshell.model.materials import Elastic, Piezoelectric
+from coaxshell.model.materials import Material, Piezoelectric
 from coaxshell.structure.laminate import Laminate, laminate
 
 
@@ -149,11 +149,11 @@ class Section:
         )
 
 
-def plane_modulus(material: Elastic | Piezoelectric) -> float:
+def plane_modulus(material: Material) -> float:
     """Return the plane-strain modulus Q, Pa: E/(1 - nu^2), or c22 - c23^2/c33 for a piezoelectric layer (Eq. A.11)."""
-    if isinstance(material, Elastic):
-        return material.youngs_modulus / (1.0 - material.poisson_ratio**2)
-    return material.c22 - material.c23**2 / material.c33
+    if isinstance(material, Piezoelectric):
+        return material.c22 - material.c23**2 / material.c33
+    return material.youngs_modulus / (1.0 - material.poisson_ratio**2)
 
 
 def reduced_permittivity(material: Piezoelectric) -> float:

@@ -17,7 +17,7 @@ A wall of another theory is a subclass of :class:`ShellModel`; nothing else need
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Self, TypeVar
 
@@ -26,6 +26,7 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.structure.losses import Relaxation
 
 Ratio = TypeVar("Ratio", FloatArray, ComplexArray)
 
@@ -202,6 +203,21 @@ class WallEnergy(NamedTuple):
     piezoelectric: FloatArray
 
 
+class Arm(NamedTuple):
+    """A spring and a damper in series within a wall.
+
+    Attributes
+    ----------
+    time : float
+        tau, transits: the spring keeps s tau/(1 + s tau) of every motion.
+    stored : callable
+        From what it keeps of the motion of the wall to the energy in the spring, shape (T,); 2/tau of it is turned into heat per time.
+    """
+
+    time: float
+    stored: Callable[[WallMotion], FloatArray]
+
+
 def square(weight: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
     """Return sum over m of weight_m a_m b_m over both parities, shape (T,), of histories (parities, M + 1, T)."""
     return np.asarray(np.einsum("m,hmt,hmt->t", weight, a, b), dtype=np.float64)
@@ -367,6 +383,16 @@ class ShellModel(ABC):
         """
         raise InputError("shell", "this wall has no stress from fields", "choose another one")
 
+    def stress_parts(self, modes: Modes, depth: float | None = None, component: str = "hoop") -> tuple[tuple[Relaxation | None, Gain], ...]:
+        """Return a stress as a sum of parts, each under a factor g(s), None for 1: one part of a wall without losses."""
+        return ((None, self.stress_gain(modes, depth, component)),)
+
+    def field_parts(
+        self, orders: FloatArray, depth: float | None = None, component: str = "hoop"
+    ) -> tuple[tuple[Relaxation | None, FieldGain], ...]:
+        """Return the same of a stress per unit of the fields at a station."""
+        return ((None, self.field_gain(orders, depth, component)),)
+
     def control_stress(self, depth: float, component: str = "hoop") -> float:
         """Return a stress per volt of control at a depth (Eq. A.10)."""
         return 0.0
@@ -375,6 +401,11 @@ class ShellModel(ABC):
     def faces(self) -> tuple[float, float]:
         """Depths of its inner and its outer face."""
         return 0.0, 0.0
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether its stress has parts under a factor g(s): it then depends on the whole history of the strain."""
+        return False
 
     @abstractmethod
     def energy(self, motion: WallMotion) -> WallEnergy:
@@ -386,8 +417,12 @@ class ShellModel(ABC):
         return False
 
     def dissipated_power(self, motion: WallMotion) -> FloatArray:
-        """Return the power that turns into heat in it, shape (T,)."""
+        """Return the power that turns into heat in it, shape (T,), but for that of its arms."""
         return np.zeros(motion.w.shape[-1])
+
+    def arms(self) -> Iterator[Arm]:
+        """Yield the springs and dampers in series that its losses are made of, in energies."""
+        yield from ()
 
     def remarks(self) -> list[str]:
         """Return a sentence for each respect in which it lies outside the range of its theory, with both numbers and the remedy."""

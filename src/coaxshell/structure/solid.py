@@ -18,6 +18,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
 from coaxshell.model.materials import Elastic, Piezoelectric
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.structure.constituents import loses
 
 STRAINS = 6
 RADIAL, HOOP, AXIAL, HOOP_AXIAL, RADIAL_AXIAL, RADIAL_HOOP = range(STRAINS)
@@ -140,7 +141,9 @@ def require_solid(shell: Shell, where: str) -> None:
         if layer.thickness < THINNEST * shell.radius:
             least = f"must be {THINNEST:g} of the radius, {THINNEST * shell.radius:g} m, or more"
             raise InputError(f"{path}.thickness", f"{layer.thickness:g} m is too thin for an elastic solid", least)
-        if isinstance(material, Elastic):
+        if loses(material):
+            raise InputError(f"{path}.material", f"{material.name} has losses, which solids do not know yet", 'use theory = "thin"')
+        if not isinstance(material, Piezoelectric):
             continue
         missing = [name for name in SOLID_CONSTANTS if getattr(material, name) is None]
         if missing:
@@ -157,7 +160,7 @@ def solid_layers(shell: Shell) -> tuple[SolidLayer, ...]:
         outer, material = inner + layer.thickness, layer.material
         if isinstance(material, Elastic):
             found.append(SolidLayer(inner, outer, material.density, _rows(isotropic(material)), role=layer.role))
-        else:
+        elif isinstance(material, Piezoelectric):
             stiffness, coupling = poled(material)
             mu = material.permittivity_33, material.permittivity_22, _known(material, "permittivity_11")
             found.append(SolidLayer(inner, outer, material.density, _rows(stiffness), _rows(coupling), mu, layer.role))

@@ -17,7 +17,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.axial import axial_gain, axial_operator, laminate_of, natural_frequencies, potential, strain
-from coaxshell.structure.axial_energy import axial_energy
+from coaxshell.structure.axial_energy import axial_energy, axial_strain_energy
 from coaxshell.structure.axial_stress import axial_stress_gain, stress_of_fields
 from coaxshell.structure.section import PiezoelectricLayer, Section
 from coaxshell.structure.shell_model import (
@@ -36,6 +36,21 @@ from coaxshell.structure.thin import bending_strain, open_circuit_stiffness, pot
 
 THIN_SHELL_LIMIT = 0.1
 """Thickness over radius up to which thin-shell theory is taken without a remark."""
+
+
+def strain_energy(section: Section, motion: WallMotion) -> FloatArray:
+    """Return what the layers of a wall hold by their own stiffness, shape (T,): (V, W) K (V, W) or, along the axis too, that of U."""
+    if motion.wavenumber != 0.0:
+        return axial_strain_energy(section, motion)
+    weight, (w, v) = 0.5 * section.radius * motion.circle, (motion.w, motion.v)
+    k = wall_stiffness(replace(section, piezoelectric=()), motion.orders)
+    return square(weight * k.vv, v, v) + 2.0 * square(weight * k.vw, v, w) + square(weight * k.ww, w, w)
+
+
+def tangent_eliminated(stiffness: WallStiffness, inertia: ComplexArray, modes: Modes) -> WallOperator:
+    """Return impedance and V/W of a wall in plane strain, K and I s^2 given, each of shape (orders, 1) or (orders, nodes)."""
+    tangential = -stiffness.vw / (inertia + np.where(modes.column == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
+    return WallOperator(inertia + stiffness.ww + stiffness.vw * tangential, tangential)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,10 +89,7 @@ class ThinWall(ShellModel):
         """Return impedance, V/W and U/W without feedback."""
         if not modes.two_dimensional:
             return axial_operator(self.section, modes, s)
-        stiffness = WallStiffness(*(entry[:, None] for entry in self.stiffness(modes)))
-        inertia = self.mass * s * s
-        tangential = -stiffness.vw / (inertia + np.where(modes.column == 0, 1.0, stiffness.vv))  # V_0 does not couple: K_vw = 0 there
-        return WallOperator(inertia + stiffness.ww + stiffness.vw * tangential, tangential)
+        return tangent_eliminated(WallStiffness(*(entry[:, None] for entry in self.stiffness(modes))), self.mass * s * s, modes)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return the membrane frequency of each order, sqrt(K_vv/M); with an axial wavenumber the highest of the three frequencies."""
@@ -166,14 +178,12 @@ class ThinWall(ShellModel):
             return axial_energy(self.section, motion)
         orders, section, (w, v) = motion.orders, self.section, (motion.w, motion.v)
         weight = 0.5 * self.radius * motion.circle
-        k = wall_stiffness(replace(section, piezoelectric=()), orders)
         electric = sum((open_circuit_stiffness(x, orders, self.radius) for x in section.piezoelectric), 0.0 * weight)
         bend_v, bend_w = bending_strain(orders, self.radius)
         bending = bend_v[:, None] * v + bend_w[:, None] * w
-        strain = square(weight * k.vv, v, v) + 2.0 * square(weight * k.vw, v, w) + square(weight * k.ww, w, w)
         return WallEnergy(
             kinetic=self.mass * (square(weight, motion.w_rate, motion.w_rate) + square(weight, motion.v_rate, motion.v_rate)),
-            strain=strain,
+            strain=strain_energy(section, motion),
             piezoelectric=square(weight * electric, bending, bending),
         )
 

@@ -25,6 +25,7 @@ from coaxshell.model import (
     SphericalWave,
     Step,
     UnderwaterExplosion,
+    Viscoelastic,
     fluids,
     materials,
     presets,
@@ -69,6 +70,8 @@ def _reference() -> Iterator[str]:
     yield "[materials.NAME]: a material of your own; the library has " + ", ".join([*materials.names(), *materials.ALIASES])
     yield "  elastic:"
     yield from _entries(Elastic)
+    yield "  viscoelastic, a rubber:"
+    yield from _entries(Viscoelastic)
     yield "  piezoelectric:"
     yield from _entries(Piezoelectric)
     yield "[[shells]]: one table a shell"

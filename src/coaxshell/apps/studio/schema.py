@@ -10,7 +10,7 @@ from coaxshell._version import __version__
 from coaxshell.apps.studio import limits
 from coaxshell.apps.studio.curves import quantities
 from coaxshell.apps.studio.descriptions import normalised
-from coaxshell.model import EXPLOSIVES, Elastic, System, fluids, materials, presets
+from coaxshell.model import EXPLOSIVES, System, fluids, materials, presets
 from coaxshell.studies.metrics import ABSORBER_QUANTITIES, FLUID_QUANTITIES, SYSTEM_QUANTITIES, WITHOUT_SHELL, shell_quantities
 
 # The limit that JSON Schema has no word for.
@@ -56,8 +56,7 @@ def _metric_units() -> dict[str, str]:
 
 def _material(name: str) -> dict[str, Any]:
     material = materials.get(name)
-    kind = "elastic" if isinstance(material, Elastic) else "piezoelectric"
-    return {"name": name, "kind": kind, "material": material.model_dump(mode="json"), "reference": material.reference}
+    return {"name": name, "kind": material.type, "material": material.model_dump(mode="json"), "reference": material.reference}
 
 
 def _with_nonzero(full: dict[str, Any]) -> dict[str, Any]:

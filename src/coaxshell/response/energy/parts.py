@@ -10,7 +10,7 @@ from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.response.energy.absorbers import AbsorberEnergy, absorber_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
-from coaxshell.response.energy.shells import actuator_work, shell_dissipation, shell_energy
+from coaxshell.response.energy.shells import actuator_work, shell_energy
 from coaxshell.response.energy.work import SurfaceWork, surface_pressures
 
 
@@ -56,7 +56,7 @@ def _shells(motion: Motion) -> dict[str, Entry]:
     for i in range(count):
         if not motion.problem.shells[i].moves:
             continue
-        found, lost = shell_energy(motion, i), shell_dissipation(motion, i)
+        found, lost = shell_energy(motion, i)
         name = shell_name(i, count) if i in (0, count - 1) else f"shell_{i}"
         group = shell_phrase(i, count)
         for part, what in (("kinetic", "kinetic"), ("strain", "strain"), ("piezoelectric", "piezoelectric (open-circuit)")):

@@ -12,20 +12,33 @@ from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.shell_model import WallEnergy, WallMotion
 
 
-def shell_energy(motion: Motion, shell: int) -> WallEnergy:
-    """Return the energies of one shell at the kept instants."""
-    if not motion.problem.shells[shell].faces_move_alike:
-        return solid_energy(motion, shell)
-    return motion.problem.shells[shell].energy(_of_wall(motion, shell, motion.kept))
+def shell_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArray | None]:
+    """Return the energies of one shell and what has turned into heat in it by the kept instants; None if nothing ever does.
 
-
-def shell_dissipation(motion: Motion, shell: int) -> FloatArray | None:
-    """Return the energy that has turned into heat in a shell by the kept instants; None if none ever does."""
-    wall = motion.problem.shells[shell]
+    Each arm of its losses holds a part of the strain energy, its spring's, and turns 2/tau of it per time into heat.
+    """
+    wall, kept, step = motion.problem.shells[shell], motion.kept, motion.grid.time_step
+    if not wall.faces_move_alike:
+        return solid_energy(motion, shell), None
+    energy = wall.energy(_of_wall(motion, shell, kept))
     if not wall.dissipates:
-        return None
-    power = wall.dissipated_power(_of_wall(motion, shell, slice(None)))
-    return np.asarray(integrate.cumulative_simpson(power, dx=motion.grid.time_step, initial=0.0)[motion.kept])
+        return energy, None
+    power, strain = wall.dissipated_power(_of_wall(motion, shell, slice(None))), energy.strain
+    for arm in wall.arms():
+        stored = arm.stored(_held(motion, shell, arm.time))
+        strain = strain + stored[kept]
+        power = power + 2.0 / arm.time * stored
+    heat = integrate.cumulative_simpson(power, dx=step, initial=0.0)[kept]
+    return energy._replace(strain=strain), np.asarray(heat)
+
+
+def _held(motion: Motion, shell: int, time: float) -> WallMotion:
+    """Return what the spring of an arm keeps of the motion of a shell at all instants, without rates."""
+    grid = motion.grid
+    share = grid.nodes * time / (1.0 + grid.nodes * time)
+    w, v = (grid.invert(x[shell] * share) for x in (motion.normal, motion.tangential))
+    u = None if motion.axial is None else grid.invert(motion.axial[shell] * share)
+    return WallMotion(motion.modes.orders, motion.circle, w, v, w, v, u, u, motion.wavenumber)
 
 
 def _of_wall(motion: Motion, shell: int, instants: slice) -> WallMotion:

@@ -57,7 +57,7 @@ def solve_spatial(
     """
     stopwatch = Stopwatch()
     progress = progress or (None if workplace is None else workplace.progress)
-    problem = dimensionless(system, dimensions=3)
+    problem = dimensionless(system, dimensions=3, settings=settings)
     require_known(problem, settings)
     grid = laplace_grid(settings)
     sampling, notes = resolved_sampling(problem, grid, settings)

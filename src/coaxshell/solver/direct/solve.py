@@ -45,7 +45,8 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     stopwatch = Stopwatch()
     require_two_dimensions(system, settings)
     require_mid_surfaces(system)
-    problem = dimensionless(system)
+    problem = dimensionless(system, settings=settings)
+    require_steps(problem)
     grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
     require_room(problem, settings)
     order, warnings = resolve_modes(problem, grid, settings)
@@ -79,6 +80,12 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         stopwatch.lap("pressure on the walls")
     warnings += checks.before(problem, grid, order) + checks.after(problem, error_estimates, solution.settings) + checks.actuators(solution)
     return replace(solution, warnings=tuple(warnings))
+
+
+def require_steps(problem: Problem) -> None:
+    """Raise InputError if a wall is none that is stepped."""
+    for wall in problem.shells:
+        wall.stiffness(Modes.up_to(0))
 
 
 def _left_out(problem: Problem, grid: LaplaceGrid, order: int, links: AbsorberSet, result: DirectResult) -> FloatArray:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from coaxshell.model.elastic import Elastic
+from coaxshell.model.materials import Material
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import FloatArray
@@ -29,9 +29,9 @@ def strains(m: int, k: float, radius: float) -> tuple[FloatArray, FloatArray]:
     return mid, slope
 
 
-def moduli(material: Elastic | Piezoelectric) -> FloatArray:
+def moduli(material: Material) -> FloatArray:
     """Return Q on (axial strain, hoop strain, shear) of a layer free of radial stress, Pa; 0 for axial constants that were not given."""
-    if isinstance(material, Elastic):
+    if not isinstance(material, Piezoelectric):
         e, nu = material.youngs_modulus, material.poisson_ratio
         q11, q12, q22, q66 = e / (1 - nu**2), nu * e / (1 - nu**2), e / (1 - nu**2), e / (2 + 2 * nu)
     else:

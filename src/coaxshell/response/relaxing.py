@@ -1,0 +1,59 @@
+"""What layers with losses make of a history: g(s) times its transform, made of the samples of the run itself.
+
+A run holds what happened until its end, and a period of the transform lasts at least twice as long: the history is continued beyond the
+end by value, slope and curvature, faded out. What comes after an instant changes nothing of it; but a history that broke off there would
+have a spectrum up to the end of the band, where g is cut.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import fft
+
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.solver.solution import ModalSolution
+from coaxshell.structure.losses import Relaxation
+from coaxshell.structure.shell_model import FieldGain, Gain
+
+_FADING, _FADED = 20.0, 128
+"""Strength of the fading, and after how many steps nothing is left: far more than a wavelength at the end of the band."""
+
+
+class Relaxing(NamedTuple):
+    """A quantity that is a sum of gains, each under a factor g(s), None for 1."""
+
+    parts: tuple[tuple[Relaxation | None, Gain | FieldGain], ...]
+
+
+def relaxed(solution: ModalSolution, factor: Relaxation | None, histories: FloatArray) -> FloatArray:
+    """Return g(s) of histories at all instants of a run (last axis); InputError if instants of the run are missing.
+
+    Parameters
+    ----------
+    solution : ModalSolution
+    factor : Relaxation or None
+        None leaves them as they are.
+    histories : ndarray, shape (..., T)
+    """
+    if factor is None:
+        return histories
+    solution.need_every_instant("the stress of a wall with losses")
+    grid = LaplaceGrid(solution.settings.time_step, solution.time.size - 1)
+    damped = _continued(histories, grid)
+    damped *= np.exp(-grid.shift * grid.time_step * np.arange(grid.samples))
+    spectrum = fft.rfft(damped, axis=-1, workers=WORKERS, overwrite_x=True)
+    spectrum *= factor.at(grid.nodes)
+    found = fft.irfft(spectrum, grid.samples, axis=-1, workers=WORKERS, overwrite_x=True)[..., : grid.time.size]
+    return np.asarray(found * np.exp(grid.shift * grid.time))
+
+
+def _continued(histories: FloatArray, grid: LaplaceGrid) -> FloatArray:
+    """Return histories over a whole period: beyond their end a parabola, faded out."""
+    third, second, last = histories[..., -3, None], histories[..., -2, None], histories[..., -1, None]
+    steps = np.arange(1.0, grid.samples - histories.shape[-1] + 1)
+    fading = np.exp(-_FADING * np.minimum(steps / min(_FADED, steps.size), 2.0) ** 4)
+    slope, curvature = 1.5 * last - 2.0 * second + 0.5 * third, last - 2.0 * second + third
+    return np.concatenate([histories, (last + slope * steps + 0.5 * curvature * steps**2) * fading], axis=-1)
