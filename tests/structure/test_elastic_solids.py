@@ -186,7 +186,7 @@ def test_receptances_agree_with_separated_potentials(order):
     s = np.array([300.0 + 3e4j])
     (found,) = elastic_basis(layers, Modes(np.array([float(order)])), 5e4)
     inner, outer = found.faces[:, 0], found.faces[:, 1]
-    sums = modal_sums(np.stack([inner * inner, inner * outer, outer * outer], axis=1), found.squares, s)[0]
+    sums = modal_sums(np.stack([inner * inner, inner * outer, outer * outer], axis=1), found.squares, s)[:, 0]
     for j, one in enumerate(s):
         np.testing.assert_allclose(sums[:, j], by_potentials(STEEL, 0.95, 1.05, order, one), rtol=2e-6)
 

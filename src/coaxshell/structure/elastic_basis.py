@@ -187,7 +187,7 @@ TERMS = 11
 
 
 def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> ComplexArray:
-    """Return sums over the shapes of weight/(omega^2 + s^2), shape (orders, rows, nodes), by matrix products of real numbers.
+    """Return sums over the shapes of weight/(omega^2 + s^2), shape (rows, orders, nodes), by matrix products of real numbers.
 
     With x + i y = s^2 and a = omega^2 + x a term is (a - i y)/(a^2 + y^2). Shapes far above all nodes together are a polynomial in s^2,
     sum over j of (-s^2)^j sum weight/omega^(2 + 2 j).
@@ -210,7 +210,7 @@ def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> Com
         terms = np.empty((near, s.size, 2))
         np.multiply(above, scale, out=terms[..., 0])
         np.multiply(-y, scale, out=terms[..., 1])
-        parts[m] += weights[m, :, :near] @ terms.reshape(near, 2 * s.size)
+        parts[:, m] += weights[m, :, :near] @ terms.reshape(near, 2 * s.size)
     return found
 
 
@@ -221,5 +221,5 @@ def _far_sums(weights: FloatArray, ratio: FloatArray, largest: float, s: Complex
     powers = np.empty((TERMS, s.size), np.complex128)
     powers[0] = 1.0
     np.cumprod(np.broadcast_to(s * s / largest, (TERMS - 1, s.size)), axis=0, out=powers[1:])
-    coefficients = (weights @ terms).reshape(orders * rows, TERMS)
-    return (coefficients @ powers.view(np.float64)).view(np.complex128).reshape(orders, rows, s.size)
+    coefficients = np.ascontiguousarray(np.swapaxes(weights @ terms, 0, 1)).reshape(rows * orders, TERMS)
+    return (coefficients @ powers.view(np.float64)).view(np.complex128).reshape(rows, orders, s.size)

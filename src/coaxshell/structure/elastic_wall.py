@@ -147,10 +147,8 @@ class ElasticWall(ShellModel):
 
     def _summed(self, modes: Modes, s: ComplexArray, weights: list[FloatArray]) -> ComplexArray:
         """Return the sums over all shapes, (rows, orders, nodes), from their weights in each part of the basis."""
-        found = np.empty((weights[0].shape[1], modes.count, s.size), np.complex128)
-        for part, each in zip(self.basis(modes), weights, strict=True):
-            found[:, part.members] = np.moveaxis(modal_sums(each, part.squares, s), 1, 0)
-        return found
+        parts = [modal_sums(each, part.squares, s) for part, each in zip(self.basis(modes), weights, strict=True)]
+        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
 
     @property
     def piezoelectric(self) -> tuple[int, ...]:
