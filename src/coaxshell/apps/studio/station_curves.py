@@ -15,17 +15,18 @@ def station_curves(response: SpatialResponse, seconds: float) -> Packed:
     """Return header and arrays of a run as docs/studio-api.md says."""
     summary, points = response.summary(), response.system.point_absorbers
     each = [bars_of(response, one, 3) for one in summary.each]
-    absorbers = {**absorbers_of(response, points), "z": [point.z for point in points]}
+    absorbers = {**absorbers_of(response, response.system.absorber_list or points), "z": [point.z for point in points]}
+    unit = "N" if points else "N/m"
     header = {
         **header_of(response, summary.each[0], seconds),
         **judgement(response),
         "judged": True,
         "stations": list(summary.stations),
         "absorbers": absorbers,
-        "bars": [*_largest(each, summary.stations), *absorber_bars(summary.absorber_displacement, summary.absorber_force, "N")],
+        "bars": [*_largest(each, summary.stations), *absorber_bars(summary.absorber_displacement, summary.absorber_force, unit)],
         "station_bars": each,
     }
-    return packed(header, {"time": Item(response.time, "transits"), **_histories(response), **_forces(response, absorbers)})
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response), **_forces(response, absorbers, unit)})
 
 
 def _largest(each: list[list[dict[str, Any]]], stations: tuple[float, ...]) -> list[dict[str, Any]]:
@@ -48,13 +49,14 @@ def _histories(response: SpatialResponse) -> dict[str, Item]:
     return items
 
 
-def _forces(response: SpatialResponse, absorbers: dict[str, Any]) -> dict[str, Item]:
-    """Return the forces of the point absorbers nearest to head and tail on each shell that they hold, (2, instants)."""
+def _forces(response: SpatialResponse, absorbers: dict[str, Any], unit: str) -> dict[str, Item]:
+    """Return the forces of the absorbers nearest to head and tail on their shells: of points (2, instants), of lines at every station."""
     if absorbers["head"] is None:
         return {}
-    forces, inner = np.asarray(response.absorber_force())[[absorbers["head"], absorbers["tail"]]], absorbers["inner_shells"]
+    found, inner = np.asarray(response.absorber_force())[[absorbers["head"], absorbers["tail"]]], absorbers["inner_shells"]
+    forces = found if found.ndim == 3 else found.transpose(2, 0, 1, 3)
     shells = {inner[absorbers["head"]], inner[absorbers["tail"]]}
     if len(shells) > 1:  # in different gaps: no shell is held by both
         return {}
     first = shells.pop()
-    return {f"absorber_force/{first + side}": Item(forces[:, side], "N") for side in (0, 1)}
+    return {f"absorber_force/{first + side}": Item(forces[..., side, :], unit) for side in (0, 1)}

@@ -48,9 +48,10 @@ export function draw(runs, quantity, which, unit = "transits", station = null) {
   const current = runs.current ?? runs.bare;
   if (!current || !window.Plotly) return;
   const wanted = panels(current, quantity.name, which).map((panel) => ({ ...panel, station }));
+  const unitOf = current.arrays[`${quantity.name}/${wanted[0].shell}`]?.unit ?? quantity.unit; // of absorbers at points another than of lines
   const columns = Math.max(...wanted.map((p) => p.column)) + 1, rows = Math.max(...wanted.map((p) => p.row)) + 1;
   const [low, high] = ends(wanted.flatMap((p) => ORDER.map((key) => history(runs[key], quantity.name, p))));
-  const scale = prefixed(quantity.unit, Math.max(-low, high)), margin = 0.06 * (high - low) || 1;
+  const scale = prefixed(unitOf, Math.max(-low, high)), margin = 0.06 * (high - low) || 1;
   const { style, axis, layout } = frame(), { name, of } = UNITS[unit];
   const times = Object.fromEntries(ORDER.filter((key) => runs[key]).map((key) => [key, scaled(runs[key].arrays.time.values, 1 / of(runs[key]))]));
   layout.uirevision = `${quantity.name}${which}${unit}${station}`;
@@ -76,7 +77,7 @@ export function draw(runs, quantity, which, unit = "transits", station = null) {
   if (!drawn) box.on("plotly_click", ({ points }) => clicked(points[0].x / drawn.transit));
   drawn = { wanted, key: quantity.name, transit: of(current) };
   box.setAttribute("role", "group");
-  box.setAttribute("aria-label", `${quantity.label} against time${station === null ? "" : ` at ${placeText(station)}`}: ${wanted.map((p) => `${p.title} up to ${show(largest(history(current, quantity.name, p)), quantity.unit)}`).join("; ")}`);
+  box.setAttribute("aria-label", `${quantity.label} against time${station === null ? "" : ` at ${placeText(station)}`}: ${wanted.map((p) => `${p.title} up to ${show(largest(history(current, quantity.name, p)), unitOf)}`).join("; ")}`);
 }
 
 function history(run, name, { shell, end, station }) {
