@@ -88,14 +88,26 @@ def solved() -> Callable[[str], Response]:
     return solve
 
 
+@pytest.fixture(scope="module")
+def balanced(solved: Callable[[str], Response]) -> Callable[[str], xr.Dataset]:
+    known: dict[str, xr.Dataset] = {}
+
+    def balance(name: str) -> xr.Dataset:
+        if name not in known:
+            known[name] = solved(name).energy()
+        return known[name]
+
+    return balance
+
+
 def worst(balance: xr.Dataset) -> float:
     return float(np.abs(balance["closure_relative"]).max())
 
 
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_it_closes_at_every_time(solved: Callable[[str], Response], name: str) -> None:
-    assert worst(solved(name).energy()) < SYSTEMS[name][1]
+def test_it_closes_at_every_time(balanced: Callable[[str], xr.Dataset], name: str) -> None:
+    assert worst(balanced(name)) < SYSTEMS[name][1]
 
 
 def scaled_shell(problem: Problem, index: int, **factors: float) -> Problem:
@@ -138,13 +150,15 @@ def test_a_broken_factor_shows(solved: Callable[[str], Response], name: str) -> 
 
 
 @pytest.mark.parametrize("change", [{"mass": 12}, {"linear_stiffness": 1.2e9}, {"damping": 1.2e5}])
-def test_a_broken_absorber_shows(solved: Callable[[str], Response], change: dict[str, float]) -> None:
+def test_a_broken_absorber_shows(
+    solved: Callable[[str], Response], balanced: Callable[[str], xr.Dataset], change: dict[str, float]
+) -> None:
     name = "linear absorbers off the axis"
     solution = solved(name).solution
     wrong = [a.replace(**change) for a in SYSTEMS[name][0].absorber_list]
     problem = replace(solution.problem, system=solution.problem.system.replace(absorbers=wrong))
-    right, found = solved(name).energy(), energy(replace(solution, problem=problem), spectra=spectra_of(solution))
-    assert worst(found) > 10 * worst(right)
+    found = energy(replace(solution, problem=problem), spectra=spectra_of(solution))
+    assert worst(found) > 10 * worst(balanced(name))
 
 
 def test_the_parts_are_labelled_and_add_up(solved: Callable[[str], Response]) -> None:
@@ -167,24 +181,24 @@ def test_the_parts_are_labelled_and_add_up(solved: Callable[[str], Response]) ->
         assert float(balance[name].min()) > -1e-9 * float(balance["exterior_work"].max())
 
 
-def test_what_is_not_there_is_left_out(solved: Callable[[str], Response]) -> None:
-    rigid = solved("rigid core").energy()
+def test_what_is_not_there_is_left_out(balanced: Callable[[str], xr.Dataset]) -> None:
+    rigid = balanced("rigid core")
     assert not [name for name in rigid.data_vars if str(name).startswith(("inner_", "interior_"))]
     assert float(np.abs(rigid["actuator_work"]).max()) == 0.0
-    assert {"gap_1_kinetic", "gap_2_kinetic", "shell_1_strain"} <= set(solved("three shells, two sources, sine half").energy().data_vars)
-    assert {"shell_kinetic", "interior_kinetic"} <= set(solved("one shell").energy().data_vars)
+    assert {"gap_1_kinetic", "gap_2_kinetic", "shell_1_strain"} <= set(balanced("three shells, two sources, sine half").data_vars)
+    assert {"shell_kinetic", "interior_kinetic"} <= set(balanced("one shell").data_vars)
 
 
-def test_it_does_not_depend_on_how_often_it_is_taken(solved: Callable[[str], Response]) -> None:
-    often, seldom = solved("bare preset").energy(every=4), solved("bare preset").energy(every=20)
+def test_it_does_not_depend_on_how_often_it_is_taken(solved: Callable[[str], Response], balanced: Callable[[str], xr.Dataset]) -> None:
+    often, seldom = balanced("bare preset"), solved("bare preset").energy(every=50)
     for name in ("gap_kinetic", "interior_compression", "outer_strain", "exterior_work"):
         np.testing.assert_allclose(often[name][::5], seldom[name], rtol=1e-9, atol=1e-14)
 
 
-def test_a_loaded_response_gives_the_same(solved: Callable[[str], Response], tmp_path) -> None:
+def test_a_loaded_response_gives_the_same(solved: Callable[[str], Response], balanced: Callable[[str], xr.Dataset], tmp_path) -> None:
     response = solved("linear absorbers off the axis")
     loaded = cx.load_response(response.save(tmp_path / "run.nc"))
-    xr.testing.assert_allclose(loaded.energy(), response.energy(), rtol=1e-12)
+    xr.testing.assert_allclose(loaded.energy(), balanced("linear absorbers off the axis"), rtol=1e-12)
 
 
 def test_progress_is_told(solved: Callable[[str], Response]) -> None:

@@ -25,9 +25,9 @@ def described(name="hybrid"):
     return presets.load(name).model_dump(mode="json")
 
 
-def solve(client, system, *, who="tab", slot="current", revision=None, resolution=None):
+def solve(client, system, *, who="tab", slot="current", revision=None, resolution=None, **more):
     revision = next(_revisions) if revision is None else revision
-    body = {"client": who, "slot": slot, "revision": revision, "system": system, "resolution": resolution or SMALL}
+    body = {"client": who, "slot": slot, "revision": revision, "system": system, "resolution": resolution or SMALL, **more}
     return client.post("/api/solve", json=body)
 
 

@@ -10,6 +10,7 @@ from asking import SMALL, described, ended, solve, solved, start
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
+from coaxshell.apps.studio.arrays import decoded
 from coaxshell.model import System, presets
 from coaxshell.plotting.energy import energy_groups, group_colours
 
@@ -44,6 +45,20 @@ def test_curves_and_bars_are_those_of_the_library(client, name):
     assert judged["warnings"] == list(response.warnings)
     assert judged["estimates"]["errors"] == [one.errors for one in summary.shells]
     assert judged["estimates"]["stress"] == [None if np.isnan(one) else one for one in response.estimates.modal_stress]
+
+
+def test_velocities_and_accelerations_come_if_they_are_asked_for(client):
+    """An answer that was kept without them does not stand for one with them; one with them is enough for both."""
+    system = {**described("bare"), "name": "with and without"}
+    for run, (asked, given) in enumerate((("without rates", False), ("all", True), ("without rates", True))):
+        answer = solve(client, system, who="rates", revision=run, histories=asked)
+        header, arrays = decoded(answer.content)
+        assert ("shell_velocity/0" in arrays) == ("shell_acceleration/1" in arrays) == given
+        assert header["left_out"] == ([] if given else ["shell_acceleration", "shell_velocity"])
+        assert "stress/1" in arrays
+    listed = client.get("/api/schema").json()["quantities"]
+    assert {one["name"] for one in listed if one["rate"]} == {"shell_velocity", "shell_acceleration"}
+    assert solve(client, system, who="rates", revision=9, histories="some").status_code == 400
 
 
 def test_other_absorbers_on_a_structure_already_prepared_give_the_same_numbers(client):

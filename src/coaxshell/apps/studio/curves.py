@@ -42,13 +42,19 @@ def bars(dimensions: int = 2) -> dict[str, tuple[str, str]]:
     }
 
 
-def curves(response: Response, seconds: float) -> Packed:
-    """Return header and arrays of a run as docs/studio-api.md says."""
+def rates() -> set[str]:
+    """Return the names of velocities and accelerations, which take a transform back to themselves."""
+    return {quantity.name for quantity in columns() if quantity.rate}
+
+
+def curves(response: Response, seconds: float, *, with_rates: bool = True) -> Packed:
+    """Return header and arrays of a run as docs/studio-api.md says, those of velocities and accelerations if wanted."""
     # Without peaks of velocities and accelerations, errors and warnings, which a slider would wait for.
     summary = summarise(response.solution, judged=False)
     absorbers = absorbers_of(response, response.system.absorber_list)
-    header = {**header_of(response, summary, seconds), "absorbers": absorbers, "bars": bars_of(response, summary)}
-    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers)})
+    left_out = [] if with_rates else sorted(rates())
+    header = {**header_of(response, summary, seconds), "absorbers": absorbers, "bars": bars_of(response, summary), "left_out": left_out}
+    return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers, with_rates)})
 
 
 def header_of(response: Response, summary: Summary, seconds: float) -> dict[str, Any]:
@@ -88,13 +94,15 @@ def judgement(response: Response) -> dict[str, Any]:
     }
 
 
-def _histories(response: Response, absorbers: dict[str, Any]) -> dict[str, Item]:
+def _histories(response: Response, absorbers: dict[str, Any], with_rates: bool) -> dict[str, Item]:
     """Return all histories at the ends of the shells; straight from the solution, since labels would take longer than the numbers."""
     solution, head = response.solution, response.system.sources[0].angle
     ends = np.array([head, head + 180.0])
     items: dict[str, Item] = {}
     for index in range(len(response.system.shells)):
         for quantity in given(response.motion, index):
+            if quantity.rate and not with_rates:
+                continue
             values = quantity.at(response.motion, index, ends)
             items[f"{quantity.name}/{index}"] = Item(np.asarray(values, dtype=np.float32).T, quantity.unit)
     if solution.absorber_force is not None and response.system.absorber_list:

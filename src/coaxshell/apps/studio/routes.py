@@ -21,6 +21,7 @@ from coaxshell.model import System
 from coaxshell.solver.settings import Settings
 
 MOST_REVISION = 2**53
+HISTORIES = ("all", "without rates")
 T = TypeVar("T")
 
 
@@ -98,7 +99,7 @@ async def solve(request: Request) -> Response:
     """Answer with the curves of a system, or 204 when a newer revision has come."""
     studio, data = studio_of(request), await bodies.read_table(request)
     client, name = bodies.name_of(data, "client"), bodies.name_of(data, "slot")
-    revision = bodies.whole_of(data, "revision", 0, MOST_REVISION)
+    revision, with_rates = bodies.whole_of(data, "revision", 0, MOST_REVISION), bodies.one_of(data, "histories", HISTORIES, "all") == "all"
     slot = studio.slot(client, name)
     if revision < slot.revision:
         return Response(status_code=204)
@@ -108,12 +109,12 @@ async def solve(request: Request) -> Response:
         if revision < slot.revision:
             return Response(status_code=204)
         run = studio.run_of(*pair)
-        content = studio.curves.get(run.name)
+        content = studio.curves.get(run.name) or (None if with_rates else studio.curves.get((run.name, "without rates")))
         if content is None:
             # What still waits for this slot gives way; what runs already is finished, so that a slider that never rests is answered.
-            slot.work = work = studio.workers.submit(worker.solve, *run.pair, place=run.place, instead_of=slot.work)
+            slot.work = work = studio.workers.submit(worker.solve, *run.pair, with_rates, place=run.place, instead_of=slot.work)
             content = await work.future
-            studio.curves.put(run.name, content)
+            studio.curves.put(run.name if with_rates else (run.name, "without rates"), content)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     except asyncio.CancelledError:
@@ -147,7 +148,7 @@ async def judgement(request: Request) -> Response:
     studio = studio_of(request)
     found = studio.run(request.path_params["run"])
     try:
-        told = await studio.workers.submit(worker.judge, *found.pair, place=found.place, live=False).future
+        told = await studio.workers.submit(worker.judge, *found.pair, place=found.place).future
     except InputError as error:
         raise RefusedError.of(error) from None
     return JSONResponse({"run": found.name, **told})

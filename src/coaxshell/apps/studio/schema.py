@@ -8,7 +8,7 @@ from typing import Any
 
 from coaxshell._version import __version__
 from coaxshell.apps.studio import limits
-from coaxshell.apps.studio.curves import quantities
+from coaxshell.apps.studio.curves import quantities, rates
 from coaxshell.apps.studio.descriptions import normalised
 from coaxshell.model import EXPLOSIVES, System, fluids, materials, presets
 from coaxshell.studies.metrics import ABSORBER_QUANTITIES, FLUID_QUANTITIES, SYSTEM_QUANTITIES, WITHOUT_SHELL, shell_quantities
@@ -34,7 +34,9 @@ def schema() -> dict[str, Any]:
         ],
         "explosives": list(EXPLOSIVES),
         "metric_units": _metric_units(),
-        "quantities": [{"name": name, "label": label, "unit": unit} for name, (label, unit) in quantities().items()],
+        "quantities": [
+            {"name": name, "label": label, "unit": unit, "rate": name in rates()} for name, (label, unit) in quantities().items()
+        ],
         "resolutions": {
             "preview": limits.table_of(limits.PREVIEW),
             "full": limits.table_of(limits.FULL),

@@ -184,8 +184,8 @@ def _structure(system: System, settings: Settings) -> PreparedSystem:
     return prepare(system, settings=settings, retunable=live, progress=report)
 
 
-def solve(system: System, settings: Settings) -> Any:
-    """Return the curves of a run."""
+def solve(system: System, settings: Settings, with_rates: bool = True) -> Any:
+    """Return the curves of a run, those of velocities and accelerations if wanted."""
     from coaxshell.apps.studio.curves import curves
     from coaxshell.apps.studio.station_curves import station_curves
     from coaxshell.response.spatial import SpatialResponse
@@ -193,4 +193,4 @@ def solve(system: System, settings: Settings) -> Any:
     start = time.perf_counter()
     response = answer(system, settings)
     seconds = time.perf_counter() - start
-    return station_curves(response, seconds) if isinstance(response, SpatialResponse) else curves(response, seconds)
+    return station_curves(response, seconds) if isinstance(response, SpatialResponse) else curves(response, seconds, with_rates=with_rates)

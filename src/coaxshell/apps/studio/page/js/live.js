@@ -7,6 +7,7 @@ const PATIENCE = 900; // ms without a change before full resolution starts
 const PAUSE = 150; // and before errors and warnings are asked for
 const QUIET = 350; // ms without a change before a preview in three dimensions starts
 let revision = 0;
+export const sent = { rates: false }; // whether velocities and accelerations are, whose transforms a slider would wait for
 export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
 export class Slot {
@@ -30,7 +31,7 @@ export class Slot {
     this.busy = true;
     try {
       const { system, resolution } = wish;
-      const answer = await request("/api/solve", { body: { client, slot: this.name, revision: wish.revision, system, resolution } });
+      const answer = await request("/api/solve", { body: { client, slot: this.name, revision: wish.revision, system, resolution, histories: sent.rates ? "all" : "without rates" } });
       if (this.wanted.revision === wish.revision || (answer && this.shown < wish.revision)) this.take(wish, answer);
     } catch (error) {
       if (this.wanted.revision === wish.revision) { this.shown = wish.revision; this.tell.fail(error); }

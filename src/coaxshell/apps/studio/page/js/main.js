@@ -7,7 +7,7 @@ import * as events from "./events.js";
 import * as files from "./files.js";
 import * as form from "./form.js";
 import * as link from "./link.js";
-import { Slot, times } from "./live.js";
+import { Slot, sent, times } from "./live.js";
 import * as past from "./past.js";
 import { read, written } from "./paths.js";
 import * as peaks from "./peaks.js";
@@ -171,7 +171,7 @@ function opened(answer, from) {
   else if (space.needsSpace(answer.system)) page.resolution = space.inDimensions(page.resolution, 3, page.world.resolutions);
   page.resolved = JSON.stringify(page.resolution);
   const view = answer.view ?? {};
-  if (view.quantity) page.quantity = view.quantity;
+  if (view.quantity) choose(view.quantity);
   if (view.unit in curves.UNITS) page.unit = by("unit").value = view.unit;
   if (typeof view.station === "number") page.station = view.station;
   if (view.tab && document.getElementById(`tab-${view.tab}`)) tabs.choose(view.tab);
@@ -288,10 +288,17 @@ function drawTab(name) {
   if (name !== "wave") { wave.pause(); curves.cursor(null); } else if (!around) wave.draw();
 }
 
+// Velocities and accelerations are asked for once they are shown.
+function choose(quantity) {
+  page.quantity = quantity;
+  sent.rates = Boolean(page.world.quantities.find((one) => one.name === quantity)?.rate);
+  if (sent.rates && Object.values(page.runs).some((run) => run.left_out?.includes(quantity))) again();
+}
+
 const quantityShown = () => all().find((one) => one.name === page.quantity) ?? all()[0];
 
 function all() {
-  const arrays = Object.values(page.runs).flatMap((run) => Object.keys(run.arrays));
+  const arrays = Object.values(page.runs).flatMap((run) => [...Object.keys(run.arrays), ...(run.left_out ?? []).map((name) => `${name}/`)]);
   const known = page.world.quantities.some((one) => one.name === "absorber_force") ? page.world.quantities : [...page.world.quantities, { name: "absorber_force", label: "absorber force", unit: "N/m" }];
   return known.filter((one) => arrays.some((name) => name.startsWith(`${one.name}/`)));
 }
@@ -338,7 +345,7 @@ function say() {
 
 function wire() {
   by("preset").addEventListener("change", (event) => { const preset = page.world.presets[event.target.value]; if (preset) open({ system: preset.system }, preset.name); });
-  by("quantity").addEventListener("change", (event) => { page.quantity = event.target.value; drawRuns(); keepLink(); });
+  by("quantity").addEventListener("change", (event) => { choose(event.target.value); drawRuns(); keepLink(); });
   by("station").addEventListener("change", (event) => { page.station = Number(event.target.value); drawRuns(); keepLink(); });
   by("shells").addEventListener("change", (event) => { page.which = event.target.value; drawRuns(); });
   by("unit").addEventListener("change", (event) => { page.unit = event.target.value; drawRuns(); keepLink(); });
