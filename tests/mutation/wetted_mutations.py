@@ -53,4 +53,20 @@ WETTED = (
         "work of the exterior pressure on the outermost face",
         "solver/test_wetted_faces.py",
     ),
+    Mutation(
+        "pressure-within-a-wall",
+        "response/fields/request.py",
+        "(radius <= region.outer) if wall_follows else (radius < region.outer)",
+        "(radius <= 1.2 * region.outer) if wall_follows else (radius < region.outer)",
+        "which points lie in a wall between wetted faces",
+        "response/test_wetted_fields.py",
+    ),
+    Mutation(
+        "gap-between-faces",
+        "solver/wetted_surfaces.py",
+        "true = true_faces(beyond)[0] - true_faces(within)[1]",
+        "true = true_faces(beyond)[1] - true_faces(within)[0]",
+        "by which part a gap between mid-surfaces is too wide",
+        "solver/test_wetted_faces.py",
+    ),
 )
