@@ -72,7 +72,7 @@ def test_a_spherical_source_in_two_dimensions_is_warned_of_once():
     assert text.endswith("more than 5 %; use dimensions=3")
     held = cx.presets.load("hybrid")
     held = held.replace(control=held.control.replace(saturation=True))
-    assert warned(held)[0].endswith("use dimensions=3 with point absorbers, which have a z, without saturation")
+    assert warned(held)[0].endswith("use dimensions=3 without saturation")
     near = BARE.source.replace(distance=3.0, angle=90.0)
     (both,) = warned(BARE.replace(source=[BARE.source, near]))
     assert f"about {100 * slice_error(dimensionless(BARE.replace(source=near)), 2.0).value:.0f} %" in both

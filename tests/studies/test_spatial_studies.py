@@ -138,5 +138,18 @@ def test_what_points_do_not_have_is_refused(fitted, metric, told):
 
 
 def test_systems_that_three_dimensions_do_not_know_are_refused():
-    with pytest.raises(cx.InputError, match=r"line absorbers are uniform along the axis"):
-        cx.sweep("hybrid", OVER, METRICS[:1], workers=1, **QUICK)
+    saturating = cx.presets.load("active")
+    saturating = saturating.replace(control=saturating.control.replace(saturation=True))
+    with pytest.raises(cx.InputError, match=r"saturation: .*is marched in two dimensions alone"):
+        cx.sweep(saturating, OVER, METRICS[:1], workers=1, **QUICK)
+
+
+def test_line_absorbers_are_varied_and_read():
+    system = cx.presets.load("bare").replace(absorbers=cx.absorber_ring(4, mass=20.0, damping=1e4, linear_stiffness=1e8))
+    metrics = ["absorbers.mass", "absorbers.peak_force", "absorbers.peak_displacement", "outer.peak_stress"]
+    found = cx.sweep(system, {"absorbers.count": [4, 5]}, metrics, workers=1, **QUICK)
+    for count in (4, 5):
+        case, response = found.sel({"absorbers.count": count}), cx.simulate(system.replace_path("absorbers.count", count), **QUICK)
+        assert float(case["absorbers.mass"]) == 20.0 * count
+        np.testing.assert_allclose(case["absorbers.peak_force"], abs(response.absorber_force()).max(), rtol=1e-9)
+        np.testing.assert_allclose(case["absorbers.peak_displacement"], abs(response.absorber_displacement()).max(), rtol=1e-9)

@@ -123,7 +123,7 @@ def sections_of(runs: Mapping[str, Response], station: Any) -> dict[str, Section
             continue
         chosen = _spread(response.stations, max(1, len(DASHES) // len(runs)))
         if station is not None:
-            from coaxshell.response.stations import chosen_stations
+            from coaxshell.response.station_choice import chosen_stations
 
             chosen = [response.stations[i] for i in chosen_stations(response.stations, station)[0]]
         for z in chosen:

@@ -117,7 +117,7 @@ def at_station(response: Response, station: float | str | None) -> float | None:
         return None
     if station is None:
         return float(response.stations[0])
-    from coaxshell.response.stations import chosen_stations
+    from coaxshell.response.station_choice import chosen_stations
 
     chosen, _ = chosen_stations(response.stations, station)
     return float(response.stations[chosen[0]])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from coaxshell.model.absorbers import Absorber, PointAbsorber
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.labels import INWARD, angle_coordinate, time_coordinates
+from coaxshell.response.station_choice import chosen_stations
 from coaxshell.solver.solution import ModalSolution
 
 if TYPE_CHECKING:
@@ -20,36 +21,68 @@ if TYPE_CHECKING:
 SIDES = ("inner", "outer")
 
 
-def absorber_displacement(solution: ModalSolution | SpatialSolution) -> xr.DataArray:
+def absorber_displacement(solution: ModalSolution | SpatialSolution, station: Any = None) -> xr.DataArray:
     """Return the displacement q_n of the absorbers' masses, m, positive inward; dims (absorber, time).
+
+    Of line absorbers in three dimensions (absorber, station, time), at all stations or at some (m or text).
 
     Raises
     ------
     InputError
-        If the system has no absorbers.
+        If the system has no absorbers, or the run no such station.
     """
-    values = solution.problem.scales.length * _present(solution.absorber_displacement)
     attributes = {"units": "m", "long_name": "displacement of the absorber's mass", "sign": INWARD}
+    if of_lines(solution):
+        found = solution.problem.scales.length * _present(solution.line_displacement)
+        return _along(solution, station, found.swapaxes(0, 1), ("absorber",), {}, "absorber_displacement", attributes)
+    values = solution.problem.scales.length * _present(solution.absorber_displacement)
     return xr.DataArray(values, dims=("absorber", "time"), coords=_coordinates(solution), name="absorber_displacement", attrs=attributes)
 
 
-def absorber_force(solution: ModalSolution | SpatialSolution) -> xr.DataArray:
+def absorber_force(solution: ModalSolution | SpatialSolution, station: Any = None) -> xr.DataArray:
     """Return the forces f_n of the absorbers on the shells they link, positive inward (Eq. 7); dims (absorber, side, time).
 
-    N/m, or N of point absorbers.
+    N/m, or N of point absorbers. Of line absorbers in three dimensions (absorber, side, station, time), at all stations or at some.
 
     Raises
     ------
     InputError
         If the system has no absorbers.
     """
-    scales, points = solution.problem.scales, not isinstance(solution, ModalSolution)
-    values = (scales.force if points else scales.line_force) * _present(solution.absorber_force)
+    scales, points = solution.problem.scales, not isinstance(solution, ModalSolution) and not of_lines(solution)
     side = xr.Variable("side", list(SIDES), {"long_name": "which of the two linked shells the force acts on"})
     long_name = "force of the absorber on the shell" + ("" if points else ", per metre of length")
     attributes = {"units": "N" if points else "N/m", "long_name": long_name, "sign": f"{INWARD} on the shell"}
+    if of_lines(solution):
+        found = np.moveaxis(scales.line_force * _present(solution.line_force), 0, 2)
+        return _along(solution, station, found, ("absorber", "side"), {"side": side}, "absorber_force", attributes)
+    values = (scales.force if points else scales.line_force) * _present(solution.absorber_force)
     coordinates = {**_coordinates(solution), "side": side}
     return xr.DataArray(values, dims=("absorber", "side", "time"), coords=coordinates, name="absorber_force", attrs=attributes)
+
+
+def of_lines(solution: ModalSolution | SpatialSolution) -> TypeGuard[SpatialSolution]:
+    """Return whether a solution is one of three dimensions whose absorbers, if it has any, are lines."""
+    return not isinstance(solution, ModalSolution) and bool(solution.problem.system.absorber_list)
+
+
+def _along(
+    solution: SpatialSolution,
+    station: Any,
+    values: FloatArray,
+    dims: tuple[str, ...],
+    coordinates: dict[str, xr.Variable],
+    name: str,
+    attributes: dict[str, str],
+) -> xr.DataArray:
+    """Return values (..., station, time) of line absorbers at the stations asked for; of one alone without that dimension."""
+    chosen, alone = chosen_stations(solution.stations, station)
+    z = {"units": "m", "long_name": "axial position"}
+    places = solution.stations[chosen]
+    along = xr.Variable((), places[0], z) if alone else xr.Variable("station", places, z)
+    kept = values[..., chosen[0], :] if alone else values[..., chosen, :]
+    known = {**time_coordinates(solution.at(0)), **_places(solution.problem.system.absorber_list), **coordinates, "station": along}
+    return xr.DataArray(kept, dims=(*dims, *([] if alone else ["station"]), "time"), coords=known, name=name, attrs=attributes)
 
 
 def _present(values: FloatArray | None) -> FloatArray:

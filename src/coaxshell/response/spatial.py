@@ -17,8 +17,9 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, fields, storage
 from coaxshell.response.response import HEAD_AND_TAIL, Response
 from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
-from coaxshell.response.stations import StationMotion, Transforms, chosen_stations, joined
-from coaxshell.response.tables import history_table
+from coaxshell.response.station_choice import chosen_stations
+from coaxshell.response.stations import StationMotion, Transforms, joined
+from coaxshell.response.tables import history_table, shortest
 from coaxshell.response.thinning import some_instants, thinned_stations
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.axial.solution import SpatialSolution
@@ -79,13 +80,19 @@ class SpatialResponse(Response):
         chosen, alone = chosen_stations(self.stations, station)
         return joined([read(self.motions[i]) for i in chosen], self.stations, chosen, alone=alone)
 
-    def absorber_displacement(self) -> xr.DataArray:
-        """Return the displacement of the point absorbers' masses, m, positive inward, dims (absorber, time)."""
-        return absorbers.absorber_displacement(self.spatial)
+    def absorber_displacement(self, station: Any = None) -> xr.DataArray:
+        """Return the displacement of the absorbers' masses, m, positive inward.
 
-    def absorber_force(self) -> xr.DataArray:
-        """Return the forces of the point absorbers on their shells, N, positive inward, dims (absorber, side, time)."""
-        return absorbers.absorber_force(self.spatial)
+        Dims (absorber, time) of point absorbers, (absorber, station, time) of line absorbers.
+        """
+        return absorbers.absorber_displacement(self.spatial, station)
+
+    def absorber_force(self, station: Any = None) -> xr.DataArray:
+        """Return the forces of the absorbers on their shells, positive inward.
+
+        N of point absorbers, dims (absorber, side, time); N/m of line absorbers, dims (absorber, side, station, time).
+        """
+        return absorbers.absorber_force(self.spatial, station)
 
     def pressure(
         self,
@@ -157,7 +164,7 @@ class SpatialResponse(Response):
 
         Velocities and accelerations then take as long as the run when they are asked for, and the summary and tables leave them out.
         """
-        return SpatialResponse(replace(self.spatial, spectra=None))
+        return SpatialResponse(replace(self.spatial, spectra=None, forces=[]))
 
     def thin(self, every: int = 1, window: Sequence[float] | None = None) -> SpatialResponse:
         """Return the response with every so many instants of a window (start, end) in transits, for a smaller file.
@@ -174,11 +181,15 @@ class SpatialResponse(Response):
         return storage.save(self.spatial, path, compression=compression)
 
     def history_table(self) -> dict[str, FloatArray]:
-        """Return all histories at head and tail of all stations as columns by names with z and units; those of point absorbers too."""
+        """Return all histories at head and tail of all stations as columns by names with z and units; those of absorbers too."""
         table = history_table(self.motions, self.stations)
         if self.system.point_absorbers:
             for number, row in enumerate(self.absorber_displacement().to_numpy()):
                 table[f"absorber {number} displacement (m)"] = row
+        if self.system.absorber_list:
+            for number, rows in enumerate(self.absorber_displacement().to_numpy()):
+                for z, row in zip(self.stations, rows, strict=True):
+                    table[f"absorber {number} displacement z = {shortest(z)} m (m)"] = row
         return table
 
     def plot(

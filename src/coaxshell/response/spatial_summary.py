@@ -12,6 +12,7 @@ import numpy as np
 from coaxshell.model.display.card import card
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.system import System
+from coaxshell.response.absorbers import of_lines
 from coaxshell.response.arguments import time_window
 from coaxshell.response.quantities import summary_rows
 from coaxshell.response.stations import StationMotion
@@ -38,13 +39,16 @@ class SpatialSummary:
     each : tuple of Summary
         One a station.
     absorber_displacement, absorber_force : float or None
-        Largest magnitude over all point absorbers (and both sides), m and N; None without absorbers.
+        Largest magnitude over all absorbers (and both sides; of lines over the stations too), m and N or, of lines, N/m; None without.
+    absorber_force_unit : str
+        "N", or "N/m" of lines.
     """
 
     stations: tuple[float, ...]
     each: tuple[Summary, ...]
     absorber_displacement: float | None = None
     absorber_force: float | None = None
+    absorber_force_unit: str = "N"
 
     def at(self, station: float) -> Summary:
         """Return the summary of a station of the run (m)."""
@@ -79,7 +83,9 @@ class SpatialSummary:
         """Return all of it as nested plain dicts, lists and numbers, ready for JSON."""
         each = [{"station": z, **summary.to_dict()} for z, summary in zip(self.stations, self.each, strict=True)]
         common = {key: each[0][key] for key in ("title", "window", "transit_time", "settings", "warnings")}
-        absorbers = {"absorber_displacement": self.absorber_displacement, "absorber_force": self.absorber_force}
+        absorbers: dict[str, Any] = {"absorber_displacement": self.absorber_displacement, "absorber_force": self.absorber_force}
+        if self.absorber_force is not None:
+            absorbers["absorber_force_unit"] = self.absorber_force_unit
         return {**common, **absorbers, "stations": each, "largest": self.largest}
 
     def __str__(self) -> str:
@@ -95,7 +101,7 @@ class SpatialSummary:
             return []
         return [
             f"largest absorber displacement: {engineering(self.absorber_displacement, 'm')}",
-            f"largest absorber force: {engineering(self.absorber_force, 'N')}",
+            f"largest absorber force: {engineering(self.absorber_force, self.absorber_force_unit)}",
         ]
 
     @property
@@ -170,10 +176,12 @@ def summarise_stations(
     """Return the summary of each station within a window (start, end) in transits; see :func:`coaxshell.response.summary.summarise`."""
     each = tuple(summarise(motion.solution, window, segment, motion=motion) for motion in motions)
     span, scales = time_window(spatial.time, window), spatial.problem.scales
-    q, f = spatial.absorber_displacement, spatial.absorber_force
+    lines = of_lines(spatial)
+    q, f = (spatial.line_displacement, spatial.line_force) if lines else (spatial.absorber_displacement, spatial.absorber_force)
     return SpatialSummary(
         tuple(spatial.stations.tolist()),
         each,
         None if q is None else scales.length * float(np.abs(q[..., span]).max()),
-        None if f is None else scales.force * float(np.abs(f[..., span]).max()),
+        None if f is None else (scales.line_force if lines else scales.force) * float(np.abs(f[..., span]).max()),
+        "N/m" if lines else "N",
     )

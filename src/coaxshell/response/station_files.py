@@ -17,7 +17,7 @@ from coaxshell.response import restored
 from coaxshell.response.dataset import ERROR, checksum, to_spatial_dataset
 from coaxshell.response.thinning import with_missing
 from coaxshell.solver.axial.sampling import MOST_WAVES, AxialSampling
-from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
+from coaxshell.solver.axial.solution import LINES, SpatialSolution, StationSpectra
 from coaxshell.solver.axial.sums import piezoelectric_layers
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
@@ -51,8 +51,15 @@ ABSORBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
         "rho_e c_e^2 a^2",
         "forces of the point absorbers on the inner and outer shell they link, positive inward",
     ),
+    "line_displacement": (("station", "absorber", "time"), "a", "displacement q of the line absorbers' masses, positive inward"),
+    "line_force": (
+        ("station", "absorber", "side", "time"),
+        "rho_e c_e^2 a",
+        "forces of the line absorbers, per length, on the inner and outer shell they link, positive inward",
+    ),
 }
-"""Arrays of runs with point absorbers."""
+"""Arrays of runs with absorbers."""
+_KINDS = ("point absorbers", "line absorbers")
 _CAUSES = 4
 
 
@@ -117,6 +124,8 @@ def solution_of(file: ForeignFile) -> SpatialSolution:
         told.timings,
         absorber_displacement=arrays.get("absorber_displacement"),
         absorber_force=arrays.get("absorber_force"),
+        line_displacement=arrays.get("line_displacement"),
+        line_force=arrays.get("line_force"),
     )
     restored.judge_instants(solution.time, solution.settings)
     if not file.sealed and solution.whole and told.about["checksum"] != checksum(arrays, told.text, told.about):
@@ -125,6 +134,16 @@ def solution_of(file: ForeignFile) -> SpatialSolution:
         normal, tangential = (_complex(arrays[name]) for name in TRANSFORMS)
         solution = replace(solution, spectra=StationSpectra(grid, normal, tangential))
     return replace(solution, warnings=with_missing(solution))
+
+
+def _absorbers_in(file: ForeignFile, name: str) -> int:
+    """Return of how many absorbers an array of a file is."""
+    return file.shape(name)[ABSORBERS[name][0].index("absorber")] if name in file else 0
+
+
+def _absorbers_of(problem: Problem, name: str) -> int:
+    """Return of how many absorbers it is to be."""
+    return len(problem.system.absorber_list if name in LINES else problem.system.point_absorbers)
 
 
 def _layers_in(file: ForeignFile) -> int:
@@ -149,10 +168,7 @@ def _agree(sizes: Mapping[str, int], file: ForeignFile, problem: Problem, settin
         (sizes["shell"], len(problem.shells), "shells", "scenario"),
         (_layers_in(file), piezoelectric_layers(problem), "voltages of piezoelectric layers", "scenario"),
         (sizes["station"], len(settings.stations), "stations", "settings"),
-        *(
-            (file.shape(name)[0] if name in file else 0, len(problem.system.point_absorbers), "point absorbers", "scenario")
-            for name in ABSORBERS
-        ),
+        *((_absorbers_in(file, name), _absorbers_of(problem, name), _KINDS[name in LINES], "scenario") for name in ABSORBERS),
         (sizes["mode"] - 1, settings.modes, "as highest order", "settings"),
         (sizes.get("node", grid.samples // 2 + 1), grid.samples // 2 + 1, "Laplace nodes", "settings"),
     ):

@@ -35,14 +35,14 @@ def history_table(motions: Sequence[WallMotion], stations: FloatArray | None = N
     solution = motions[0].solution
     system, time = solution.problem.system, solution.time
     many, dimensions = len(motions), 2 if stations is None else 3
-    width = 2 + 2 * many * len(list(columns(dimensions))) * len(system.shells) + len(system.absorber_list)
+    width = 2 + 2 * many * len(list(columns(dimensions))) * len(system.shells) + many * len(system.absorber_list)
     fewer = "run a coarser step or fewer absorbers" if stations is None else "run a coarser step, or name fewer stations"
     Cost(48.0 * width * time.size).require(f"a table of {width} columns and {time.size:,} rows", fewer)
     found = {"time (a/c)": np.asarray(time, dtype=np.float64), "time (s)": np.asarray(time * solution.problem.scales.time)}
     for number, motion in enumerate(motions):
         at = "" if stations is None else f" z = {shortest(stations[number])} m"
         found |= _at_station(motion, at)
-    if system.absorber_list:
+    if system.absorber_list and stations is None:
         for number, row in enumerate(np.asarray(absorber_displacement(solution), dtype=np.float64)):
             found[f"absorber {number} displacement (m)"] = row
     return found

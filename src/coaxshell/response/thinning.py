@@ -55,8 +55,10 @@ def thinned_stations(solution: SpatialSolution, every: int, window: Sequence[flo
 
 def some_instants(solution: SpatialSolution, kept: slice | npt.NDArray[np.intp]) -> SpatialSolution:
     """Return a solution of three dimensions with some of its instants."""
+    from coaxshell.solver.axial.solution import LINES
+
     fields = {name: values[..., kept].copy() for name, values in solution.fields.items()}
-    absorbers = {name: getattr(solution, name) for name in ("absorber_displacement", "absorber_force")}
+    absorbers = {name: getattr(solution, name) for name in ("absorber_displacement", "absorber_force", *LINES)}
     absorbers = {name: None if values is None else values[..., kept].copy() for name, values in absorbers.items()}
     return replace(solution, time=solution.time[kept].copy(), fields=fields, spectra=None, **absorbers)
 

@@ -204,11 +204,10 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
         return []
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
     control = problem.system.control
-    changed = " with point absorbers, which have a z," if problem.system.absorber_list else ""
-    changed += " without saturation" if control is not None and control.saturation else ""
+    changed = " without saturation" if control is not None and control.saturation else ""
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
-        f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed.removesuffix(',')}"
+        f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"
     ]
 
 

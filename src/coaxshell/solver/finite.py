@@ -83,11 +83,13 @@ def require_finite_stations(solution: SpatialSolution, where: str = "response", 
     axes = ("station", "shell", "half", "order")
     found: list[Stage] = [Stage(where, "time", solution.time, (), True, remedy)]
     found += [Stage(where, f"the field {name}", values, axes, True, remedy) for name, values in solution.fields.items()]
-    for name, of_points, along in (
+    for name, of_absorbers, along in (
         ("displacement", solution.absorber_displacement, ("absorber",)),
         ("force", solution.absorber_force, ("absorber", "side")),
+        ("displacement", solution.line_displacement, ("station", "absorber")),
+        ("force", solution.line_force, ("station", "absorber", "side")),
     ):
-        found += [] if of_points is None else [Stage(where, f"the {name} of the absorbers", of_points, along, True, remedy)]
+        found += [] if of_absorbers is None else [Stage(where, f"the {name} of the absorbers", of_absorbers, along, True, remedy)]
     for stage in found:
         index = first_bad(stage.values)
         if index is not None:

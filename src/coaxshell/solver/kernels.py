@@ -24,10 +24,10 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 
 
-def initial_decay(problem: Problem, index: int, max_order: int) -> FloatArray:
-    """Return b, shape (M + 1, 1): the rate at which fluids, derivative feedback and its own losses slow a shell just after an impulse."""
-    wall = problem.shells[index].leading(Modes.up_to(max_order))
-    return (np.full((max_order + 1, 1), resistance(problem, index)) + wall.damping) / wall.mass
+def initial_decay(problem: Problem, index: int, modes: Modes) -> FloatArray:
+    """Return b, shape (orders, 1): the rate at which fluids, derivative feedback and its own losses slow a shell just after an impulse."""
+    wall = problem.shells[index].leading(modes)
+    return (np.full((modes.count, 1), resistance(problem, index)) + wall.damping) / wall.mass
 
 
 def resistance(problem: Problem, index: int) -> float:
@@ -36,22 +36,31 @@ def resistance(problem: Problem, index: int) -> float:
     return sum(fluid.density / fluid.slowness * leverage for fluid, leverage in pairs if fluid is not None)
 
 
-def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArray) -> FloatArray:
+def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArray, modes: Modes | None = None) -> FloatArray:
     """Return the weights of modal pressures 0, 1, 2, ... steps ago in the present modal velocities.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : LaplaceGrid
+    compliance : ndarray, shape (shells, shells, orders, nodes)
+        C_ij.
+    modes : Modes, optional
+        Its orders and axial wavenumber; orders 0, 1, ... of the plane problem unless given.
 
     Returns
     -------
     ndarray, shape (shells, shells, M + 1, T)
         dW_i/dt(t_n) = sum_k weights[i, j, m, k] P_j(t_{n-k}).
     """
-    count, max_order = compliance.shape[0], compliance.shape[2] - 1
-    weights = np.empty((count, count, max_order + 1, grid.time.size))
+    count, modes = compliance.shape[0], modes or Modes.up_to(compliance.shape[2] - 1)
+    weights = np.empty((count, count, modes.count, grid.time.size))
     hat = grid.hat * grid.time_step
     for i in range(count):
         for j in range(count):
             spectrum = compliance[i, j] * grid.nodes
             if i == j and problem.shells[i].moves:
-                mass, decay = problem.shells[i].leading(Modes.up_to(max_order)).mass, initial_decay(problem, i, max_order)
+                mass, decay = problem.shells[i].leading(modes).mass, initial_decay(problem, i, modes)
                 weights[i, j] = grid.invert((spectrum - 1.0 / (mass * (grid.nodes + decay))) * hat)
                 weights[i, j] += exponential_weights(decay, grid) / mass
             else:
@@ -84,7 +93,7 @@ def sensor_rate_weights(
     for row, i in enumerate(controlled):
         sensor = problem.shells[i].sensor_gain(modes).columns
         sensed = grid.nodes * sensor.recovered(ratio[i])
-        decay, leading = initial_decay(problem, i, max_order), sensor.w / problem.shells[i].leading(modes).mass
+        decay, leading = initial_decay(problem, i, modes), sensor.w / problem.shells[i].leading(modes).mass
         for j in range(count):
             if i == j:
                 weights[row, j] = grid.invert((sensed * compliance[i, j] - leading / (grid.nodes + decay)) * hat)

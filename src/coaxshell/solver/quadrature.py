@@ -28,23 +28,22 @@ RESOLVED = 0.6
 """Fraction of the highest frequency up to which a membrane's is left to product integration; the roll-off begins at 0.8."""
 
 
-def unresolved_orders(problem: Problem, grid: LaplaceGrid, max_order: int) -> npt.NDArray[np.bool_]:
-    """Return which orders have a shell whose highest frequency the step does not resolve: shape (M + 1,)."""
-    modes, late = Modes.up_to(max_order), np.zeros(max_order + 1, dtype=bool)
+def unresolved_orders(problem: Problem, grid: LaplaceGrid, modes: Modes) -> npt.NDArray[np.bool_]:
+    """Return which orders have a shell whose highest frequency the step does not resolve: shape (orders,)."""
+    late = np.zeros(modes.count, dtype=bool)
     for wall in problem.shells:
         late |= wall.highest_frequency(modes) > RESOLVED * grid.nyquist
     return late
 
 
-def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
+def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, modes: Modes, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
     """Return the step weights of modal pressures in the normal velocities, and in the rates of the sensors' voltages of some shells.
 
     Parameters
     ----------
     problem : Problem
     grid : LaplaceGrid
-    orders : ndarray
-        Ascending.
+    modes : Modes
     sensors : list of int
         Shells whose sensors are read.
 
@@ -54,10 +53,9 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
     rate : ndarray, shape (len(sensors), shells, orders, T)
     """
     count, nodes = len(problem.shells), (2.0 / grid.time_step) * np.tanh(0.5 * grid.time_step * grid.nodes)
-    modes = Modes(orders)
     gains = [problem.shells[i].sensor_gain(modes).columns for i in sensors]
-    velocity = np.empty((count, count, orders.size, nodes.size), np.complex128)
-    rate = np.empty((len(sensors), count, orders.size, nodes.size), np.complex128)
+    velocity = np.empty((count, count, modes.count, nodes.size), np.complex128)
+    rate = np.empty((len(sensors), count, modes.count, nodes.size), np.complex128)
 
     def work(block: slice) -> None:
         s = np.asarray(nodes[block], dtype=np.complex128)
@@ -69,6 +67,6 @@ def trapezoidal_weights(problem: Problem, grid: LaplaceGrid, orders: FloatArray,
             for row, (i, gain) in enumerate(zip(sensors, gains, strict=True)):
                 rate[row, j, :, block] = s * gain.recovered(modal.shells[i].tangential) * normal[i]
 
-    map_node_blocks(node_blocks(grid, orders.size), work, None, "kernels")
+    map_node_blocks(node_blocks(grid, modes.count), work, None, "kernels")
     whole = np.ones(nodes.size)
     return grid.invert(velocity, whole) * grid.time_step, grid.invert(rate, whole) * grid.time_step

@@ -1,16 +1,22 @@
-"""What a run in three dimensions costs: every axial wavenumber is a run in two dimensions, of which the sums at the stations are kept."""
+"""What a run in three dimensions costs: every axial wavenumber is a run in two dimensions, of which the sums at the stations are kept.
+
+Line absorbers keep kernels and histories of every wavenumber too.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.solver.axial.blocks import BLOCK_NODES
+from coaxshell.solver.axial.line_march import block_steps
+from coaxshell.solver.axial.lines import LineLayout, line_layout
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
-from coaxshell.solver.run_size import Size
-from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.run_size import COMPLEX, REAL, Size
+from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 
 _FIELDS = 9
@@ -19,21 +25,50 @@ _WORKING = 40.0
 """Arrays of orders and nodes of a block that a thread works with, for each shell."""
 _SIDE_BY_SIDE = 1000
 """Nodes below which threads take turns: there are two blocks, and NumPy lets others run only beside loops of more than 500 numbers."""
+_NANOSECONDS = 1e-9
 
 
 def sampling_of(system: System, settings: Settings, highest_order: int) -> AxialSampling:
     """Return the axial wavenumbers of a run, *highest_order* in the place of "auto"; InputError for a period that is too short."""
-    return axial_sampling(dimensionless(system, dimensions=3, settings=settings), replace(settings, modes=highest_order))
+    return _sampling(dimensionless(system, dimensions=3, settings=settings), settings, highest_order)
+
+
+def _sampling(problem: Problem, settings: Settings, highest_order: int) -> AxialSampling:
+    return axial_sampling(problem, replace(settings, modes=highest_order))
 
 
 def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     """Return the cost of a run in three dimensions, given the *size* of the same run in two; InputError for a period that is too short."""
-    tops = sampling_of(system, settings, size.orders - 1).tops
-    pairs = float(tops.sum() + tops.size) * size.nodes
+    problem = dimensionless(system, dimensions=3, settings=settings)
+    sampling = _sampling(problem, settings, size.orders - 1)
+    pairs = float(sampling.tops.sum() + sampling.tops.size) * size.nodes
     stations, amplitudes = len(settings.stations), size.shells * size.source_parities
     kept = stations * amplitudes * (_FIELDS * (size.plane + size.history) + 6.0 * size.plane)
     turns = 2.0 if size.nodes < _SIDE_BY_SIDE else 1.0
+    lines = _lines_cost(line_layout(problem, sampling), size, pairs) if system.absorber_list else Cost(0.0)
     return Cost(
-        kept + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
-        0.1 + turns * pairs * (0.3e-6 * size.shells + 2e-9 * _FIELDS * stations * amplitudes),
+        lines.memory + kept + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
+        lines.seconds + 0.1 + turns * pairs * (0.3e-6 * size.shells + 2e-9 * _FIELDS * stations * amplitudes),
     )
+
+
+def _lines_cost(layout: LineLayout, size: Size, pairs: float) -> Cost:
+    """Return what line absorbers add: their forces at every wavenumber, and if they are marched kernels and histories of the classes."""
+    waves, points, axial = len(layout.sampling.modes), 2 * layout.absorbers.count, layout.axial_parities
+    along = waves * points * axial
+    spectra, histories = COMPLEX * along * size.nodes, REAL * along * size.instants
+    one_wave = WORKERS * size.shells**2 * 6.0 * size.plane
+    solving = pairs * 0.3e-6 * size.shells * 1.5
+    if not size.nonlinear:
+        systems = WORKERS * 6.0 * COMPLEX * size.nodes * points**2
+        exact = waves * size.nodes * (4.0 * points**2 * (layout.classes.count + points)) * _NANOSECONDS
+        return Cost(3.0 * spectra + 2.5 * histories + one_wave + systems, solving + exact)
+    channels = waves * layout.classes.count
+    kernels = REAL * size.shells**2 * channels * size.instants
+    parities = layout.absorbers.parities * axial
+    past = 2.0 * size.shells * parities * REAL * channels * size.instants
+    steps = block_steps(layout.absorbers.count)
+    matrices = 2.5 * REAL * waves * (steps * points) ** 2
+    past_seconds = 25.0 * size.shells**2 * channels * parities * math.log2(size.instants + 2)
+    march = size.instants * (past_seconds + 60.0 * waves * axial * points**2) * _NANOSECONDS
+    return Cost(5.0 * kernels + past + matrices + 6.0 * histories + 2.5 * spectra + one_wave, solving + 1.4 * march)

@@ -216,7 +216,7 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
     :func:`march_error`; actuators are taken as free, which changes most.
     """
     grid, problem, links = structure.grid, structure.problem, interface.links
-    late = np.flatnonzero(unresolved_orders(problem, grid, structure.modes.max_order))
+    late = np.flatnonzero(unresolved_orders(problem, grid, structure.modes))
     if not late.size:
         return np.zeros_like(whole)
     points, compliance = InterfacePoints(problem, links, structure.modes), structure.compliance

@@ -214,9 +214,9 @@ class StructureSpectra:
         problem, grid = self.problem, self.grid
         velocity = velocity_weights(problem, grid, self.compliance)
         rate = sensor_rate_weights(problem, grid, self.compliance, self.tangential_ratio, sensors)
-        late = unresolved_orders(problem, grid, self.modes.max_order)
+        late = unresolved_orders(problem, grid, self.modes)
         if late.any():
-            velocity[:, :, late], rate[:, :, late] = trapezoidal_weights(problem, grid, self.modes.orders[late], sensors)
+            velocity[:, :, late], rate[:, :, late] = trapezoidal_weights(problem, grid, Modes(self.modes.orders[late]), sensors)
         return velocity, rate
 
     @cached_property

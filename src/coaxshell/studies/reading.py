@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
@@ -17,6 +18,7 @@ from coaxshell.response.energy.absorbers import absorber_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.quantities import Quantity, Where, shell_metrics
+from coaxshell.response.spatial import SpatialResponse
 from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import segment_length
@@ -167,6 +169,14 @@ class MetricSource(DesignReading):
         """Largest force of any absorber on either of its shells, N/m, or N of those at points; 0 without absorbers."""
         return float(np.abs(self.response.absorber_force()).max()) if self.absorber_count else 0.0
 
+    def _of_absorbers(self, what: str) -> FloatArray | None:
+        """Return histories of line absorbers, dimensionless, at all stations where there are any."""
+        require_lines(self.system)
+        response = self.response
+        if isinstance(response, SpatialResponse):
+            return response.spatial.line_displacement if what == "displacement" else response.spatial.line_force
+        return self.solution.absorber_displacement if what == "displacement" else self.solution.absorber_force
+
     @cached_property
     def dissipated_energy(self) -> float:
         """Energy that the absorbers' dampers have turned into heat by the end of the run, J/m; 0 without absorbers."""
@@ -179,6 +189,12 @@ class MetricSource(DesignReading):
     def time_window_error(self) -> float:
         """Estimate of the error of the inverse transform, relative."""
         return float(self.solution.estimates.time_window)
+
+
+def require_lines(system: System) -> None:
+    """Refuse what is per metre of absorbers that have no length: InputError."""
+    if system.point_absorbers:
+        raise InputError("absorbers", "point absorbers are not read by metrics, which are per metre", "use a function of the response")
 
 
 def shell_mass(shell: Shell) -> float:

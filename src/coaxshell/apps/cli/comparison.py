@@ -43,7 +43,7 @@ def compared(named: Mapping[str, Response]) -> dict[str, Response]:
         They have no station in common.
     """
     from coaxshell.response.spatial import SpatialResponse
-    from coaxshell.response.stations import SAME
+    from coaxshell.response.station_choice import SAME
 
     spatial = {name: response for name, response in named.items() if isinstance(response, SpatialResponse)}
     if len(spatial) < len(named):
@@ -103,10 +103,10 @@ def comparison_rows(first: Summary | SpatialSummary, second: Summary | SpatialSu
                 texts = [_NONE if value is None else engineering(value, unit) for value in pair]
                 grows = any(isinstance(value, Mapping) and value.get("growing", False) for value in found)
                 rows.append((name, label, *texts, GROWING if grows else against(pair[0], pair[1])))
-    spatial = ["stations" in one for one in plain]
     of_absorbers = [("absorber_displacement", "displacement of masses", "m")]
-    if spatial[0] == spatial[1]:  # a line's force is per metre, a point's is none
-        of_absorbers.append(("absorber_force", "force on a shell", "N" if spatial[0] else "N/m"))
+    units = {one.get("absorber_force_unit", "N/m") for one in plain if one.get("absorber_force") is not None}
+    if len(units) == 1:  # a line's force is per metre, a point's is none
+        of_absorbers.append(("absorber_force", "force on a shell", units.pop()))
     for key, label, unit in of_absorbers:
         pair = [one.get(key) for one in plain]
         if any(value is not None for value in pair):

@@ -265,8 +265,9 @@ def runs_document(named: Mapping[str, Summary]) -> dict[str, Any]:
         "angle": "deg",
         "transit_time": "s",
     }
-    flat = any(run["settings"].get("dimensions", 2) == 2 for run in runs)
-    units |= {"station": "m", "absorber_force": "N/m in two dimensions, N in three" if flat else "N"} if dimensions == 3 else {}
+    if dimensions == 3:
+        forces = {run.get("absorber_force_unit", "N" if run["settings"].get("dimensions", 2) == 3 else "N/m") for run in runs}
+        units |= {"station": "m", "absorber_force": "N/m of lines, N of points" if len(forces) > 1 else forces.pop()}
     return {"runs": runs, "units": units}
 
 

@@ -10,10 +10,12 @@ import numpy as np
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import integrate
+from coaxshell.numerics.modes import Modes
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.interface.absorbers import Properties, properties
 from coaxshell.solver.interface.link_motion import LinkMotion
+from coaxshell.structure.shell_model import ShellModel
 
 
 class AbsorberEnergy(NamedTuple):
@@ -97,6 +99,9 @@ def _at_absorbers(motion: Motion, shell: int, angle: FloatArray) -> tuple[FloatA
 
 
 def _impedance(motion: Motion, shell: int) -> float:
+    return line_impedance(motion.problem.shells[shell], motion.modes, motion.grid)
+
+
+def line_impedance(wall: ShellModel, modes: Modes, grid: LaplaceGrid) -> float:
     """Return Z, by which a line force moves the wall's own mass within half a step of the run, spread over the orders -M..M."""
-    wall = motion.problem.shells[shell]
-    return 4.0 * np.pi * wall.radius * wall.mass / (motion.grid.time_step * (2 * motion.modes.max_order + 1))
+    return 4.0 * np.pi * wall.radius * wall.mass / (grid.time_step * (2 * modes.max_order + 1))

@@ -22,11 +22,16 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.energy.balance import ARRAYS, labelled, whole_steps
 from coaxshell.response.energy.held_points import HeldPoints
+from coaxshell.response.energy.lines import WallsAtLines, lines_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.parts import Entry, absorber_entries, parts_of
+from coaxshell.solver.axial.blocks import on_threads
+from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
+from coaxshell.solver.axial.lines import line_layout
 from coaxshell.solver.axial.motion import wave_motions
-from coaxshell.solver.axial.sampling import whole_length_sampling
+from coaxshell.solver.axial.sampling import AxialSampling, whole_length_sampling
 from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.cost import run_cost
 from coaxshell.solver.scaling import Problem
 
 _ALIKE = 10.0
@@ -66,11 +71,14 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     Cost(2.0 * ARRAYS * solution.fields["w"][0].nbytes * settings.refinement).require(
         f"the energy of {solution.time.size:,} instants and orders 0 to {sampling.max_order:,}", "run fewer orders or a coarser step"
     )
+    linked = _lines(solution, sampling, grid, progress)
+    walls = None if linked is None else WallsAtLines(linked, grid)
     count = 1 if uniform else len(sampling.modes)
     total: dict[str, Entry] = {}
     power = np.zeros(len(problem.shells))
     held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
-    for j, wave in enumerate(wave_motions(problem, sampling, grid, None if held is None else held.forces)):
+    forces = held.forces if held is not None else None if linked is None else linked.forces
+    for j, wave in enumerate(wave_motions(problem, sampling, grid, forces)):
         motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, every * settings.refinement, wave.incident)
         power += [wave.length * motion.power(wall).sum() for wall in range(power.size)]
         if not uniform:
@@ -86,11 +94,26 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
             total[name] = part._replace(values=before + wave.length * part.values)
         if held is not None:
             held.add(wave)
+        if walls is not None:
+            walls.add(wave, j)
+    kept = slice(None, None, every * settings.refinement)
     if held is not None:
-        total |= absorber_entries(held.energy(slice(None, None, every * settings.refinement)))
+        total |= absorber_entries(held.energy(kept))
+    if walls is not None:
+        total |= absorber_entries(lines_energy(walls, kept, 1.0 if uniform else sampling.period))
     scales = problem.scales
     found = labelled(solution, every, total, scales.line_energy if uniform else scales.energy, "J/m" if uniform else "J")
     return found.assign_attrs(extent="per metre of length" if uniform else "over the whole length")
+
+
+def _lines(solution: SpatialSolution, sampling: AxialSampling, grid: LaplaceGrid, progress: Progress | None) -> LineSolution | None:
+    """Return what line absorbers do all along the axis, None if there are none."""
+    problem, settings = solution.problem, solution.settings
+    if not problem.system.absorber_list:
+        return None
+    longer = replace(settings, axial_period=max(sampling.period * problem.scales.length, settings.axial_period or 0.0))
+    run_cost(problem, longer).require("line absorbers over the whole length", "run fewer orders or a coarser step")
+    return solve_lines(line_layout(problem, sampling), grid, on_threads, progress)
 
 
 def require_balanced(problem: Problem) -> None:

@@ -23,7 +23,7 @@ from coaxshell.response.fields.modal_field import Transfer, region_slopes
 from coaxshell.response.fields.request import SMEAR, FieldRequest, Region, Tell, filter_weight
 from coaxshell.solver.axial.causality import reach
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
-from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import forces_of
@@ -93,8 +93,8 @@ class SpatialWaves:
         Axial positions, in a.
     part : str
     filter : str or None
-    forces : PointForces or None
-        Of point absorbers, at the nodes of the run.
+    forces : WallForces or None
+        Of absorbers, at the nodes of the run.
     """
 
     problem: Problem
@@ -103,7 +103,7 @@ class SpatialWaves:
     z: FloatArray
     part: str
     filter: str | None
-    forces: PointForces | None = None
+    forces: WallForces | None = None
 
     @property
     def parities(self) -> int:

@@ -9,7 +9,7 @@ For the share of a spherical wave from z0 with the axial period L (theory manual
 
     e = c cos k(z - z0),    o = c sin k(z - z0),    c = 2/L for k = 0, else 4/L,
 
-and half of c for forces at points of a wall, which are taken apart into what is even and what is odd about z = 0; for a plane wave
+and half of c for forces on a wall, which are taken apart into what is even and what is odd about some z; for a plane wave
 inclined by alpha, of complex wavenumber k = -i s sin alpha,
 
     e = e^{-s z sin alpha},    o = i e.
@@ -28,7 +28,7 @@ from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities
 from coaxshell.solver.scaling import Problem
@@ -47,8 +47,8 @@ class Family:
         Mean square of e along the axis.
     parities : int
         Of the motion around the circle.
-    forces : PointForces or None
-        Of point absorbers, instead of sources.
+    forces : WallForces or None
+        Of absorbers, instead of sources.
     odd_forces : bool
         Whether of these forces what is odd along z.
     """
@@ -58,7 +58,7 @@ class Family:
     odd: npt.NDArray[np.number]
     mean: FloatArray
     parities: int
-    forces: PointForces | None = None
+    forces: WallForces | None = None
     odd_forces: bool = False
 
 
@@ -88,9 +88,9 @@ def axial_position(source: Source) -> float:
 
 
 def wave_sets(
-    problem: Problem, sampling: AxialSampling, stations: FloatArray, s: ComplexArray, forces: PointForces | None = None
+    problem: Problem, sampling: AxialSampling, stations: FloatArray, s: ComplexArray, forces: WallForces | None = None
 ) -> list[WaveSet]:
-    """Return all waves of the sources of a problem at some nodes, and those of the forces of point absorbers.
+    """Return all waves of the sources of a problem at some nodes, and those of the forces of absorbers.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def wave_sets(
     stations : ndarray, shape (stations,)
         z of the stations, in a.
     s : ndarray, shape (nodes,)
-    forces : PointForces, optional
+    forces : WallForces, optional
         At the same nodes.
     """
     a, top, parities = problem.scales.length, sampling.max_order, source_parities(problem.system.sources)
@@ -127,11 +127,9 @@ def wave_sets(
     return [*sets, WaveSet(sampling.modes, families)] if families else sets
 
 
-def _force_families(sampling: AxialSampling, stations: FloatArray, forces: PointForces) -> list[Family]:
-    """Return the waves of forces at points: cos k z cos k z_b and sin k z sin k z_b of each, 1/L for k = 0, else 2/L."""
-    cosine, sine = (0.5 * share for share in sampling.shares(stations))
+def _force_families(sampling: AxialSampling, stations: FloatArray, forces: WallForces) -> list[Family]:
+    """Return the waves of forces: what is even about their origin, and what is odd if there is any; 1/L for k = 0, else 2/L."""
+    cosine, sine = (0.5 * share for share in sampling.shares(stations - forces.origin))
     mean, around = 0.25 * sampling.mean, forces.parities
-    return [
-        Family([], cosine, sine, mean, around, forces),
-        Family([], sine, -cosine, mean, around, forces, odd_forces=True),
-    ]
+    even = Family([], cosine, sine, mean, around, forces)
+    return [even, Family([], sine, -cosine, mean, around, forces, odd_forces=True)] if forces.axial_parities == 2 else [even]

@@ -17,7 +17,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
-from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.samples import samples_of
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.softened import Softened
@@ -38,8 +38,8 @@ class LeftOut(NamedTuple):
     axial: FloatArray
 
 
-def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, forces: PointForces | None = None) -> LeftOut:
-    """Return the squares of what is left out under sources and forces of point absorbers at the sampled nodes, summed over these."""
+def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, forces: WallForces | None = None) -> LeftOut:
+    """Return the squares of what is left out under sources and forces of absorbers at the sampled nodes, summed over these."""
     s, count = grid.nodes[NODES], len(problem.shells)
     found = LeftOut(np.zeros((count, 2)), np.zeros((count, 2)))
     for waves in wave_sets(problem, sampling, np.zeros(1), s, forces):
@@ -67,6 +67,7 @@ def estimated_errors(
     motion: StationSpectra,
     histories: tuple[FloatArray, FloatArray],
     soft: Softened | None = None,
+    forces: WallForces | None = None,
     force_error: float = 0.0,
 ) -> Estimates:
     """Return the printed errors of a three-dimensional run.
@@ -83,6 +84,8 @@ def estimated_errors(
         W and V at the stations.
     soft : Softened, optional
         What point absorbers do with the waves left out.
+    forces : WallForces, optional
+        Of line absorbers, at all nodes.
     force_error : float
         The relative error of their forces by the steps of the march.
     """
@@ -97,7 +100,8 @@ def estimated_errors(
     circle = np.where(np.arange(squares.shape[-1]) == 0, 1.0, 0.5)
     by_sources, by_forces = (squares * lasting * circle).sum(axis=-1) / NODES.step
     total = by_sources + by_forces
-    missing = left_out(problem, grid, sampling, None if soft is None else soft.forces)
+    acting = soft.forces if soft is not None else None if forces is None else forces.at(NODES)
+    missing = left_out(problem, grid, sampling, acting)
     if soft is None:
         orders, axial = (ORDERS_FACTOR * relative(part * beyond, total + part * beyond) for part in missing)
     else:

@@ -120,7 +120,7 @@ class PointStructure(StructureSpectra):
             hat, weights = grid.hat * grid.time_step, np.empty((shell.size, shell.size, 1, grid.time.size))
             for a, i in enumerate(shell):
                 mass = self.problem.shells[i].leading(self.modes).mass
-                decay = initial_decay(self.problem, int(i), 0)
+                decay = initial_decay(self.problem, int(i), self.modes)
                 at_once = self.immediate[a][:, None] / mass
                 rest = self.receptance[a] * grid.nodes - at_once / (grid.nodes + decay)
                 weights[a, :, 0] = grid.invert(rest * hat) + at_once * exponential_weights(decay, grid)

@@ -23,8 +23,9 @@ from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.families import Family, wave_sets
-from coaxshell.solver.axial.point_forces import PointForces, WallPoints
+from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import amplitudes_of
 from coaxshell.solver.excitation import incident_of, source_parities
@@ -59,6 +60,11 @@ class WaveMotion:
     _problem: Problem
     _grid: LaplaceGrid
 
+    @property
+    def around(self) -> int:
+        """How many parities of the circle there are for each of the axis."""
+        return self._around
+
     def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return modal pressure and slope dp/dr on the outermost surface as if nothing were there, each (parities, orders, nodes)."""
         parities = source_parities(self._problem.system.sources)
@@ -78,7 +84,7 @@ class WaveMotion:
         return found
 
 
-def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, forces: PointForces | None = None) -> Iterator[WaveMotion]:
+def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, forces: WallForces | None = None) -> Iterator[WaveMotion]:
     """Yield the motion of every axial wavenumber in turn, of sources that are all spherical or all uniform along the axis.
 
     Parameters
@@ -87,16 +93,16 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         Of three dimensions.
     sampling : AxialSampling
     grid : LaplaceGrid
-    forces : PointForces, optional
-        Of point absorbers under spherical sources.
+    forces : WallForces, optional
+        Of absorbers, at these wavenumbers and nodes.
     """
     origin, around = np.zeros(1), source_parities(problem.system.sources)
     around = around if forces is None else max(around, forces.parities)
     blocks = node_blocks(grid, sampling.max_order)
     per_block = [
-        wave_sets(problem, sampling, origin, grid.nodes[block], None if forces is None else forces.at(block))[0] for block in blocks
+        _one_set(wave_sets(problem, sampling, origin, grid.nodes[block], None if forces is None else forces.at(block))) for block in blocks
     ]
-    waves = wave_sets(problem, sampling, origin, grid.nodes, forces)[0]
+    waves = _one_set(wave_sets(problem, sampling, origin, grid.nodes, forces))
     for j, modes in enumerate(waves.modes):
         shares = np.array([[family.even[0, j], family.odd[0, j]] for family in waves.families])
         if not shares[:, 1].any():
@@ -112,6 +118,11 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
         yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, around, problem, grid)
+
+
+def _one_set(sets: list[WaveSet]) -> WaveSet:
+    """Return all families in one set: forces of absorbers under uniform sources have their one wavenumber, k = 0."""
+    return WaveSet(sets[0].modes, [family for waves in sets for family in waves.families])
 
 
 def _superposed(shares: FloatArray, amplitudes: list[ComplexArray], around: int) -> ComplexArray:

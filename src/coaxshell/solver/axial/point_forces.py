@@ -85,6 +85,8 @@ class PointForces:
     points: WallPoints
     force: ComplexArray
     parities: int
+    origin = 0.0
+    axial_parities = 2
 
     def at(self, nodes: slice) -> PointForces:
         """Return the forces at a slice of their nodes."""

@@ -50,7 +50,7 @@ def _sample(orders: FloatArray, wavenumber: float | ComplexArray, stands_for: fl
 
 def samples_of(problem: Problem, sampling: AxialSampling, waves: WaveSet) -> list[Sample]:
     """Return samples of what lies beyond the waves kept of a set: of all wavenumbers, or of the one of uniform or inclined sources."""
-    if waves.modes is sampling.modes:
+    if waves.modes is sampling.modes and len(waves.modes) > 1:
         return spherical_samples(sampling)
     return [_sample(orders_above(problem, sampling.max_order + 1), waves.modes[0].wavenumber, 1.0, True)]
 

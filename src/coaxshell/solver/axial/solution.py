@@ -10,12 +10,15 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution, is_whole
 from coaxshell.structure.shell_model import FIELDS
+
+LINES = ("line_displacement", "line_force")
+"""Histories of line absorbers at the stations."""
 
 
 class StationSpectra(NamedTuple):
@@ -50,11 +53,15 @@ class SpatialSolution:
         q of the point absorbers.
     absorber_force : ndarray, shape (absorbers, 2, T), or None
         Forces on the inner [0] and outer [1] of the shells they link, positive inward, in units of rho_e c_e^2 a^2.
+    line_displacement : ndarray, shape (stations, absorbers, T), or None
+        q of the line absorbers.
+    line_force : ndarray, shape (stations, absorbers, 2, T), or None
+        Forces per length on the inner [0] and outer [1] of the shells they link, positive inward, in units of rho_e c_e^2 a.
     spectra : StationSpectra or None
         Transforms of the motion at the stations, where they are no more than half a gigabyte. A copy sent to another process (pickle)
         has none, as after :meth:`coaxshell.response.spatial.SpatialResponse.without_transforms`.
-    forces : list of PointForces
-        Transforms of the forces of the point absorbers, one or none: those of the run, or, of one from a file, once they are solved again.
+    forces : list of WallForces
+        Transforms of the forces of the absorbers, one or none: those of the run, or, of one from a file, once they are solved again.
         Shared by the solutions of one run.
     """
 
@@ -68,8 +75,10 @@ class SpatialSolution:
     timings: dict[str, float] = field(default_factory=dict)
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
+    line_displacement: FloatArray | None = None
+    line_force: FloatArray | None = None
     spectra: StationSpectra | None = field(default=None, compare=False, repr=False)
-    forces: list[PointForces] = field(default_factory=list, compare=False, repr=False)
+    forces: list[WallForces] = field(default_factory=list, compare=False, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms, the largest part of it."""
@@ -93,7 +102,8 @@ class SpatialSolution:
         if spectra is not None:
             spectra = StationSpectra(spectra.grid, spectra.normal[chosen], spectra.tangential[chosen])
         fields = {name: values[chosen] for name, values in self.fields.items()}
-        return replace(self, settings=settings, fields=fields, spectra=spectra)
+        q, f = (None if x is None else x[chosen] for x in (self.line_displacement, self.line_force))
+        return replace(self, settings=settings, fields=fields, spectra=spectra, line_displacement=q, line_force=f)
 
     def at(self, station: int) -> ModalSolution:
         """Return what a station by its number does as if it were a run of its own."""

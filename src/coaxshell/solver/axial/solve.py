@@ -16,10 +16,12 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver import checks
 from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.left_out import estimated_errors
+from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
+from coaxshell.solver.axial.lines import line_layout, require_lines_alone
 from coaxshell.solver.axial.linked import PointSolution, point_structure, solve_points
 from coaxshell.solver.axial.mode_choice import resolved_sampling
-from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.softened import softened
@@ -71,7 +73,7 @@ def solve_spatial(
     run = {"scenario": system.canonical(), "resolution": settings.arguments()}
     with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:
         linked = _linked(problem, grid, sampling, progress, on)
-        stopwatch.lap("point absorbers")
+        stopwatch.lap("absorbers")
         forces = None if linked is None else linked.forces
         spectra, squares = _summed(problem, grid, sampling, settings, forces, progress, on)
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
@@ -80,14 +82,19 @@ def solve_spatial(
     stopwatch.lap("inverse transform")
     motion = StationSpectra(grid, spectra["w"], spectra["v"])
     moved = histories["w"], histories["v"]
-    soft = None if linked is None else softened(problem, grid, sampling, linked)
-    estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, soft, 0.0 if linked is None else linked.error)
+    soft = softened(problem, grid, sampling, linked) if isinstance(linked, PointSolution) else None
+    force_error = 0.0 if linked is None else linked.error
+    estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, soft, forces, force_error)
     stopwatch.lap("error estimates")
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
     if linked is not None:
         solution.forces.append(linked.forces)
+    if isinstance(linked, PointSolution):
         solution = replace(solution, absorber_displacement=linked.displacement[..., keep], absorber_force=linked.force[..., keep])
+    if isinstance(linked, LineSolution):
+        force, moved_masses = linked.at(solution.stations / problem.scales.length)
+        solution = replace(solution, line_displacement=moved_masses[..., keep], line_force=force[..., keep])
     return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
 
 
@@ -110,8 +117,8 @@ def station_spectra(solution: SpatialSolution) -> StationSpectra:
     return StationSpectra(grid, spectra["w"], spectra["v"])
 
 
-def forces_of(solution: SpatialSolution) -> PointForces | None:
-    """Return the transforms of the forces of a finished run's point absorbers, solved again if it was loaded; None without absorbers."""
+def forces_of(solution: SpatialSolution) -> WallForces | None:
+    """Return the transforms of the forces of a finished run's absorbers, solved again if it was loaded; None without absorbers."""
     if not solution.forces:
         linked = _linked(solution.problem, laplace_grid(solution.settings), solution.sampling, None, on_threads)
         if linked is None:
@@ -125,8 +132,12 @@ def laplace_grid(settings: Settings) -> LaplaceGrid:
     return LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
 
 
-def _linked(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, progress: Progress | None, on: BlockMap) -> PointSolution | None:
-    """Return what the point absorbers do, None if there are none."""
+def _linked(
+    problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, progress: Progress | None, on: BlockMap
+) -> PointSolution | LineSolution | None:
+    """Return what the absorbers do, None if there are none."""
+    if problem.system.absorber_list:
+        return solve_lines(line_layout(problem, sampling), grid, on, progress)
     if not problem.system.point_absorbers:
         return None
     blocks = node_blocks(grid)
@@ -138,7 +149,7 @@ def _summed(
     grid: LaplaceGrid,
     sampling: AxialSampling,
     settings: Settings,
-    forces: PointForces | None,
+    forces: WallForces | None,
     progress: Progress | None,
     on: BlockMap,
 ) -> tuple[dict[str, ComplexArray], FloatArray]:
@@ -159,12 +170,7 @@ def _summed(
 def require_known(problem: Problem, settings: Settings) -> None:
     """Refuse what belongs to two dimensions, and stations that an inclined wave has passed before t = 0."""
     system = problem.system
-    if system.absorber_list:
-        raise InputError(
-            "absorbers",
-            "line absorbers are uniform along the axis, a spherical shock is not",
-            "give them a z (point absorbers), or use dimensions=2",
-        )
+    require_lines_alone(problem)
     if system.control is not None and system.control.saturation:
         raise InputError("control.saturation", "is marched in two dimensions alone", "use saturation = false")
     for source, geometry in zip(system.sources, problem.sources, strict=True):

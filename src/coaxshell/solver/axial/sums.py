@@ -15,7 +15,7 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
-from coaxshell.solver.axial.point_forces import PointForces
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities, superposed
@@ -34,14 +34,14 @@ def station_sums(
     grid: LaplaceGrid,
     sampling: AxialSampling,
     stations: FloatArray,
-    forces: PointForces | None,
+    forces: WallForces | None,
     block: slice,
 ) -> Found:
-    """Return the motion at stations (z in a) at a slice of the grid's nodes, under the sources and forces of point absorbers.
+    """Return the motion at stations (z in a) at a slice of the grid's nodes, under the sources and forces of absorbers.
 
     Arrays (stations, shells, parities, M + 1, nodes) by the names of :data:`coaxshell.structure.shell_model.FIELDS` and "potential 0", ...,
     those left out that are zero at all stations; and "squares", (2, shells, 2, M + 1): mean squares along the axis of W and of the
-    strains, |m V - W|^2 + |k U|^2, parities and nodes added up, under the sources [0] and under the forces of point absorbers [1].
+    strains, |m V - W|^2 + |k U|^2, parities and nodes added up, under the sources [0] and under the forces of absorbers [1].
     """
     s, parities = grid.nodes[block], source_parities(problem.system.sources)
     parities = parities if forces is None else max(parities, forces.parities)
@@ -83,17 +83,24 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
 
 def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
     """Return W, V, U and potentials of a wave under the loads of a family, (3 + layers, shells, parities, orders, nodes)."""
-    modes, layers, motions = system.modes, piezoelectric_layers(problem), []
+    layers, motions = piezoelectric_layers(problem), []
+    for normal in normals_of(problem, system, family, grid, block):
+        motion = [normal, system.tangential(normal), system.axial(normal)]
+        motions.append(np.array([*motion, *_potentials(problem, system.modes, layers, *motion)]))
+    return np.stack(motions, axis=2)
+
+
+def normals_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> list[list[ComplexArray]]:
+    """Return W of every shell, (orders, nodes), under the loads of a family, for each parity around."""
+    modes, found = system.modes, []
     units = [(group.geometry.prepare(grid, modes)(system.radial, block), group) for group in family.groups]
     on_outermost = superposed(family.parities, modes, units) if units else []
     forces = {} if family.forces is None else family.forces.loads(problem, modes, odd=family.odd_forces)
     for parity in range(family.parities):
         each = [system.solve_outside(on_outermost[parity])] if units else []
         each += [system.solve(shell, pressures[parity]) for shell, pressures in forces.items()]
-        normal = [np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)]
-        motion = [normal, system.tangential(normal), system.axial(normal)]
-        motions.append(np.array([*motion, *_potentials(problem, modes, layers, *motion)]))
-    return np.stack(motions, axis=2)
+        found.append([np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)])
+    return found
 
 
 def piezoelectric_layers(problem: Problem) -> int:

@@ -50,13 +50,21 @@ def exact_motion(absorbers: AbsorberSet, grid: LaplaceGrid, force: ComplexArray,
 
 def marched_motion(absorbers: AbsorberSet, time_step: float, force: FloatArray, displacement: FloatArray) -> LinkMotion:
     """Return the motion from the histories of the forces (N, 2, T) and of q (N, T) of every absorber of the description."""
+    law = [x[absorbers.member, None] for x in (absorbers.damping, absorbers.linear, absorbers.cubic)]
+    return motion_by_law((law[0], law[1], law[2]), time_step, force, displacement)
+
+
+def motion_by_law(
+    law: tuple[FloatArray, FloatArray, FloatArray], time_step: float, force: FloatArray, displacement: FloatArray
+) -> LinkMotion:
+    """Return the motion from histories as :func:`marched_motion`, by c, k_l and k_nl of each absorber, (N, 1)."""
     velocity, half = np.zeros_like(displacement), 0.5 * time_step
     slope = np.diff(displacement, axis=-1) / half
     for n in range(1, displacement.shape[-1]):
         velocity[:, n] = slope[:, n - 1] - velocity[:, n - 1]
-    c, linear, cubic = (x[absorbers.member, None] for x in (absorbers.damping, absorbers.linear, absorbers.cubic))
+    c, linear, cubic = law
     rates = np.zeros((force.shape[-1], *force.shape[:2]))
-    if absorbers.damping.any():
+    if c.any():
         stretch = np.zeros(force.shape[:2])
         for n in range(1, len(rates)):
             predicted = stretch + half * rates[n - 1]

@@ -1,0 +1,104 @@
+"""Energy of line absorbers over an axial period, and what their dampers turn into heat (unit rho_e c_e^2 a^3).
+
+Springs of third order have no energy of single axial wavenumbers: it is taken point by point, and integrated along the period.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.late import integrate
+from coaxshell.response.energy.absorbers import AbsorberEnergy, line_impedance
+from coaxshell.solver.axial.line_solve import LineSolution
+from coaxshell.solver.axial.motion import WaveMotion
+from coaxshell.solver.interface.link_motion import LinkMotion, motion_by_law
+
+
+class WallsAtLines:
+    """Histories of the walls at the lines of absorbers, gathered wave by wave as sums along the axis.
+
+    Parameters
+    ----------
+    solution : LineSolution
+    grid : LaplaceGrid
+    """
+
+    def __init__(self, solution: LineSolution, grid: LaplaceGrid) -> None:
+        self.solution, self.layout, self._grid = solution, solution.forces.layout, grid
+        self.displacement, self.velocity = np.zeros((2, *solution.force.shape))
+
+    def add(self, wave: WaveMotion, j: int) -> None:
+        """Take over what a wave does at the lines: A cos kz - B sin kz, in terms of z - z_0."""
+        layout, shapes = self.layout, self.layout.absorbers.shapes(wave.modes)
+        around = min(len(shapes), wave.around)
+        turn = float(wave.modes.wavenumber) * layout.origin
+        parts = wave.normal.reshape(wave.normal.shape[0], -1, wave.around, *wave.normal.shape[2:])
+        per_shell = np.einsum("pnm,sapmk->sank", shapes[:around], parts[:, :, :around], optimize=True)
+        at = per_shell[layout.points.shell, :, np.tile(np.arange(layout.absorbers.count), 2)]
+        even, odd = at[:, 0], at[:, 1] if at.shape[1] == 2 else np.zeros_like(at[:, 0])
+        both = [np.cos(turn) * even - np.sin(turn) * odd, -np.sin(turn) * even - np.cos(turn) * odd]
+        for parity in range(layout.axial_parities):
+            self.displacement[j, :, parity] = self._grid.invert(both[parity])
+            self.velocity[j, :, parity] = self._grid.invert(both[parity] * self._grid.nodes)
+
+
+def lines_energy(walls: WallsAtLines, kept: slice, length: float) -> AbsorberEnergy:
+    """Return the energies of all absorbers over a length of the axis; see :func:`coaxshell.response.energy.absorbers.absorber_energy`.
+
+    Parameters
+    ----------
+    walls : WallsAtLines
+        All waves taken over.
+    kept : slice
+        Instants at which stores are taken.
+    length : float
+        In a: the period, or 1 where nothing changes along it.
+    """
+    layout, grid, series = walls.layout, walls.solution.grid, walls.layout.series
+    absorbers, count = layout.absorbers, layout.absorbers.count
+    instants = grid.time.size
+    powers, energies = np.zeros((2, instants)), np.zeros((2, np.arange(instants)[kept].size))
+
+    def along(coefficients: FloatArray) -> FloatArray:
+        return series.values(np.ascontiguousarray(coefficients.swapaxes(1, 2)))
+
+    for n in range(count):
+        sides, share = [n, n + count], length * float(absorbers.multiplicity[n]) * series.weights
+        damping, linear, cubic, mass = (float(x[n]) for x in (absorbers.damping, absorbers.linear, absorbers.cubic, absorbers.mass))
+        links = _links(walls, n)
+        energies[0] += share @ (0.5 * mass * links.velocity[:, kept] ** 2)
+        for side, point in enumerate(sides):
+            stretch = links.displacement - along(walls.displacement[:, point])
+            parting = links.velocity - along(walls.velocity[:, point])
+            spring = (linear + cubic * stretch**2) * stretch
+            energies[1] += share @ (0.5 * linear * stretch[:, kept] ** 2 + 0.25 * cubic * stretch[:, kept] ** 4)
+            if damping > 0.0:
+                wall = layout.problem.shells[layout.points.shell[point]]
+                weaker = damping / (damping + line_impedance(wall, layout.sampling.modes[0], grid))
+                rate = parting + weaker * (links.stretch_rate[:, side] - parting)
+                powers[0] += share @ (damping * rate**2)
+                powers[1] += share @ ((links.force[:, side] - spring) * parting)
+    taken = integrate.cumulative_simpson(powers, dx=grid.time_step, initial=0.0, axis=-1)[:, kept]
+    return AbsorberEnergy(energies[0], energies[1], taken[0], taken[1] - taken[0])
+
+
+def _links(walls: WallsAtLines, n: int) -> LinkMotion:
+    """Return the motion of an absorber at every point of the period, as if each were an absorber of its own."""
+    solution, layout, grid = walls.solution, walls.layout, walls.solution.grid
+    absorbers, series = layout.absorbers, layout.series
+    sides = [n, n + absorbers.count]
+
+    def along(coefficients: FloatArray) -> FloatArray:
+        return series.values(np.ascontiguousarray(coefficients.swapaxes(1, 2)))
+
+    force = np.stack([along(solution.force[:, point]) for point in sides], axis=1)
+    displacement = along(solution.displacement[:, n])
+    law = tuple(np.full((1, 1), float(x[n])) for x in (absorbers.damping, absorbers.linear, absorbers.cubic))
+    if solution.exact is None:
+        return motion_by_law((law[0], law[1], law[2]), grid.time_step, force, displacement)
+    of_force, of_mass = solution.exact
+    slope = absorbers.damping[n] * grid.nodes + absorbers.linear[n]
+    rates = np.stack([along(grid.invert(of_force[:, point] * (grid.nodes / slope))) for point in sides], axis=1)
+    return LinkMotion(force, displacement, along(grid.invert(of_mass[:, n] * grid.nodes)), rates)

@@ -1,0 +1,77 @@
+"""Forces of line absorbers along the axis, as loads on the waves of a three-dimensional run.
+
+A force per length f(z) at theta_n on a wall of radius R is, with F(k) the integral of f cos k(z - z_0) over an axial period, the pressure
+
+    P(m, k) = F(k) [cos, sin](m theta_n)/(beta_m pi R),        f(z) = (1/L) [F(k_0) + 2 sum_{j>=1} F(k_j) cos k_j (z - z_0)] + odd.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.lines import LineLayout
+from coaxshell.solver.scaling import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class LineForces:
+    """Transforms of the forces of all line absorbers at every axial wavenumber.
+
+    Attributes
+    ----------
+    layout : LineLayout
+    force : ndarray, shape (waves, 2N, axial parities, nodes)
+        F, of the absorbers carried, positive inward, those on the inner shells first.
+    """
+
+    layout: LineLayout
+    force: ComplexArray
+
+    @property
+    def parities(self) -> int:
+        """How many parities the motion around the circle has."""
+        return self.layout.absorbers.parities
+
+    @property
+    def origin(self) -> float:
+        """z_0, in a."""
+        return self.layout.origin
+
+    @property
+    def axial_parities(self) -> int:
+        """1 where everything is even about the origin, else 2."""
+        return self.layout.axial_parities
+
+    def at(self, nodes: slice) -> LineForces:
+        """Return the forces at a slice of their nodes."""
+        return replace(self, force=self.force[..., nodes])
+
+    def loads(self, problem: Problem, modes: Modes, *, odd: bool) -> dict[int, list[ComplexArray]]:
+        """Return the pressure amplitudes on each shell, of the functions even or odd along z: one (orders, nodes) a parity around.
+
+        Between the wavenumbers of the run forces are those of the nearest, above them those of the last.
+        """
+        assert isinstance(modes.wavenumber, float)  # forces make no waves of a complex wavenumber
+        nearest = round(modes.wavenumber / self.layout.sampling.spacing)
+        force = self.force[min(nearest, len(self.force) - 1), :, int(odd)]
+        absorbers = self.layout.absorbers
+        shares = problem.point_force_shares(absorbers, modes)
+        found: dict[int, list[ComplexArray]] = {}
+        for side in (0, 1):
+            for inner in np.unique(absorbers.inner_shell):
+                chosen, shell = np.flatnonzero(absorbers.inner_shell == inner), int(inner) + side
+                columns = np.ascontiguousarray(force[chosen + side * absorbers.count]).view(np.float64)
+                loads = [(share[chosen].T @ columns).view(np.complex128) / problem.shells[shell].radius for share in shares]
+                before = found.get(shell)
+                found[shell] = loads if before is None else [a + b for a, b in zip(before, loads, strict=True)]
+        return found
+
+
+def line_forces(layout: LineLayout, amplitudes: ComplexArray) -> LineForces:
+    """Return forces from transforms of their amplitudes along the axis, (waves, 2N, axial parities, nodes): F_0 = L f_0, else L f_j/2."""
+    per_amplitude: FloatArray = layout.sampling.period * np.where(np.arange(len(amplitudes)) == 0, 1.0, 0.5)
+    return LineForces(layout, amplitudes * per_amplitude[:, None, None, None])

@@ -1,0 +1,118 @@
+"""Line absorbers in three dimensions solved: exactly where they are linear, by the march where they are not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.progress import Progress, of_stage
+from coaxshell.solver.axial.blocks import BlockMap, Found
+from coaxshell.solver.axial.line_forces import LineForces, line_forces
+from coaxshell.solver.axial.line_march import LineMotion, march_lines
+from coaxshell.solver.axial.line_structure import line_answers, line_kernels, wave_blocks
+from coaxshell.solver.axial.lines import LineLayout
+from coaxshell.solver.step_error import SHARES, summed_weights
+
+
+@dataclass(frozen=True)
+class LineSolution:
+    """What the line absorbers of a run did.
+
+    Attributes
+    ----------
+    forces : LineForces
+        As loads on all waves.
+    grid : LaplaceGrid
+    force : ndarray, shape (waves, 2N, axial parities, T)
+        Their amplitudes along the axis, of the absorbers carried.
+    displacement : ndarray, shape (waves, N, axial parities, T)
+        Amplitudes of q.
+    error : float
+        Relative error of what the forces do to the walls by the steps of the march; 0 where nothing was marched.
+    exact : tuple of ndarray, or None
+        Transforms of force and displacement, where they were not marched.
+    """
+
+    forces: LineForces
+    grid: LaplaceGrid
+    force: FloatArray
+    displacement: FloatArray
+    error: float = 0.0
+    exact: tuple[ComplexArray, ComplexArray] | None = None
+
+    def at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return forces (z, N, 2, T) and displacements (z, N, T) of every absorber of the description at some z (in a)."""
+        layout = self.forces.layout
+        along, member = layout.along(z), layout.absorbers.member
+        force, displacement = (np.einsum("zkp,kipt->zit", along, x, optimize=True) for x in (self.force, self.displacement))
+        sides = force.reshape(z.size, 2, layout.absorbers.count, -1).swapaxes(1, 2)
+        return sides[:, member], displacement[:, member]
+
+
+def solve_lines(layout: LineLayout, grid: LaplaceGrid, on: BlockMap, progress: Progress | None = None) -> LineSolution:
+    """Return what the line absorbers do.
+
+    Raises
+    ------
+    InputError
+        If a step of the march does not converge.
+    """
+    if layout.absorbers.is_linear:
+        found = _mapped(layout, grid, line_answers, on, progress)
+        force, displacement = found["force"], found["displacement"]
+        forces = line_forces(layout, force)
+        return LineSolution(forces, grid, grid.invert(force), grid.invert(displacement), exact=(force, displacement))
+    found = _mapped(layout, grid, line_kernels, on, progress)
+    motion = LineMotion(found["displacement"], found["velocity"], found["weights"], grid.time_step)
+    result = march_lines(layout, motion, progress)
+    spectra = grid.transform_linear(result.force)
+    error = _march_error(layout, motion, result.moved)
+    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, error)
+
+
+def _mapped(
+    layout: LineLayout, grid: LaplaceGrid, work: Callable[[LineLayout, LaplaceGrid, slice], Found], on: BlockMap, progress: Progress | None
+) -> Found:
+    """Return what is found at all axial wavenumbers, from slices of them in turn."""
+    blocks = wave_blocks(layout)
+    whole: Found = {}
+    results = on(partial(work, layout, grid), blocks, of_stage(progress, "lines of the absorbers"))
+    for block, part in zip(blocks, results, strict=True):
+        for name, values in part.items():
+            axis = 2 if name == "weights" else 0
+            if name not in whole:
+                shape = list(values.shape)
+                shape[axis] = len(layout.sampling.modes)
+                whole[name] = np.empty(shape, values.dtype)
+            whole[name][(slice(None),) * axis + (block,)] = values
+    return whole
+
+
+def _march_error(layout: LineLayout, motion: LineMotion, moved: FloatArray) -> float:
+    """Return a share of what changes at steps eight times longer, or four times or twice; 1 if all of them fail.
+
+    In the displacement that forces give to the walls at the lines: forces themselves err more, in what is too fast to move a wall.
+    """
+    found = 1.0
+    for every, (share, telling) in SHARES.items():
+        steps = (motion.steps - 1) // every + 1
+        kept = slice(0, steps * every, every)
+        weights = summed_weights(motion.weights, every, steps)
+        coarser = LineMotion(motion.displacement[..., kept], motion.velocity[..., kept], weights, every * motion.time_step)
+        try:
+            with np.errstate(all="ignore"):
+                coarse = march_lines(layout, coarser).moved
+        except (InputError, np.linalg.LinAlgError, FloatingPointError):
+            continue
+        change, whole = moved[..., kept] - coarse, np.linalg.norm(moved[..., kept])
+        if np.isfinite(change).all() and whole > 0:
+            found = min(found, share * float(np.linalg.norm(change) / whole))
+        if found < telling:
+            break
+    return found

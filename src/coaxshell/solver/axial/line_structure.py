@@ -1,0 +1,113 @@
+"""What the walls do along the lines of absorbers, one axial wavenumber at a time: under the sources, and under forces there.
+
+Wavenumbers are independent of each other. Of each only what happens at the lines is kept: histories and step weights for a march, or the
+exact answer of linear absorbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import tell_share
+from coaxshell.solver.axial.blocks import Found
+from coaxshell.solver.axial.families import Family, wave_sets
+from coaxshell.solver.axial.lines import LineLayout
+from coaxshell.solver.axial.sums import normals_of
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.interface.absorbers import admittance
+from coaxshell.solver.kernels import velocity_weights
+from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
+from coaxshell.solver.spectral import node_blocks
+
+WAVES_TOGETHER = 4
+"""Axial wavenumbers of a piece of work that is shared out."""
+
+
+def wave_blocks(layout: LineLayout) -> list[slice]:
+    """Return consecutive slices of the axial wavenumbers."""
+    count = len(layout.sampling.modes)
+    return [slice(first, min(first + WAVES_TOGETHER, count)) for first in range(0, count, WAVES_TOGETHER)]
+
+
+def line_kernels(layout: LineLayout, grid: LaplaceGrid, waves: slice) -> Found:
+    """Return what a march needs of some axial wavenumbers.
+
+    Returns
+    -------
+    dict
+        "displacement" and "velocity" of the walls at the lines without absorbers, (waves, 2N, axial parities, T), and "weights", those of
+        the classes' pressures in their velocities (:mod:`coaxshell.solver.kernels`), (shells, shells, waves, classes, T).
+    """
+    found: dict[str, list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]] = {"displacement": [], "velocity": [], "weights": []}
+    for j in range(waves.start, waves.stop):
+        motion, compliance = wave_answers(layout, grid, j)
+        modes = layout.sampling.modes[j]
+        weights = velocity_weights(layout.problem, grid, compliance, modes)
+        late = unresolved_orders(layout.problem, grid, modes)
+        if late.any():
+            weights[:, :, late] = trapezoidal_weights(layout.problem, grid, Modes(modes.orders[late], modes.wavenumber), [])[0]
+        found["displacement"].append(grid.invert(motion))
+        found["velocity"].append(grid.invert(motion * grid.nodes))
+        found["weights"].append(layout.folded(weights))
+        tell_share((j + 1 - waves.start) / (waves.stop - waves.start))
+    return {name: np.stack(each, axis=2 if name == "weights" else 0) for name, each in found.items()}
+
+
+def line_answers(layout: LineLayout, grid: LaplaceGrid, waves: slice) -> Found:
+    """Return the exact answer of linear absorbers at some axial wavenumbers.
+
+    Returns
+    -------
+    dict
+        Transforms of "force", (waves, 2N, axial parities, nodes), and of the masses' "displacement", (waves, N, axial parities, nodes).
+    """
+    absorbers, count = layout.absorbers, layout.absorbers.count
+    own, other, mass = admittance(absorbers, grid.nodes)
+    law = np.zeros((grid.nodes.size, 2 * count, 2 * count), np.complex128)
+    index = np.arange(count)
+    for side in (0, 1):
+        law[:, side * count + index, side * count + index] = own
+        law[:, side * count + index, (1 - side) * count + index] = other
+    forces, displacements = [], []
+    for j in range(waves.start, waves.stop):
+        motion, compliance = wave_answers(layout, grid, j)
+        receptance = layout.points.receptance(layout.folded(compliance))
+        walls = np.linalg.solve(np.eye(2 * count) + receptance @ law, np.moveaxis(motion, -1, 0))
+        forces.append(np.moveaxis(-(law @ walls), 0, -1))
+        displacements.append(np.moveaxis(mass[:, :, None] * (walls[:, :count] + walls[:, count:]), 0, -1))
+        tell_share((j + 1 - waves.start) / (waves.stop - waves.start))
+    return {"force": np.stack(forces), "displacement": np.stack(displacements)}
+
+
+def wave_answers(layout: LineLayout, grid: LaplaceGrid, j: int) -> tuple[ComplexArray, ComplexArray]:
+    """Return w at the lines under the sources, (2N, axial parities, nodes), and C_ij, (shells, shells, orders, nodes), of a wavenumber."""
+    problem, modes = layout.problem, layout.sampling.modes[j]
+    walls, absorbers = len(problem.shells), layout.absorbers
+    shapes, shell = absorbers.shapes(modes), layout.points.shell
+    motion = np.zeros((shell.size, layout.axial_parities, grid.nodes.size), np.complex128)
+    compliance = np.empty((walls, walls, modes.count, grid.nodes.size), np.complex128)
+    for block in node_blocks(grid, modes.max_order):
+        system = ModalSystem(problem, grid.nodes[block], modes)
+        for pressed in range(walls):
+            for moved, w in enumerate(system.solve(pressed, 1.0)):
+                compliance[moved, pressed, :, block] = w
+        for family, share in _families(layout, grid.nodes[block], j):
+            for parity, normal in enumerate(normals_of(problem, system, family, grid, block)[: len(shapes)]):
+                at_lines = np.concatenate([shapes[parity] @ w for w in normal]).reshape(walls, absorbers.count, -1)
+                here = at_lines[shell, np.tile(np.arange(absorbers.count), 2)]
+                for along, part in enumerate(share[: layout.axial_parities]):
+                    motion[:, along, block] += part * here
+    return motion, compliance
+
+
+def _families(layout: LineLayout, s: ComplexArray, j: int) -> Iterator[tuple[Family, tuple[float, float]]]:
+    """Yield the families of sources that make waves of a wavenumber, and how much of cos k(z - z_0) and of sin k(z - z_0) they make."""
+    for waves in wave_sets(layout.problem, layout.sampling, np.array([layout.origin]), s):
+        if waves.modes is layout.sampling.modes or j == 0:
+            for family in waves.families:
+                yield family, (float(family.even[0, j]), -float(family.odd[0, j]))

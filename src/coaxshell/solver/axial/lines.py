@@ -1,0 +1,142 @@
+"""Line absorbers in three dimensions: uniform along the axis, and at every z as free as anywhere else.
+
+An absorber at theta_n is a continuum of oscillators side by side. With its properties per metre, at every z by itself
+
+    f_j(z) = c dD_j/dt + k_l D_j + k_nl D_j^3,    D_j = q(z) - w_j(theta_n, z),    m d2q/dt2 = -f_0 - f_1,
+
+so that what is linear in it is the same at every axial wavenumber: the interface of two dimensions once for each of them. Only the cubes
+couple wavenumbers.
+
+Where all angles lie on a lattice, theta_0 + 360 n/N degrees, cos m(theta_a - theta_b) is the same for all orders m = +-l (mod N): their
+compliances are added up beforehand, and N/2 classes l take the place of the orders.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+
+from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.families import axial_position
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.series import AxialSeries
+from coaxshell.solver.excitation import source_parities
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
+from coaxshell.solver.scaling import Problem
+
+Numbers = TypeVar("Numbers", FloatArray, ComplexArray)
+_SAME = 1e-7
+"""Of a lattice's spacing, within which an angle lies on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineLayout:
+    """The line absorbers of a run.
+
+    Attributes
+    ----------
+    problem : Problem
+    sampling : AxialSampling
+    absorbers : AbsorberSet
+        Dimensionless, mirror images about theta = 0 carried once where the motion is symmetric.
+    lattice : int
+        N of the lattice on which all angles lie, 0 if it has no fewer classes than there are orders.
+    origin : float
+        z_0, in a: the plane of all sources, or 0.
+    axial_parities : int
+        1 where everything is even about z_0, else 2.
+    """
+
+    problem: Problem
+    sampling: AxialSampling
+    absorbers: AbsorberSet
+    lattice: int
+    origin: float
+    axial_parities: int
+
+    @cached_property
+    def classes(self) -> Modes:
+        """The classes of orders, or all orders."""
+        return Modes.up_to(self.lattice // 2 if self.lattice else self.sampling.max_order)
+
+    @cached_property
+    def points(self) -> InterfacePoints:
+        """The points of every cross-section at which absorbers hold the shells, in terms of the classes."""
+        return InterfacePoints(self.problem, self.absorbers, self.classes)
+
+    @cached_property
+    def series(self) -> AxialSeries:
+        """Sums along the axis of everything that the absorbers do."""
+        return AxialSeries(len(self.sampling.modes), self.axial_parities)
+
+    @cached_property
+    def _folding(self) -> FloatArray:
+        """Share of each order in each class, beta_l/beta_m for m = +-l (mod N), shape (classes, M + 1)."""
+        orders, n = np.arange(self.sampling.max_order + 1), self.lattice
+        of_order = np.minimum(orders % n, -orders % n)
+        beta = np.where(orders == 0, 2.0, 1.0)
+        shares = np.zeros((self.classes.count, orders.size))
+        shares[of_order, orders] = beta[of_order] / beta
+        return shares
+
+    def folded(self, values: Numbers) -> Numbers:
+        """Return compliances or kernels of the orders 0, 1, ... of a wavenumber, (..., orders, n), added up by classes."""
+        count = values.shape[-2]
+        if self.lattice:
+            sums: Numbers = self._folding[:, :count] @ values
+            return sums
+        found = np.zeros((*values.shape[:-2], self.classes.count, values.shape[-1]), values.dtype)
+        found[..., :count, :] = values
+        return found
+
+    def along(self, z: FloatArray) -> FloatArray:
+        """Return cos k_j (z - z_0), and sin, at some z (in a): shape (z, waves, axial parities)."""
+        phase = np.multiply.outer(z - self.origin, self.sampling.wavenumbers)
+        return np.stack([np.cos(phase), np.sin(phase)][: self.axial_parities], axis=-1)
+
+
+def line_layout(problem: Problem, sampling: AxialSampling) -> LineLayout:
+    """Return the line absorbers of a problem.
+
+    Raises
+    ------
+    InputError
+        If there are point absorbers too, or sources that run along the axis.
+    """
+    system = problem.system
+    absorbers = absorber_set(problem, system.absorber_list, source_parities(system.sources))
+    pairs = zip(system.sources, problem.sources, strict=True)
+    planes = {axial_position(one) / problem.scales.length for one, wave in pairs if isinstance(wave, SphericalFrontGeometry)}
+    origin = planes.pop() if len(planes) == 1 else 0.0
+    lattice = _lattice(absorbers.every_angle, sampling.max_order)
+    return LineLayout(problem, sampling, absorbers, lattice, origin, 2 if planes else 1)
+
+
+def require_lines_alone(problem: Problem) -> None:
+    """Refuse what cannot be beside line absorbers in three dimensions."""
+    system = problem.system
+    if not system.absorber_list:
+        return
+    if system.point_absorbers:
+        raise InputError("absorbers", "line absorbers and point absorbers are not solved together", "use those with a z, or those without")
+    for number, geometry in enumerate(problem.sources):
+        if isinstance(geometry, PlaneGeometry) and geometry.inclination:
+            where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
+            found = f"{geometry.inclination:g} degrees: a wave that runs along line absorbers is not solved"
+            raise InputError(f"{where}.inclination", found, "use inclination = 0, a spherical source, or no absorbers")
+
+
+def _lattice(angles: FloatArray, max_order: int) -> int:
+    """Return the fewest places at equal spacing that all angles (degrees) lie on, 0 if there are no fewer classes of them than orders."""
+    turns = (angles - angles[0]) / 360.0
+    for count in range(1, 2 * max_order):
+        place = turns * count
+        if np.all(np.abs(place - np.rint(place)) <= _SAME):
+            return count
+    return 0
