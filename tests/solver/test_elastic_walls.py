@@ -133,7 +133,7 @@ def test_walls_hold_the_work_of_the_loads_on_their_faces():
     """Of every layer, beside a rigid wall: kinetic, strain and piezoelectric energy together, to the rounding of the inverse transform."""
     motion = Motion.of(of_layers().solution, 5)
     for shell in (1, 2):
-        wall, held = motion.problem.shells[shell], shell_energy(motion, shell)
+        wall, (held, _) = motion.problem.shells[shell], shell_energy(motion, shell)
         works = [
             SurfaceWork(motion.grid, wall.wetted[side] * motion.circle, motion.face_velocity(shell, side))(motion.solid.loads[side, shell])
             for side in (0, 1)
@@ -189,6 +189,25 @@ def test_loads_meet_their_faces_and_shears_vanish_there(wavenumber):
         np.testing.assert_allclose(radial[side], sign, rtol=1e-5)
         assert np.abs(radial[1 - side]).max() < 1e-5 * np.abs(hoop).max()
         assert np.abs(shears).max() < 1e-5 * np.abs(hoop).max()
+
+
+@pytest.mark.parametrize("depth", [-0.0113, -0.006, 0.0108])
+def test_stresses_balance_the_motion(depth):
+    """div sigma = rho s^2 u at points of both ceramics and of the core, all six stresses and three displacements of a mode."""
+    m, k, step, s = 4.0, 1.5, 4e-6, np.array([2.0 + 30.0j])
+    wall = wall_of(layered(theory="elastic")).resolving(3e4)
+    r, density = wall.radius + depth, wall.layers[wall.layer_at(depth)].density
+    names = ("radial", "hoop", "axial", "shear", "radial_axial", "radial_hoop", "normal", "tangential", "along_axis")
+    asked = [Asked(name, depth + shift) for name in names for shift in (-step, 0.0, step)]
+    found = wall.transfer(Modes(np.array([m]), k), s, asked)[:, 1, 0, 0].reshape(-1, 3)
+    rr, tt, zz, tz, rz, rt, normal, around, along = found[:, 1]
+    slope = (found[:, 2] - found[:, 0]) / (2.0 * step)
+    for balance, moved, largest in (
+        (slope[0] + (rr - tt + m * rt) / r + k * rz, -normal, tt / r),
+        (slope[5] + (2.0 * rt - m * tt) / r + k * tz, around, m * tt / r),
+        (slope[4] + (rz + m * tz) / r - k * zz, along, k * zz),
+    ):
+        assert abs(balance - density * s[0] ** 2 * moved) < 2e-5 * abs(largest)
 
 
 def test_potential_between_grounded_faces():
@@ -293,3 +312,10 @@ def test_components_and_depths_are_refused_by_name():
         thin.displacement("inner", depth=0.0)
     with pytest.raises(cx.InputError, match="belongs to three dimensions"):
         thin.stress("inner", component="axial")
+
+
+def test_losses_are_refused():
+    lossy = [cx.Layer(STEEL.replace(loss_factor=0.02), 1e-2)]
+    system = thick().replace(shells=[cx.Shell(radius=1.0, layers=lossy, theory="elastic")], fluids=[WATER] * 2)
+    with pytest.raises(cx.InputError, match=r"shells\[0\]\.layers\[0\]\.material: steel has losses"):
+        cx.simulate(system, duration=0.5, time_step=1e-2, modes=4)
