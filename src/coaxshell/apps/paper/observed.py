@@ -118,5 +118,7 @@ def _where(response: Response) -> dict[str, float]:
 def _absorber(response: Response, system: System) -> FloatArray:
     if not system.absorber_list:
         return np.empty((3, 0))
-    force = np.asarray(response.absorber_force(), dtype=np.float64)[0]
-    return np.vstack([np.asarray(response.absorber_displacement(), dtype=np.float64)[:1], force])
+    force, moved = response.absorber_force(), response.absorber_displacement()
+    if "station" in force.dims:
+        force, moved = force.isel(station=0), moved.isel(station=0)
+    return np.vstack([np.asarray(moved, dtype=np.float64)[:1], np.asarray(force, dtype=np.float64)[0]])
