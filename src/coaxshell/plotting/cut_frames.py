@@ -102,7 +102,7 @@ class Solved(Protocol):
 
 @dataclass(frozen=True)
 class _Plane:
-    """Of a run in two dimensions: found as they are asked for, samples on a coarse grid."""
+    """Hold the fields of a run in two dimensions: found as they are asked for, samples on a coarse grid."""
 
     response: Response
     times: Sequence[float] | FloatArray
@@ -118,7 +118,7 @@ class _Plane:
 
 
 class _Cuts:
-    """Of a run in three dimensions: both cuts are solved at once for all instants."""
+    """Hold the fields of a run in three dimensions: both cuts are solved at once for all instants."""
 
     def __init__(self, shown: Shown, times: Sequence[float] | FloatArray, view: FieldView, progress: Report | None) -> None:
         from coaxshell.response.fields.cut_field import CutField

@@ -43,7 +43,7 @@ class Panel(Protocol):
 
     @property
     def labels(self) -> tuple[str, str]:
-        """Of the axis to the right and of that upward."""
+        """Return the labels of the axis to the right and of the one upward."""
         ...
 
     def bands(self, view: FieldView) -> list[Band | None]:
