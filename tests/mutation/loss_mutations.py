@@ -37,4 +37,28 @@ LOSSES = (
         "how a history goes on where the relaxed modulus looks beyond its end",
         "response/test_losses.py",
     ),
+    Mutation(
+        "reach-of-a-stress",
+        "response/wall_stress.py",
+        "squares = hoop**2 + (axial - hoop) * axial",
+        "squares = 0.25 * (hoop**2 + (axial - hoop) * axial)",
+        "what the stress of an instant can reach, by which instants are left out",
+        "response/test_wall_stress.py",
+    ),
+    Mutation(
+        "weakest-layer",
+        "response/wall_stress.py",
+        "nearest = min(known",
+        "nearest = max(known",
+        "which layer comes nearest to its strength",
+        "response/test_wall_stress.py",
+    ),
+    Mutation(
+        "outer-face-of-a-layer",
+        "structure/thin_wall.py",
+        "else top - inside",
+        "else top + inside",
+        "that a layer's outer face is searched as its own",
+        "response/test_wall_stress.py",
+    ),
 )

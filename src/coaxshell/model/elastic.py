@@ -29,6 +29,8 @@ class Elastic(Described):
     """Frequency at which the moduli have the magnitudes given (Hz): with losses they grow with the frequency."""
     loss_model: LossModel = "prony"
     """How losses are carried: "prony" fits a series of springs and dampers over the band of the run, "constant-q" is a power law."""
+    strength: Modulus | None = None
+    """Stress that it stands (Pa): yield strength of a metal, tensile strength of a ceramic; margins are told against it."""
     reference: str = ""
     """Where the constants come from."""
 

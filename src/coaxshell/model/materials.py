@@ -78,20 +78,23 @@ STRUCTURAL_STEEL = Elastic(
     density=7850,
     youngs_modulus=210e9,
     poisson_ratio=0.3,
-    reference="EN 1993-1-1:2005, 3.2.6 (E, nu); EN 1991-1-1:2002, Table A.4 (density)",
+    strength=235e6,
+    reference="EN 1993-1-1:2005, 3.2.6 (E, nu), Table 3.1 (strength: yield of S235); EN 1991-1-1:2002, Table A.4 (density)",
 )
 STAINLESS_STEEL_316L = Elastic(
     name="stainless-steel-316l",
     density=8000,
     youngs_modulus=200e9,
     poisson_ratio=0.3,
-    reference="EN 10088-1:2014, 1.4404 (density, E); EN 1993-1-4:2006, 2.1.3 (nu)",
+    strength=220e6,
+    reference="EN 10088-1:2014, 1.4404 (density, E); EN 1993-1-4:2006, 2.1.3 (nu), Table 2.1 (strength: yield of hot rolled plate)",
 )
 TITANIUM_TI6AL4V = Elastic(
     name="titanium-ti6al4v",
     density=4430,
     youngs_modulus=113.8e9,
     poisson_ratio=0.342,
+    strength=880e6,
     reference="Boyer, Welsch, Collings (eds), Materials Properties Handbook: Titanium Alloys, ASM International (1994); annealed",
 )
 BRASS = Elastic(

@@ -91,7 +91,7 @@ def tables(system: SystemParts, beside: Path | None = None) -> dict[str, Any]:
 
 
 def canonical(system: SystemParts) -> dict[str, Any]:
-    """Return the physics of a system as plain data: no names, no references, a ring written out as its absorbers."""
+    """Return the physics of a system as plain data: no names, references or strengths, a ring written out as its absorbers."""
     data = _plain(system)
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
     data["absorbers"] = [_plain(absorber) for absorber in (*system.absorber_list, *system.point_absorbers)]
@@ -136,7 +136,7 @@ def _pruned(value: Any) -> Any:
 
 def _nameless(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _nameless(item) for key, item in value.items() if key not in ("name", "reference")}
+        return {key: _nameless(item) for key, item in value.items() if key not in ("name", "reference", "strength")}
     return [_nameless(item) for item in value] if isinstance(value, list) else value
 
 

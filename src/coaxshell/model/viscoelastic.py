@@ -32,6 +32,8 @@ class Viscoelastic(Described):
     """Poisson's ratio when all has relaxed, between -1 and 0.5."""
     prony: Annotated[tuple[Arm, ...], Field(min_length=1, max_length=MOST_ARMS)]
     """Pairs of a Young's modulus that relaxes (Pa) and the time in which it does (s)."""
+    strength: Modulus | None = None
+    """Stress that it stands (Pa): yield strength of a metal, tensile strength of a ceramic; margins are told against it."""
     reference: str = ""
     """Where the constants come from."""
 

@@ -24,6 +24,7 @@ from coaxshell.plotting.style import COLOURS, style
 from coaxshell.plotting.sweep import figure_sweep, plot_sweep
 from coaxshell.plotting.unrolled import plot_unrolled
 from coaxshell.plotting.wall_film import save_wall_film
+from coaxshell.plotting.wall_stress import plot_wall_stress
 
 __all__ = [
     "COLOURS",
@@ -65,6 +66,7 @@ __all__ = [
     "plot_sensitivity",
     "plot_sweep",
     "plot_unrolled",
+    "plot_wall_stress",
     "save_figure",
     "save_film",
     "save_wall_film",

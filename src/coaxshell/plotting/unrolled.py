@@ -18,7 +18,7 @@ from coaxshell.plotting.frames import Frames, instants
 from coaxshell.plotting.scales import round_up
 from coaxshell.plotting.style import new_figure, style
 from coaxshell.response.arguments import one_of
-from coaxshell.response.quantities import STRESSES
+from coaxshell.response.components import STRESSES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

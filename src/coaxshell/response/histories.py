@@ -9,9 +9,10 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
+from coaxshell.response.components import SIDES, STRESSES, von_mises
 from coaxshell.response.labels import COUNTERCLOCKWISE, TENSION, history, modal_array
 from coaxshell.response.modal import amplitudes, combined, elastic_wall, stress_gain_of, voltage_gain
-from coaxshell.response.quantities import QUANTITIES, SIDES, STRESSES, Quantity, von_mises
+from coaxshell.response.quantities import QUANTITIES, Quantity
 from coaxshell.response.solid_histories import component_of, solid_stress
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.voltages import actuator_limit, actuator_values, mean_shares
@@ -161,8 +162,9 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
         outer one on a boundary), bending is included, and in a piezoelectric layer the field of its own open-circuit potential and,
         in the actuator of a controlled shell, of the control voltage (-e32 u/t, Eq. A.10).
     component : str
-        "hoop", and at stations of three-dimensional runs "axial", "shear" (between hoop and axis) and "von_mises"; of an elastic wall in
-        two dimensions "hoop", "axial", "radial", "radial_hoop" (the shear across the wall) and "von_mises".
+        "hoop", "axial" (in two dimensions that of plane strain), "von_mises", and at stations of three-dimensional runs "shear"
+        (between hoop and axis); of an elastic wall in two dimensions "hoop", "axial", "radial", "radial_hoop" (the shear across the
+        wall) and "von_mises".
 
     Returns
     -------
@@ -171,7 +173,7 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
     Raises
     ------
     InputError
-        If the shell is rigid, or the angle, the depth or the component is not allowed.
+        If the shell is rigid, or the angle, the depth or the component is not allowed; if a material lacks constants along the axis.
     """
     theta, solution = arguments.angles(angle), motion.solution
     wall = elastic_wall(solution.problem, shell)
@@ -179,7 +181,7 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
         component = arguments.one_of("component", component, (*STRESSES, "von_mises"))
     else:
         component = component_of(wall, component)
-    if wall.faces_move_alike and component != "hoop" and solution.along is None:
+    if wall.faces_move_alike and component == "shear" and solution.along is None:
         raise InputError("component", f"{component!r} belongs to three dimensions", "run with dimensions=3")
     z, long_name = None, ""
     if depth is not None:
@@ -189,7 +191,8 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
     if not wall.faces_move_alike and (z is not None or component != "hoop"):
         values = solid_stress(motion, shell, theta, z, component)
     elif component == "von_mises":
-        values = von_mises(*(_stress(solution, shell, theta, z, name) for name in STRESSES))
+        parts = STRESSES if solution.along is not None else ("hoop", "axial")
+        values = von_mises(*(_stress(solution, shell, theta, z, name) for name in parts))
     else:
         values = _stress(solution, shell, theta, z, component)
     if component in _STRESS_NAMES:

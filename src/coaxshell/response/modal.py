@@ -65,7 +65,7 @@ def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = No
         return FieldGain(hoop=np.full_like(modes.orders, scales.pressure))
     parts: list[tuple[Relaxation | None, Gain | FieldGain]]
     if solution.along is None:
-        plane = wall.stress_parts(modes, depth)
+        plane = wall.stress_parts(modes, depth, component)
         parts = [(factor, Gain(scales.pressure * gain.v, scales.pressure * gain.w)) for factor, gain in plane]
     else:
         parts = [(factor, gain.times(scales.pressure)) for factor, gain in wall.field_parts(modes.orders, depth, component)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.circle import FINE, around, circle_angles, peak_on_circle
+from coaxshell.numerics.circle import around, peak_on_circle
 from coaxshell.response.synthesis import angle_basis, at_angles, mean_square, time_blocks
 
 Amplitudes = Callable[[slice], FloatArray]
@@ -85,35 +85,6 @@ def peak_anywhere(amplitudes: Amplitudes, time: FloatArray, window: slice, width
         if found is not None:
             highest, instant, place = found.value, block.start + found.instant, found.place
     return _refined(amplitudes, time, window, instant, place)
-
-
-def peak_of_values(values: Callable[[FloatArray, slice], FloatArray], shape: tuple[int, int], time: FloatArray, window: slice) -> Peak:
-    """Return the largest of what is no sum of orders over a window of time and the whole circle, searched as by :func:`peak_anywhere`.
-
-    Parameters
-    ----------
-    values : callable
-        From angles in degrees, shape (A,), and time indices to magnitudes, shape (T, A).
-    shape : (parities, M + 1)
-        Of the sums that it is made of.
-    time, window
-        As in :func:`peak_anywhere`.
-    """
-    parities, orders = shape
-    grid = circle_angles(orders, parities)
-    highest, instant, place = -1.0, window.start, 0
-    for block in time_blocks(window, len(grid)):
-        found = values(grid, block)
-        k, i = np.unravel_index(int(found.argmax()), found.shape)
-        if found[k, i] > highest:
-            highest, instant, place = float(found[k, i]), block.start + int(k), int(i)
-    near = slice(max(window.start, instant - 1), min(window.stop, instant + 2))
-    fine = grid[place] + (grid[1] - grid[0]) / FINE * np.arange(-FINE, FINE + 1)
-    found = values(fine, near)
-    k, i = np.unravel_index(int(found.argmax()), found.shape)
-    angle = folded(float(fine[i]))
-    last = near.stop == window.stop and _at_the_end(int(k), found[:, i])
-    return Peak(float(found[k, i]), float(time[near.start + k]), abs(angle) if parities == 1 else angle, last)
 
 
 def _refined(amplitudes: Amplitudes, time: FloatArray, window: slice, instant: int, place: int) -> Peak:

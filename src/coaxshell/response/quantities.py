@@ -25,21 +25,19 @@ from coaxshell.response.modal import (
     tangential_gain,
     voltage_gain,
 )
-from coaxshell.response.peaks import Amplitudes, Peak, peak_of_values
+from coaxshell.response.peaks import Amplitudes, Peak
 from coaxshell.response.relaxing import Relaxing
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
+from coaxshell.response.wall_stress import largest_of_the_core, largest_through_wall, of_the_core, through_wall
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import FieldGain, Gain
 
 Where = Literal["head", "tail", "anywhere", "rms"]
 Needs = Literal["", "elastic", "sensor", "control"]
 
-STRESSES = ("hoop", "axial", "shear")
-"""Components of the stress of a thin wall in three dimensions."""
-SIDES = {"hoop": "normal", "axial": "normal", "shear": "tangential"}
 _ROLES: dict[Needs, tuple[str, ...]] = {"": (), "elastic": (), "sensor": ("sensor",), "control": ("sensor", "actuator")}
 _PLACES: dict[Where, str] = {"head": "at head", "tail": "at tail", "anywhere": "anywhere", "rms": "RMS"}
 _SUFFIXES: dict[Where, str] = {"head": "_head", "tail": "_tail", "anywhere": "", "rms": "_rms"}
@@ -92,6 +90,8 @@ class Quantity:
         Name of its labelled arrays, where that is another.
     relaxes : bool
         Whether losses of a wall's layers are in it.
+    through : bool
+        Whether the depths of a wall are searched, which thin walls tell alone.
     summary, metrics : tuple of str
         Where the summary shows its largest magnitude, and where a study can ask for it: "head", "tail", "anywhere"; "rms".
     dimensions : int
@@ -117,6 +117,7 @@ class Quantity:
     drifts: bool = False
     array: str = ""
     relaxes: bool = False
+    through: bool = False
     summary: tuple[Where, ...] = ()
     metrics: tuple[Where, ...] = ()
     dimensions: int = 2
@@ -187,8 +188,9 @@ class Quantity:
     def given(self, motion: WallMotion, shell: int) -> bool:
         """Return whether a run gives it for a shell: the shell has it, and where its transform is needed the run all its instants."""
         solution = motion.solution
-        there = self.dimensions == 2 or solution.along is not None
-        needed = self.rate or int(self.relaxes and solution.problem.shells[shell].relaxes)
+        wall = solution.problem.shells[shell]
+        there = (self.dimensions == 2 or solution.along is not None) and not (self.through and not wall.sampled_depths)
+        needed = self.rate or int(self.relaxes and wall.relaxes)
         return there and motion.has_rate(needed) and self.lack(solution.problem.system, shell) is None
 
 
@@ -209,31 +211,6 @@ def _sensor_voltage(motion: WallMotion, shell: int, theta: FloatArray) -> FloatA
 
 def _actuator_voltage(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
     return actuator_values(motion.solution, shell, theta)
-
-
-def von_mises(hoop: FloatArray, axial: FloatArray, shear: FloatArray) -> FloatArray:
-    """Return sqrt(hoop^2 + axial^2 - hoop axial + 3 shear^2), of a wall without stress across it."""
-    return np.asarray(np.sqrt(np.maximum(hoop**2 + axial**2 - hoop * axial + 3.0 * shear**2, 0.0)))
-
-
-def von_mises_at(
-    solution: ModalSolution, shell: int, theta: FloatArray, depth: float | None = None, window: slice = slice(None)
-) -> FloatArray:
-    """Return the von Mises stress at angles (degrees), Pa, shape (T, A), of the core at the mid-surface or at a depth (m)."""
-    gains = {name: stress_gain_of(solution, shell, depth, name) for name in STRESSES}
-    return von_mises(*(combined(solution, shell, gain, theta, SIDES[name], window) for name, gain in gains.items()))
-
-
-def _von_mises(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
-    return von_mises_at(motion.solution, shell, theta)
-
-
-def _largest_von_mises(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
-    """Return the largest von Mises stress anywhere within a window; a mean over a segment is not taken."""
-    parities, orders = solution.normal.shape[1:3]
-    return peak_of_values(
-        lambda theta, block: von_mises_at(solution, shell, theta, window=block), (parities, orders), solution.time, window
-    )
 
 
 _TABLE: tuple[Quantity, ...] = (
@@ -445,14 +422,29 @@ _TABLE += (
         long_name="mid-surface von Mises stress of the core",
         unit="Pa",
         sign="a magnitude",
-        values=_von_mises,
+        values=of_the_core,
         relaxes=True,
-        largest=_largest_von_mises,
+        largest=largest_of_the_core,
         shown=("MPa", 1e-6),
         column=True,
         summary=("anywhere",),
         metrics=("anywhere",),
         dimensions=3,
+    ),
+    Quantity(
+        name="wall_stress",
+        label="largest stress through the wall",
+        noun="stress in the wall",
+        long_name="largest von Mises stress through the wall",
+        unit="Pa",
+        sign="a magnitude",
+        values=through_wall,
+        largest=largest_through_wall,
+        relaxes=True,
+        through=True,
+        shown=("MPa", 1e-6),
+        summary=("anywhere",),
+        metrics=("anywhere",),
     ),
     Quantity(
         name="axial_displacement",

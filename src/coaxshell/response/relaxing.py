@@ -7,6 +7,7 @@ have a spectrum up to the end of the band, where g is cut.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -57,3 +58,18 @@ def _continued(histories: FloatArray, grid: LaplaceGrid) -> FloatArray:
     fading = np.exp(-_FADING * np.minimum(steps / min(_FADED, steps.size), 2.0) ** 4)
     slope, curvature = 1.5 * last - 2.0 * second + 0.5 * third, last - 2.0 * second + third
     return np.concatenate([histories, (last + slope * steps + 0.5 * curvature * steps**2) * fading], axis=-1)
+
+
+def relaxed_solution(solution: ModalSolution, factor: Relaxation | None, shell: int) -> ModalSolution:
+    """Return a run whose motion of one shell is g(s) times what it was: many quantities of one factor are then read as without losses."""
+    if factor is None:
+        return solution
+
+    def of(field: FloatArray) -> FloatArray:
+        return np.broadcast_to(relaxed(solution, factor, field[shell]), field.shape)
+
+    along = solution.along
+    if along is not None:
+        moved = {name: of(getattr(along, name)) for name in ("u", "w_z", "w_zz", "v_z", "u_z")}
+        along = along._replace(**moved, potentials=tuple(of(potential) for potential in along.potentials), potential_rates=())
+    return replace(solution, normal=of(solution.normal), tangential=of(solution.tangential), along=along)

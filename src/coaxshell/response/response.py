@@ -16,7 +16,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
-from coaxshell.response import absorbers, arguments, errors, histories, storage
+from coaxshell.response import absorbers, arguments, errors, histories, storage, wall_stress
 from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
 from coaxshell.response.solid_histories import displacement_at_depth
 from coaxshell.response.summary import Summary, response_card, summarise
@@ -24,6 +24,7 @@ from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
 from coaxshell.response.translation import translation
 from coaxshell.response.wall_motion import WallMotion
+from coaxshell.response.wall_stress import WallPeak
 from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_solution
 from coaxshell.solver.settings import Settings
@@ -174,12 +175,44 @@ class Response:
     ) -> xr.DataArray:
         """Return the stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
 
-        The component is "hoop"; three-dimensional runs have "axial", "shear" and "von_mises" too, elastic walls "axial", "radial",
-        "radial_hoop" and "von_mises".
+        The component is "hoop", "axial" or "von_mises"; three-dimensional runs have "shear" too, elastic walls "radial" and
+        "radial_hoop".
         See :func:`coaxshell.response.histories.stress`.
         """
         number = self._index(shell)
         return self._read(station, lambda motion: histories.stress(motion, number, angle, depth, component))
+
+    def peak_stress(
+        self, shell: int | str, component: str = "von_mises", *, window: Sequence[float] | None = None, station: Any = None
+    ) -> WallPeak:
+        """Return the largest stress anywhere in a wall: value (Pa), time (transits), angle (degrees), depth (m), layer, station, margin.
+
+        Over all angles, layers and depths, the instants of a window (start, end), and all stations unless some are named. The component is
+        "von_mises", "hoop", "axial" or, in three dimensions, "shear". See :mod:`coaxshell.response.wall_stress`.
+
+        Raises
+        ------
+        InputError
+            If the shell is rigid, the component or the window is not allowed, or a material lacks constants along the axis.
+        """
+        return wall_stress.of_wall(self.layer_peaks(shell, component, window=window, station=station))
+
+    def layer_peaks(
+        self, shell: int | str, component: str = "von_mises", *, window: Sequence[float] | None = None, station: Any = None
+    ) -> list[WallPeak]:
+        """Return the largest stress in each layer of a wall, from the inside out; as :meth:`peak_stress`."""
+        allowed = wall_stress.COMPONENTS if self.stations is not None else ("von_mises", "hoop", "axial")
+        component, number = arguments.one_of("component", component, allowed), self._index(shell)
+        span, found = arguments.time_window(self.time, window), []
+        for z, motion in self.stations_read(station):
+            found.append(wall_stress.layer_peaks(motion.solution, number, component, span, z))
+        return [max(layer, key=lambda peak: peak.value) for layer in zip(*found, strict=True)]
+
+    def stations_read(self, station: Any) -> list[tuple[float | None, WallMotion]]:
+        """Return what is read at stations, all unless some are named, with their positions (m); two dimensions have none."""
+        if station is not None:
+            raise InputError("station", f"{shown(station)} belongs to three dimensions", "run with dimensions=3 and stations=")
+        return [(None, self.motion)]
 
     def shell_velocity(
         self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, station: Any = None
@@ -312,9 +345,8 @@ class Response:
 
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read of the motion of the walls; two dimensions have no stations."""
-        if station is not None:
-            raise InputError("station", f"{shown(station)} belongs to three dimensions", "run with dimensions=3 and stations=")
-        return read(self.motion)
+        ((_, motion),) = self.stations_read(station)
+        return read(motion)
 
     @property
     def _spectra(self) -> SolvedSpectra:

@@ -75,6 +75,11 @@ class SpatialResponse(Response):
         """Return the response with some of its instants alone, by number: for what is read of the shells at them."""
         return SpatialResponse(some_instants(self.spatial, index))
 
+    def stations_read(self, station: Any) -> list[tuple[float | None, WallMotion]]:
+        """Return what is read at stations, all unless some are named, with their positions (m)."""
+        chosen, _ = chosen_stations(self.stations, station)
+        return [(float(self.stations[i]), self.motions[i]) for i in chosen]
+
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read at each of some stations, dims (time, station, ...)."""
         chosen, alone = chosen_stations(self.stations, station)

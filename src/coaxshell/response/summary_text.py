@@ -62,8 +62,8 @@ def title_lines(summary: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def notes(summary: Mapping[str, Any]) -> list[str]:
-    """Return the lines below the table: absorbers, what the voltages are, estimated errors."""
-    return [*_absorbers(summary), *_voltages(summary), *_errors(summary)]
+    """Return the lines below the table: absorbers, where walls are stressed most, what the voltages are, estimated errors."""
+    return [*_absorbers(summary), *_walls(summary), *_voltages(summary), *_errors(summary)]
 
 
 def when(peak: Mapping[str, Any]) -> str:
@@ -77,6 +77,21 @@ def _absorbers(summary: Mapping[str, Any]) -> list[str]:
         ("absorber_force", "largest absorber force", "N/m"),
     )
     return [f"{label}: {engineering(summary[key], unit)}" for key, label, unit in found if summary[key] is not None]
+
+
+def _walls(summary: Mapping[str, Any]) -> list[str]:
+    """Return a line for each shell: in which layer and at which depth its largest stress is, and what is left to the strength."""
+    found = []
+    for shell in summary["shells"]:
+        peak = shell.get("wall_stress")
+        if peak is None:
+            continue
+        where = (
+            f"{peak['component'].replace('_', ' ')}, in layer {peak['layer']} ({peak['material']}) at z = {engineering(peak['depth'], 'm')}"
+        )
+        margin = "" if peak["margin"] is None else f"; strength of layer {peak['weakest']} over its stress: {peak['margin']:.3g}"
+        found.append(f"stress in the wall, {shell['name']}: {where}{margin}")
+    return found
 
 
 def _voltages(summary: Mapping[str, Any]) -> list[str]:

@@ -403,6 +403,11 @@ class ShellModel(ABC):
         return 0.0, 0.0
 
     @property
+    def sampled_depths(self) -> tuple[tuple[float, ...], ...]:
+        """Depths of each layer, from the inside out, among which a magnitude of its stress is largest, or nearly so; none if not known."""
+        return ()
+
+    @property
     def relaxes(self) -> bool:
         """Whether its stress has parts under a factor g(s): it then depends on the whole history of the strain."""
         return False

@@ -168,6 +168,13 @@ class ThinWall(ShellModel):
         """Depths of its inner and its outer face."""
         return self.section.layers[0][0], self.section.layers[-1][1]
 
+    @property
+    def sampled_depths(self) -> tuple[tuple[float, ...], ...]:
+        """Faces of each layer, between which its strain is linear."""
+        inner, outer = self.faces
+        inside = 1e-8 * (outer - inner)  # on its outer face a layer gives way to the next one
+        return tuple((bottom, top if top == outer else top - inside) for bottom, top, _ in self.section.layers)
+
     def energy(self, motion: WallMotion) -> WallEnergy:
         """Return the energies of a motion, sums over the orders with weights (R/2) beta pi.
 

@@ -51,6 +51,7 @@ _MORE_OF_A_SHELL = {
     "segment_actuator_voltage": MetricEntry("V", "largest actuator voltage asked for, mean over a segment", "actuator"),
     "segment_actuator_field": MetricEntry("V/m", "largest actuator field asked for, mean over a segment", "actuator"),
     "segment_field_ratio": MetricEntry("1", "largest actuator field asked for, mean over a segment, over its limit", "actuator"),
+    "strength_margin": MetricEntry("1", "least strength of a layer over its largest stress"),
     "stress_truncation": MetricEntry("1", "estimated share of the orders left out of the stress"),
     "mass": MetricEntry("kg/m", "mass"),
 }

@@ -21,6 +21,7 @@ from coaxshell.response.quantities import Quantity, Where, shell_metrics
 from coaxshell.response.spatial import SpatialResponse
 from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
+from coaxshell.response.wall_stress import usual_component
 from coaxshell.solver.electrodes import segment_length
 
 
@@ -148,6 +149,13 @@ class MetricSource(DesignReading):
     def segment_field_ratio(self, shell: int) -> float:
         """Return the same over what the actuator stands (its material's or the controller's field limit)."""
         return self.segment_actuator_voltage(shell) / actuator_limit(self.solution, shell).volts
+
+    def strength_margin(self, shell: int) -> float:
+        """Return the least strength of a layer over its largest stress, of all stations; InputError if no layer has a strength."""
+        margin = self.response.peak_stress(shell, usual_component(self.solution, shell)).margin
+        if margin is None:
+            raise InputError(f"shells[{shell}].layers", "no material has a strength", "give one, such as strength = 235 MPa of a steel")
+        return margin
 
     def stress_truncation(self, shell: int) -> float:
         """Return the estimate of what the orders above M would add to the stress, relative."""

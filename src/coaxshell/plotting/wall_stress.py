@@ -1,0 +1,119 @@
+"""Where a wall is stressed most: the largest stress over time at every angle and depth, layer by layer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coaxshell.model.places import shell_phrase
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.plotting.style import new_figure, style
+from coaxshell.response.arguments import time_window
+from coaxshell.response.wall_stress import WallStress
+from coaxshell.solver.solution import ModalSolution
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from coaxshell.response import Response
+
+_DEPTHS = 9
+"""Depths in a layer."""
+
+
+def plot_wall_stress(
+    response: Response,
+    shell: int | str,
+    ax: Axes | None = None,
+    *,
+    component: str = "von_mises",
+    window: Sequence[float] | None = None,
+    station: Any = None,
+) -> Axes:
+    """Draw the largest magnitude of a stress within a window of time over angle and depth, with a star where it is largest.
+
+    Layers are told apart by lines and named at the right. Colours show at each place what is largest there at any time; the star is
+    :meth:`coaxshell.Response.peak_stress`.
+
+    Parameters
+    ----------
+    response : Response
+    shell : int or str
+    ax : Axes, optional
+        Where to draw; a new figure when left out.
+    component : str
+        "von_mises", "hoop", "axial" or, in three dimensions, "shear".
+    window : (start, end), optional
+        Transits; the whole run unless given.
+    station : float or str, optional
+        Of a run in three dimensions (m): the one with the largest stress unless given.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        As :meth:`coaxshell.Response.peak_stress`.
+    """
+    peak = response.peak_stress(shell, component, window=window, station=station)
+    number, span = response.system.shell_index(shell), time_window(response.time, window)
+    ((_, motion),) = response.stations_read(peak.station if response.stations is not None else None)
+    layers = described_layers(response, number)
+    maps = [layer_map(motion.solution, number, component, span, depths) for depths in _depths(motion.solution, number)]
+    largest = max(float(values.max()) for _, _, values in maps)
+    unit, per_pascal = ("MPa", 1e-6) if largest >= 1e4 else ("kPa", 1e-3)
+    with style():
+        if ax is None:
+            ax = new_figure(5.6, 3.2).add_subplot()
+        for (angles, depths, values), name in zip(maps, layers, strict=False):
+            drawn = ax.pcolormesh(
+                angles,
+                1e3 * depths,
+                per_pascal * values,
+                cmap="cividis",
+                vmin=0.0,
+                vmax=per_pascal * largest,
+                shading="gouraud",
+                rasterized=True,
+            )
+            ax.axhline(1e3 * depths[-1], color="white", linewidth=0.8)
+            middle = 500.0 * (depths[0] + depths[-1])
+            ax.annotate(name, (1.01, middle), xycoords=("axes fraction", "data"), va="center", fontsize="small", annotation_clip=False)
+        ax.plot(peak.angle, 1e3 * peak.depth, marker="*", markersize=11, color="white", markeredgecolor="black", clip_on=False, zorder=5)
+        ax.set_ylim(1e3 * maps[0][1][0], 1e3 * maps[-1][1][-1])
+        ax.set_xticks(np.arange(angles[0], angles[-1] + 1.0, 45.0 if angles[0] == 0.0 else 90.0))
+        ax.set_xlabel("angle from the source direction (degrees)")
+        ax.set_ylabel("depth, outward (mm)")
+        ax.grid(visible=False)
+        ax.set_title(f"{shell_phrase(number, len(response.system.shells))}: largest {_words(component)} stress over time")
+        bar = ax.figure.colorbar(drawn, ax=ax, pad=0.16)
+        bar.set_label(f"{_words(component)} stress ({unit})")
+        bar.outline.set_linewidth(0.5)
+    return ax
+
+
+def _words(component: str) -> str:
+    return {"von_mises": "von Mises"}.get(component, component)
+
+
+def described_layers(response: Response, shell: int) -> list[str]:
+    """Return the names of the materials of a shell, from the inside out."""
+    return [layer.material.name for layer in getattr(response.system.shells[shell], "layers", ())]
+
+
+def _depths(solution: ModalSolution, shell: int) -> list[FloatArray]:
+    return [np.linspace(depths[0], depths[-1], _DEPTHS) for _, depths in WallStress(solution, shell).depths()]
+
+
+def layer_map(
+    solution: ModalSolution, shell: int, component: str, window: slice, depths: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return angles (degrees), depths (m) and the largest magnitude of a stress over a window of time there, (depths, angles)."""
+    stress = WallStress(solution, shell)
+    angles = np.arange(0.0, 181.0) if solution.normal.shape[1] == 1 else np.arange(-180.0, 181.0)
+    values = np.stack([stress.at(float(z), component).at_angles(angles, window).max(axis=0) for z in depths])
+    return angles, depths, values
