@@ -78,6 +78,17 @@ TOPICS = (
         ),
         lambda: cases.gains(_bare()),
     ),
+    Topic(
+        "hybrid",
+        (
+            "hybrid-attenuates-everywhere",
+            "hybrid-beats-its-parts",
+            "inner-stress-from-0-1",
+            "stress-is-lower-at-1-and-3",
+            "effect-grows-with-time",
+        ),
+        lambda: {name: systems.preset(name) for name in ("absorbers", "active", "hybrid")},
+    ),
 )
 """In the order of the paper's text. A further topic is one more line."""
 
