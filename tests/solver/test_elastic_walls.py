@@ -15,7 +15,9 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.shells import shell_energy
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.solver.cascade import CascadeSystem
+from coaxshell.solver.cost import run_cost
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.settings import Settings
 from coaxshell.structure.elastic_basis import PotentialOfLayer, elastic_basis
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
 
@@ -319,3 +321,9 @@ def test_losses_are_refused():
     system = thick().replace(shells=[cx.Shell(radius=1.0, layers=lossy, theory="elastic")], fluids=[WATER] * 2)
     with pytest.raises(cx.InputError, match=r"shells\[0\]\.layers\[0\]\.material: steel has losses"):
         cx.simulate(system, duration=0.5, time_step=1e-2, modes=4)
+
+
+def test_the_memory_of_a_run_counts_what_elastic_walls_keep():
+    settings = Settings(duration=4.0, time_step=1e-3, modes=100)
+    thin, solid = (run_cost(thick(**theory), settings).memory for theory in ({}, {"theory": "elastic"}))
+    assert 1.5 * thin < solid < 4.0 * thin

@@ -117,9 +117,10 @@ def _sampled_bytes(size: Size, top: float) -> float:
 def _spectral_bytes(size: Size) -> float:
     """Return the largest of the stages of the spectral engine."""
     n, plane = size.shells, size.plane
-    linear = 2.0 * n * size.source_parities * plane
+    linear = (2.0 + size.solids) * n * size.source_parities * plane
     structure = linear + ((n * n + n) * plane if size.linked else 0.0)
-    solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes)
+    ports = 1.5 * (2.0 * size.solids - 1.0) * n * COMPLEX * _BLOCK_PAIRS * WORKERS if size.solids else 0.0  # rows of what solids answer
+    solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes) + ports
     tabulated = structure + size.tabulated * (9.0 * plane + 35.0 * size.orders * size.nodes)
     stages = [solved, tabulated, structure + COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
     held = structure
@@ -132,7 +133,8 @@ def _spectral_bytes(size: Size) -> float:
     amplitudes = n * max(size.parities, size.source_parities)
     rates = 2.0 * amplitudes * size.history if size.feedback else 0.0
     stages += [held + _sampled_bytes(size, size.sampled_top)]
-    stages += [held + amplitudes * (2.0 * size.history + 2.5 * plane) + rates + (amplitudes * plane if size.feedback else 0.0)]
+    kept = 2.0 + (size.solids - 4.0 if size.solids else 0.0)  # histories: neither faces nor the loads on them
+    stages += [held + amplitudes * (kept * size.history + 2.5 * plane) + rates + (amplitudes * plane if size.feedback else 0.0)]
     return max(stages)
 
 

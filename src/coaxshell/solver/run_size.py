@@ -12,6 +12,7 @@ from coaxshell.solver.interface.linear_ring import is_ring
 from coaxshell.solver.sampled_orders import crossing_order
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.structure.elastic_wall import ElasticWall
 
 COMPLEX, REAL = 16.0, 8.0
 """Bytes of a number."""
@@ -60,6 +61,9 @@ class Size:
     tabulated: int
     samples: int
 
+    solids: int = 0
+    """Transforms of each shell beside W and V, where walls are elastic solids: hoop stress, faces, loads on them, potentials."""
+
     @property
     def plane(self) -> float:
         """Bytes of one complex number for each order and node."""
@@ -89,6 +93,7 @@ def size_of(problem: Problem, settings: Settings) -> Size:
     links = absorber_set(problem, system.absorber_list, excited)
     orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
     feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
+    solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
     saturates = system.control is not None and system.control.saturation
     return Size(
         shells=len(problem.shells),
@@ -104,5 +109,6 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         instants=steps + 1,
         sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
         tabulated=sum(source.geometry == "spherical" for source in system.sources),
+        solids=5 + max(len(wall.piezoelectric) for wall in solids) if solids else 0,
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
     )
