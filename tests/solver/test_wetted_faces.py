@@ -223,7 +223,7 @@ def test_fluids_on_faces_slow_a_wall_at_once_by_their_resistance_there() -> None
     problem, s, modes = dimensionless(double("faces", (0.1, 0.2))), np.array([2e4, 4e4]) + 0j, Modes(np.zeros(1))
     for shell, wall in enumerate(problem.shells):
         compliance = ModalSystem(problem, s, modes).solve(shell, np.ones((1, 2), complex))[shell][0]
-        rest = s * compliance - 1.0 / (wall.mass * (s + initial_decay(problem, shell, 0)[0, 0]))
+        rest = s * compliance - 1.0 / (wall.mass * (s + initial_decay(problem, shell, modes)[0, 0]))
         assert np.abs(rest * s**3)[1] == pytest.approx(np.abs(rest * s**3)[0], rel=0.05)
 
 
