@@ -219,10 +219,16 @@ def unpacked(arrays: Mapping[str, Any], values: Mapping[str, Any]) -> Observed:
     """Return the run that :func:`packed` took apart."""
     from coaxshell.response.peaks import Peak
     from coaxshell.response.summary import ShellSummary
+    from coaxshell.response.wall_stress import WallPeak
+
+    def peak(plain: Any) -> Any:
+        if not isinstance(plain, dict) or "angle" not in plain:
+            return plain
+        return WallPeak(**plain) if "depth" in plain else Peak(**plain)
 
     def shell(plain: Mapping[str, Any]) -> ShellSummary:
         def peaks(values: Mapping[str, Any]) -> dict[str, Any]:
-            return {name: Peak(**one) if isinstance(one, dict) and "angle" in one else one for name, one in values.items()}
+            return {name: peak(one) for name, one in values.items()}
 
         return ShellSummary(**{**peaks(plain), "further": peaks(plain.get("further", {}))})
 
