@@ -360,4 +360,12 @@ SPATIAL = (
         "tangent of cubic springs along the axis",
         "solver/test_line_absorbers.py",
     ),
+    Mutation(
+        "claims-under-the-sphere",
+        "apps/paper/sphere/judged.py",
+        "step = max(wanted.time_step, self.finest.time_step)",
+        "step = wanted.time_step",
+        "statements under the sphere are judged no finer than is enough for them",
+        "paper/test_sphere_claims.py",
+    ),
 )

@@ -14,7 +14,7 @@ from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.limiting_cases import limiting_systems
 from coaxshell.apps.paper.recipes import FigureRecipe
-from coaxshell.apps.paper.sphere.judged import LEAST, TOPICS, claims_resolution, topic
+from coaxshell.apps.paper.sphere.judged import LEAST, TOPICS, topic
 from coaxshell.apps.paper.sphere.report import RESOLUTION as SPHERE_RESOLUTION
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
@@ -192,7 +192,8 @@ def part_cost(part: Part, resolution: Settings) -> Cost:
         at = sphere_resolution(resolution)
         return _runs([systems.preset("bare")], replace(at, dimensions=3)).then(_runs([systems.preset("bare")] * 3, at))
     if part.kind == "claims under the sphere":
-        at, asked = claims_resolution(resolution), [systems.preset("bare"), *topic(part.about).asked().values()]
+        about = topic(part.about)
+        at, asked = about.resolution(resolution), [systems.preset("bare"), *about.asked().values()]
         return _runs(asked, replace(at, dimensions=3)).then(_runs(asked, at)).then(_FIELDS)
     if part.kind == "film":
         return _runs([systems.preset(name) for name in ("bare", "hybrid")], resolution).then(_FILM)

@@ -15,7 +15,7 @@ from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.recipes import FigureRecipe
 from coaxshell.apps.paper.reproduction.plan import SPHERE, VARIANTS, Part, sphere_claims
 from coaxshell.apps.paper.reproduction.work import picture, runs_of
-from coaxshell.apps.paper.sphere.judged import Judgement, claims_resolution, judged_in_both
+from coaxshell.apps.paper.sphere.judged import Judgement, judged_in_both
 from coaxshell.apps.paper.sphere.texts import CAPTIONS
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
@@ -140,7 +140,7 @@ def sphere_of(resolution: Settings, store: Store, pieces: Mapping[Part, tuple[di
         return None
     arrays, values = piece
     pictures = {name: arrays[name].tobytes() for name in CAPTIONS}
-    judged = judged_in_both(claims_resolution(resolution), store=store) if any(sphere_claims(resolution)) else None
+    judged = judged_in_both(resolution, store=store) if any(sphere_claims(resolution)) else None
     return SphereSection(values["markdown"], values["tables"], values["told"], pictures, judged)
 
 

@@ -131,9 +131,9 @@ def _sphere(job: Job, store: Store) -> Piece:
 
 def _sphere_claims(job: Job, store: Store) -> Piece:
     """Judge the claims of one module under the slice and under the sphere; their runs stay in the store."""
-    from coaxshell.apps.paper.sphere.judged import claims_resolution, judged_in_both, topic
+    from coaxshell.apps.paper.sphere.judged import judged_in_both, topic
 
-    judged = judged_in_both(claims_resolution(job.resolution), (topic(job.part.about),), store)
+    judged = judged_in_both(job.resolution, (topic(job.part.about),), store)
     return {}, {"claims": len(judged.claims)}
 
 

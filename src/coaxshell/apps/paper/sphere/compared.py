@@ -96,7 +96,7 @@ def compare(system: System, resolution: Settings, kinds: tuple[str, ...] = tuple
     Parameters
     ----------
     system : System
-        One spherical shock; no line absorbers, which three dimensions do not have.
+        One spherical shock.
     resolution : Settings
         Of both; the axial wavenumbers and their period are chosen by the engine.
     kinds : tuple of str

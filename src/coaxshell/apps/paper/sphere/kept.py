@@ -1,4 +1,4 @@
-"""What was found about the paper's claims under slice and sphere at the finest resolution, four minutes of a processor: kept."""
+"""What was found about the paper's claims under slice and sphere at the finest resolution, ten minutes of a processor: kept."""
 
 from __future__ import annotations
 
@@ -25,16 +25,19 @@ def as_table(found: Judgement) -> dict[str, Any]:
     def plain(finding: Finding) -> dict[str, Any]:
         return {**asdict(finding), "measured": {name: float(f"{value:.5g}") for name, value in finding.measured.items()}}
 
-    listed = [{"name": one.claim.name, **{key: plain(one.findings[name]) for key, name in _NAMES.items()}} for one in found.claims]
+    def row(one: Judged) -> dict[str, Any]:
+        at = found.resolutions[one.claim.name].arguments()
+        return {"name": one.claim.name, "resolution": at, **{key: plain(one.findings[name]) for key, name in _NAMES.items()}}
+
     about = "The paper's claims under the slice and under the sphere; made by python -m coaxshell.apps.paper.sphere claims"
-    return {"about": about, "resolution": found.resolution.arguments(), "claims": listed}
+    return {"about": about, "claims": [row(one) for one in found.claims]}
 
 
 def from_table(table: Mapping[str, Any]) -> Judgement:
     """Return the judgement that :func:`as_table` took apart."""
     known = {claim.name: claim for claim in claims()}
     judged = tuple(Judged(known[one["name"]], {name: Finding(**one[key]) for key, name in _NAMES.items()}) for one in table["claims"])
-    return Judgement(Settings(**table["resolution"]), judged)
+    return Judgement({one["name"]: Settings(**one["resolution"]) for one in table["claims"]}, judged)
 
 
 @cache

@@ -39,8 +39,10 @@ CLAIMS_TITLE = "The paper's statements under the sphere"
 CLAIMS = (
     "Statements of the paper that mean something under a true sphere, judged by the same criteria from runs that differ in their "
     "dimensions alone: the slice in two, the sphere in three, read in its plane, z = 0; what counts over the surface counts over that "
-    "circle. Left out are statements about numbers alone (time step, orders, masses, the steel rod), limiting cases under a plane wave, "
-    "which is the same in both, energies and means over areas of fluid, and those about absorbers alone (Figures 5 to 10)."
+    "circle. Absorbers are lines along the whole axis, each free at every z. Left out are statements about numbers alone (time step, "
+    "orders, masses, the steel rod), limiting cases under a plane wave, which is the same in both, energies and means over areas of fluid, "
+    "those about the cubic stiffness (Figure 7), and those about the number of absorbers but for the adopted 25: each compares 31 to 76 "
+    "rings, most of more absorbers than three dimensions resolve within minutes."
 )
 CLAIM_HEADINGS = ("no.", "statement", "slice, two dimensions", "sphere, three", "found under the slice", "found under the sphere")
 VERDICTS: dict[Verdict, str] = {"holds": "hold", "holds in part": "hold in part", "does not hold": "do not"}
