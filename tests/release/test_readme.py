@@ -21,6 +21,7 @@ SMALLER = {
     "run": COARSE,
     "info": [],
     "plot": COARSE,
+    "spectrum": COARSE,
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
     "animate": ["--frames", "2", "--size", "80", "--quiet"],
