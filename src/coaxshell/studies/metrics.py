@@ -202,7 +202,11 @@ def metric_names(system: System, dimensions: int = 2) -> list[str]:
     names: list[str] = []
     for i, wall in enumerate(system.shells):
         place = shell_place(i, count)
-        names += [f"{place}.{key}" for key, entry in shell_quantities(dimensions).items() if _lacks(wall, entry) is None]
+        names += [
+            f"{place}.{key}"
+            for key, entry in shell_quantities(dimensions).items()
+            if _lacks(wall, entry) is None and _has_margin(wall, key)
+        ]
     if dimensions == 2:
         names += [f"{region_place(i, count)}.rms_pressure" for i, fluid in enumerate(system.fluids) if not isinstance(fluid, Vacuum)]
     more = [(place, name) for place, names_there in without_shell(system).items() for name in names_there]
@@ -259,6 +263,11 @@ def _lacks(wall: object, entry: MetricEntry) -> str | None:
     if not isinstance(wall, Shell):
         return "is not rigid"
     return f"has a layer with the role {entry.needs!r}" if entry.needs and getattr(wall, entry.needs) is None else None
+
+
+def _has_margin(wall: object, quantity: str) -> bool:
+    """Return whether a quantity is no margin, or a layer of the wall has the strength that it is told against."""
+    return quantity != "strength_margin" or (isinstance(wall, Shell) and any(layer.material.strength is not None for layer in wall.layers))
 
 
 def _of_fluid(text: str, label: str, item: str | int, quantity: str, system: System, where: str) -> Metric:
