@@ -34,7 +34,7 @@ def test_says_the_same_as_the_plain_table(summary):
 
 def test_fits_a_narrow_terminal_without_wrapping_rows(summary):
     rows = [line for line in printed(summary_table(summary), 80).splitlines() if "stress" in line or "displacement" in line]
-    assert len(rows) == 18
+    assert len(rows) == 20
 
 
 def test_a_name_in_brackets_is_no_markup(summary):
