@@ -194,9 +194,9 @@ def test_the_printed_potential_gives_the_velocity_of_its_derivative():
     expected = 2 / 400 * np.sum(transform * np.cos(order * theta))
     front = (distance - 1) / at * (1 - distance * np.cos(theta)) / at * np.exp(-s * (at - distance + 1))
     front, afterflow = (2 / 400 * np.sum(shape * np.cos(order * theta)) for shape in (front, front / at))
-    found = PrintedPotential(distance, decay, impulse=False).acceleration(front, afterflow, s) / s / (s + 1 / decay)
+    found = PrintedPotential(distance, decay=decay, impulse=False).acceleration(front, afterflow, s) / s / (s + 1 / decay)
     np.testing.assert_allclose(found, expected, rtol=1e-5)
-    whole = PrintedPotential(distance, decay, impulse=True).acceleration(front, afterflow, s)
+    whole = PrintedPotential(distance, decay=decay, impulse=True).acceleration(front, afterflow, s)
     np.testing.assert_allclose(whole, decay * s * SphericalGeometry(distance).acceleration(front, afterflow, s), rtol=1e-14)
 
 
