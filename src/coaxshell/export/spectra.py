@@ -11,14 +11,11 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.export.tables import write_csv
-from coaxshell.model import Shell
 from coaxshell.model.places import shell_name
-from coaxshell.response.shock_spectrum import Kind
+from coaxshell.numerics.oscillators import KINDS
 
 if TYPE_CHECKING:
     from coaxshell.response import Response
-
-_KINDS: tuple[Kind, ...] = ("pseudo-velocity", "absolute-acceleration", "relative-displacement")
 
 
 def export_spectra_csv(
@@ -49,17 +46,15 @@ def export_spectra_csv(
     angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
     table: dict[str, npt.NDArray[np.float64]] = {}
     for name, response in runs.items():
-        walls = response.system.shells
-        wanted = [i for i, wall in enumerate(walls) if isinstance(wall, Shell)] if shells is None else np.atleast_1d(shells).tolist()
-        for index in (response.system.shell_index(shell) for shell in wanted):
-            for kind in _KINDS:
+        for index in response.system.shell_indices(shells):
+            for kind in KINDS:
                 found = response.shock_spectrum(index, angles, frequency, station=station, kind=kind, quality_factor=quality_factor)
                 if not table:
                     table["natural frequency (Hz)"] = found["frequency"].to_numpy()
                     frequency = found["frequency"].to_numpy().tolist()
                 words = f"{kind.replace('-', ' ')} ({found.attrs['units']})"
                 for place, values in _places(found):
-                    table[" ".join(filter(None, [name, shell_name(index, len(walls)), place, words]))] = values
+                    table[" ".join(filter(None, [name, shell_name(index, response.shells), place, words]))] = values
     if not table:
         raise InputError("shells", "no run has an elastic one of these", "choose others")
     return write_csv(table, path)

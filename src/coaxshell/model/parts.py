@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator
@@ -163,3 +163,9 @@ class SystemParts(Described):
         numbers = "0" if count == 1 else f"0 to {count - 1}"
         words = " or ".join(repr(word) for word in shell_words(count))
         raise InputError("shell", f"{shell!r} is not a shell of this system", f"must be {numbers} (from the inside), {words}")
+
+    def shell_indices(self, shells: Iterable[int | str] | int | str | None = None) -> list[int]:
+        """Return the numbers of one shell or several, given as to :meth:`shell_index`; of all that are not rigid for None."""
+        if shells is None:
+            return [i for i, shell in enumerate(self.shells) if not isinstance(shell, RigidShell)]
+        return [self.shell_index(shell) for shell in ([shells] if isinstance(shells, int | str) else shells)]

@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -28,8 +28,9 @@ import numpy.typing as npt
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import signal
 
-KINDS = ("relative-displacement", "pseudo-velocity", "absolute-acceleration")
-"""z; omega z; the acceleration of the mass itself, z'' + a = -omega^2 z - 2 zeta omega z'."""
+Kind = Literal["pseudo-velocity", "absolute-acceleration", "relative-displacement"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""omega z; the acceleration of the mass itself, z'' + a = -omega^2 z - 2 zeta omega z'; z."""
 
 IntArray = npt.NDArray[np.int64]
 _BYTES = 2**26
@@ -119,7 +120,7 @@ class Oscillators:
         looks = np.log2(2.0 * np.pi / (self.omega * per_cycle))
         return np.asarray(1 << np.maximum(0, np.floor(looks)).astype(np.int64))
 
-    def reads(self, kind: str) -> FloatArray:
+    def reads(self, kind: Kind) -> FloatArray:
         """Return C, (F, 2), of a quantity y = C x, SI, by its name in :data:`KINDS`."""
         rows, omega = np.zeros((self.omega.size, 2)), self.omega
         if kind == "absolute-acceleration":
@@ -128,7 +129,7 @@ class Oscillators:
             rows[:, 0] = self.step**2 if kind == "relative-displacement" else self.step * omega
         return rows
 
-    def during(self, acceleration: FloatArray, end: FloatArray, kind: str, per_cycle: float = 32.0) -> Extremes:
+    def during(self, acceleration: FloatArray, end: FloatArray, kind: Kind, per_cycle: float = 32.0) -> Extremes:
         """Return the extremes of a quantity while the base moves.
 
         Parameters
@@ -191,7 +192,7 @@ class Oscillators:
             state = power @ state + weights @ acceleration[:, first : first + _BLOCK + 1].T
         return np.asarray(state)
 
-    def after(self, end: FloatArray, kind: str) -> Extremes:
+    def after(self, end: FloatArray, kind: Kind) -> Extremes:
         """Return the extremes of a quantity in the free vibration that follows, from states at the end, when the base accelerates no more.
 
         Those of y at the end of the motion and at its next two turning points, in closed form.

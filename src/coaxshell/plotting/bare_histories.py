@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.errors import InputError
-from coaxshell.model import Shell
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
 from coaxshell.plotting.scales import Scale, common_scales
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
@@ -66,7 +65,7 @@ def figure_bare_histories(response: Response) -> Figure:
 
 def _shells(response: Response) -> list[tuple[int, str]]:
     """Return the innermost and the outermost elastic shell, which may be the same one."""
-    elastic = [i for i, shell in enumerate(response.system.shells) if isinstance(shell, Shell)]
+    elastic = response.system.shell_indices()
     if not elastic:
         raise InputError("shells", "there are only rigid shells, which have no stress", "draw a system with an elastic shell")
     if len(response.system.shells) == 1:

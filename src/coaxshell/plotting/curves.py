@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model import Shell
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.histories import QUANTITIES, TIME_LABEL, History, history, mark_peak
@@ -153,12 +152,8 @@ def _panels(
     """Return the curves of each shell by its name within a sentence."""
     panels: dict[str, Curves] = {}
     for run, (response, station) in runs.items():
-        walls = response.system.shells
-        wanted = range(len(walls)) if shells is None else [shells] if isinstance(shells, int | str) else shells
-        for index in (response.system.shell_index(shell) for shell in wanted):
-            if shells is None and not isinstance(walls[index], Shell):
-                continue
-            title = shell_phrase(index, len(walls))
+        for index in response.system.shell_indices(shells):
+            title = shell_phrase(index, response.shells)
             panel = panels.setdefault(title[:1].upper() + title[1:], {})
             for angle in angles:
                 try:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model import Shell
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.curves import COLOUR_NAMES, DASHES, sections_of
@@ -74,14 +73,11 @@ def figure_shock_spectra(
     panels: dict[str, list[tuple[str, str, Any, FloatArray, FloatArray]]] = {}
     circle = np.linspace(0.0, 360.0, ENVELOPE_ANGLES, endpoint=False)
     for dash, section in zip(DASHES, sections.values(), strict=False):
-        system = section.response.system
-        wanted = range(len(system.shells)) if shells is None else [shells] if isinstance(shells, int | str) else shells
-        for index in (system.shell_index(shell) for shell in wanted):
-            if shells is None and not isinstance(system.shells[index], Shell):
-                continue
+        response = section.response
+        for index in response.system.shell_indices(shells):
             around = [*angles, *(circle if envelope else ())]
-            found = section.response.shock_spectrum(index, around, frequency, station=section.station, quality_factor=quality_factor)
-            title = shell_phrase(index, len(system.shells))
+            found = response.shock_spectrum(index, around, frequency, station=section.station, quality_factor=quality_factor)
+            title = shell_phrase(index, response.shells)
             drawn = panels.setdefault(title[:1].upper() + title[1:], [])
             values, hertz = found.to_numpy(), found["frequency"].to_numpy()
             drawn += [("grey", "all around", dash, hertz, values[:, len(angles) :].max(axis=1))] if envelope else []

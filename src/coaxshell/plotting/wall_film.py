@@ -107,15 +107,12 @@ def wall_film_cost(response: SpatialResponse, shells: int, frames: int, size: in
 def _numbers(response: SpatialResponse, shells: int | str | Sequence[int | str] | None) -> list[int]:
     """Return the numbers of the shells to be shown."""
     described = response.system.shells
-    if shells is None:
-        return [i for i, shell in enumerate(described) if not isinstance(shell, RigidShell)]
-    asked = [shells] if isinstance(shells, (int, str)) else list(shells)
-    if not asked:
-        raise InputError("shells", "there are none", "name at least one shell, or leave it out for all")
-    numbers = [response.system.shell_index(shell) for shell in asked]
-    for name, number in zip(asked, numbers, strict=True):
+    numbers = response.system.shell_indices(shells)
+    if not numbers:
+        raise InputError("shells", "there are none", "name at least one elastic shell, or leave it out for all")
+    for number in numbers:
         if isinstance(described[number], RigidShell):
-            raise InputError("shells", f"{name!r} is rigid and has no stress", "name another shell")
+            raise InputError("shells", f"{shell_phrase(number, response.shells)} is rigid and has no stress", "name another shell")
     return numbers
 
 

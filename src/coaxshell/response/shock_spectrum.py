@@ -12,7 +12,7 @@ while the run lasts ("primary"), in the free vibration if the shell stopped acce
 from __future__ import annotations
 
 import math
-from typing import Literal, TypedDict
+from typing import Literal, TypedDict, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.numerics.oscillators import KINDS, Oscillators
+from coaxshell.numerics.oscillators import KINDS, Kind, Oscillators
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.response.histories import shell_acceleration
@@ -31,7 +31,6 @@ from coaxshell.response.labels import angle_coordinate
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.solution import ModalSolution
 
-Kind = Literal["pseudo-velocity", "absolute-acceleration", "relative-displacement"]
 Extreme = Literal["maximax", "positive", "negative"]
 During = Literal["overall", "primary", "residual"]
 
@@ -47,8 +46,6 @@ class SpectrumOptions(TypedDict, total=False):
 
 
 UNITS = {"relative-displacement": "m", "pseudo-velocity": "m/s", "absolute-acceleration": "m/s^2"}
-EXTREMES = ("maximax", "positive", "negative")
-PHASES = ("overall", "primary", "residual")
 COUNT = 120
 """Frequencies unless any are given."""
 _PER_SAMPLE = 0.1
@@ -99,7 +96,7 @@ def shock_spectrum(
     InputError
         An argument is not allowed, a frequency is above 0.4/(time step), or instants of the run are missing.
     """
-    for name, value, allowed in (("kind", kind, KINDS), ("extreme", extreme, EXTREMES), ("during", during, PHASES)):
+    for name, value, allowed in (("kind", kind, KINDS), ("extreme", extreme, get_args(Extreme)), ("during", during, get_args(During))):
         arguments.one_of(name, value, allowed)
     theta = arguments.angles(angle)
     step = motion.solution.settings.time_step * motion.solution.problem.scales.time

@@ -79,7 +79,7 @@ def observe(response: Response, *, peaks_only: bool = False) -> Observed:
         summary = summary.at(response.stations[0])
     system = response.system
     names = {name: system.shell_index(name) for name in SHELLS if isinstance(system.shells[system.shell_index(name)], Shell)}
-    elastic = [i for i, shell in enumerate(system.shells) if isinstance(shell, Shell)]
+    elastic = system.shell_indices()
     shells = {name: summary.shells[elastic.index(index)] for name, index in names.items()}
     common = (response.time, float(summary.transit_time), response.modes, shells)
     if peaks_only:

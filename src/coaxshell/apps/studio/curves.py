@@ -82,7 +82,7 @@ def header_of(response: Response, summary: Summary, seconds: float) -> dict[str,
 
 def judgement(response: Response) -> dict[str, Any]:
     """Return estimated errors and warnings of a run as docs/studio-api.md says."""
-    elastic = [index for index, shell in enumerate(response.system.shells) if isinstance(shell, Shell)]
+    elastic = response.system.shell_indices()
     return {
         "estimates": {
             "stress": [_finite(value) for value in response.estimates.modal_stress],

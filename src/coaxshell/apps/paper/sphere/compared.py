@@ -11,7 +11,7 @@ import numpy as np
 
 from coaxshell.apps.paper.observed import SIDES
 from coaxshell.errors import InputError
-from coaxshell.model import LineShock, PlaneShock, Shell, SphericalShock
+from coaxshell.model import LineShock, PlaneShock, SphericalShock
 from coaxshell.model.places import shell_name
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver.settings import Settings
@@ -112,7 +112,7 @@ def compare(system: System, resolution: Settings, kinds: tuple[str, ...] = tuple
     source = system.sources[0]
     if len(system.sources) != 1 or not isinstance(source, SphericalShock):
         raise InputError("source", "is not one spherical shock", 'give one with type = "spherical-shock"')
-    elastic = [i for i, shell in enumerate(system.shells) if isinstance(shell, Shell)]
+    elastic = system.shell_indices()
     turns = [source.angle + turn for turn in SIDES.values()]
 
     def read(response: Any, **at: float) -> FloatArray:
