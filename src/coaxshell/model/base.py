@@ -79,7 +79,7 @@ class Described(BaseModel, metaclass=_Readable):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    called: ClassVar[str] = ""
+    _called: ClassVar[str] = ""
     """What errors call it, where its users do not know the name of the class."""
 
     def __init__(self, /, **data: Any) -> None:
@@ -145,7 +145,7 @@ def _one(first: ErrorDetails, cls: type[BaseModel]) -> InputError:
     """Translate one of pydantic's reports."""
     where = written(first["loc"])
     value = first["input"]
-    name = getattr(cls, "called", "") or cls.__name__
+    name = getattr(cls, "_called", "") or cls.__name__
     context: Mapping[str, Any] = first.get("ctx") or {}
     cause = context.get("error")
     if isinstance(cause, InputError):

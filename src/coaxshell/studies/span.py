@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import ConfigDict
@@ -23,7 +23,7 @@ class Span(Described):
     """Describe an interval: ``{from = 0, to = 50, step = 1}`` or ``{from = "1 kg", to = "20 kg", count = 20, scale = "log"}``."""
 
     model_config = ConfigDict(populate_by_name=True, validate_by_name=True)
-    called = "a range"
+    _called: ClassVar[str] = "a range"
 
     start: Annotated[Any, Entry(alias="from")]
     """Lower end, a number in SI or text with a unit."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from copy import deepcopy
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import tomli_w
 from pydantic import BeforeValidator, Field
@@ -107,7 +107,7 @@ class Study(Described):
 class SweepStudy(Study):
     """Describe a sweep."""
 
-    called = "a sweep"
+    _called: ClassVar[str] = "a sweep"
 
     over: dict[str, Any]
     """What to vary: values by dotted path."""

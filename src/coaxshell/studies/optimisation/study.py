@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,7 +19,7 @@ _ENTRIES = frozenset({"from", "to", "values"})
 class OptimisationStudy(Study):
     """Describe an optimisation; entries as the arguments of :func:`coaxshell.optimise`."""
 
-    called = "an optimisation"
+    _called: ClassVar[str] = "an optimisation"
 
     variables: dict[str, Any]
     """What may change: ranges by dotted path."""

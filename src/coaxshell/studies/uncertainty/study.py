@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from coaxshell.studies.metrics import metrics_of
 from coaxshell.studies.study_file import MetricTexts, Study, Tell, flat
@@ -15,7 +15,7 @@ from coaxshell.studies.user_functions import UserCode
 class SensitivityStudy(Study):
     """Describe a study of uncertain properties."""
 
-    called = "a study of uncertain properties"
+    _called: ClassVar[str] = "a study of uncertain properties"
 
     uncertain: dict[str, Any]
     """Distributions by dotted path."""
