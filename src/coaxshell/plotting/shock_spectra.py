@@ -126,6 +126,8 @@ def _power(exponent: int, unit: str) -> str:
 
 def _write(ax: Axes, factor: float, slope: float, text: str, colour: str) -> None:
     """Write along the line v = factor f^slope: below its end where a rising one leaves at the top, else after the line has entered."""
+    from matplotlib.patheffects import withStroke
+
     (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     width, height = np.log(high / low), np.log(top / bottom)
     start, end = sorted(float(np.log((edge / factor) ** (1.0 / slope) / low) / width) for edge in (bottom, top))
@@ -137,7 +139,9 @@ def _write(ax: Axes, factor: float, slope: float, text: str, colour: str) -> Non
     window = ax.get_window_extent()
     turned = np.degrees(np.arctan2(slope * window.height / height, window.width / width))
     side = "right" if at_end else "left"
-    ax.text(f, factor * f**slope, text, color=colour, fontsize=6.5, rotation=turned, rotation_mode="anchor", ha=side, va="bottom")
+    halo = [withStroke(linewidth=2.0, foreground=ax.get_facecolor())]  # curves pass behind it
+    told = ax.text(f, factor * f**slope, text, color=colour, fontsize=6.5, rotation=turned, rotation_mode="anchor", ha=side, va="bottom")
+    told.set_path_effects(halo)
 
 
 def _sheet(panels: Mapping[str, list[tuple[str, str, Any, FloatArray, FloatArray]]], names: list[str], quality_factor: float) -> Figure:
