@@ -77,14 +77,14 @@ chromium:
 	  echo "error: chromium could not be installed, so the tests of the pages will fail; on Debian: apt-get install chromium" >&2; }
 
 # Two test processes share the cores; BLAS threads of their own would only spin against each other.
-# The tests of the browser share one of them: they have one server and one browser between them.
+# tests/conftest.py tells which tests one of them carries out together, and which begin.
 test: export OPENBLAS_NUM_THREADS = 1
 test: $(STAMP) chromium
-	@$(BIN)/python -m pytest -q -n 2 --dist loadgroup -m "not slow"
+	@$(BIN)/python -m pytest -q -n 2 -m "not slow"
 
 test-all: export OPENBLAS_NUM_THREADS = 1
 test-all: $(STAMP_ALL) chromium
-	@$(BIN)/python -m pytest -q -n 2 --dist loadgroup
+	@$(BIN)/python -m pytest -q -n 2
 	@$(MAKE) --no-print-directory docs DOCS_CHECKS="slow or not slow"
 
 mutation: $(STAMP)

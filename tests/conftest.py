@@ -90,18 +90,47 @@ def sharp_inverse() -> Callable[..., np.ndarray]:
     return invert
 
 
-TOGETHER = ("tests/studio/browser/", "tests/studio/", "tests/paper/test_claims.py", "tests/paper/test_reproduction.py")
-"""What one test process carries out alone, for servers, browsers and runs take long to start; the two of the paper share theirs."""
+TOGETHER = ("tests/studio/browser/", "tests/studio/", "tests/paper/")
+"""Places whose tests one process carries out alone, for servers, browsers and runs that they share take long to start."""
+
+LONG = (
+    "tests/studio/browser/",
+    "tests/paper/",
+    "tests/studio/",
+    "tests/response/test_whole_length_energy.py",
+    "tests/verification/test_checks.py",
+    "tests/studies/test_resilience.py",
+    "tests/export/test_kills.py",
+    "tests/cli/test_fields.py",
+    "tests/studies/test_uncertainty.py",
+    "tests/studies/test_optimise.py",
+    "tests/release/test_readme.py",
+    "tests/solver/test_point_absorbers.py",
+    "tests/cross/test_direct_engine.py",
+)
+"""Places and files that take longest, the longest first: begun first, none of them is left to one process at the end."""
+
+
+def unit_of(nodeid: str) -> str:
+    """Return which tests are carried out together, in one process: those of a file, which share its fixtures, or of a place."""
+    return next((place for place in TOGETHER if nodeid.startswith(place)), nodeid.partition("::")[0])
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put the longest units first where several processes share the tests."""
+    if hasattr(config, "workerinput"):
+        rank = {unit: number for number, unit in enumerate(LONG)}
+        items.sort(key=lambda item: rank.get(unit_of(item.nodeid), len(rank)))
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Keep these tests together by their place: xdist's marks of groups go unread by some versions of pytest."""
+    """Give out whole units, in order: xdist's marks of groups go unread by some versions of pytest."""
     from xdist.scheduler import LoadScopeScheduling
 
-    class ByPlace(LoadScopeScheduling):
+    class ByUnit(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            place = next((place for place in TOGETHER if nodeid.startswith(place)), nodeid)
-            return "tests/paper" if place.startswith("tests/paper/test_") and place in TOGETHER else place
+            return unit_of(nodeid)
 
-    return ByPlace(config, log)
+    config.option.loadscopereorder = False
+    return ByUnit(config, log)

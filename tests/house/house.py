@@ -18,6 +18,11 @@ def modules(*, inside_rooms: bool = False) -> list[Path]:
     return [path for path in paths if path.parent != PACKAGE or path.name == "apps/cli.py"] if inside_rooms else paths
 
 
+def named(path: Path) -> str:
+    """Return how a test that looks at all files names one of them."""
+    return path.relative_to(PACKAGE if PACKAGE in path.parents else PROJECT).as_posix()
+
+
 @cache
 def tree(path: Path) -> ast.Module:
     """Return the syntax tree of a file."""

@@ -3,25 +3,45 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 
-import pytest
 from mutations import MUTATIONS
 
 from house import PACKAGE, PROJECT
 
 
-@pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda mutation: mutation.name)
-def test_the_place_of_a_mutation_stands_exactly_once(mutation):
-    source = (PACKAGE / mutation.file).read_text(encoding="utf-8")
-    assert source.count(mutation.original) == 1
-    before, after = (ast.dump(ast.parse(text)) for text in (source, source.replace(mutation.original, mutation.mutated)))
-    assert before != after
+@cache
+def source_of(file):
+    """Return the text of a file of the package and its syntax, which no comment or blank changes."""
+    text = (PACKAGE / file).read_text(encoding="utf-8")
+    return text, ast.dump(ast.parse(text))
 
 
-@pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda mutation: mutation.name)
-def test_the_nearest_tests_of_a_mutation_exist(mutation):
-    assert mutation.nearest
-    assert all((PROJECT / "tests" / name).exists() for name in mutation.nearest.split())
+def fault(mutation):
+    """Return why a mutation would break nothing or cannot be carried out, None if it can."""
+    text, syntax = source_of(mutation.file)
+    if text.count(mutation.original) != 1:
+        return f"its text stands {text.count(mutation.original)} times in {mutation.file}"
+    if ast.dump(ast.parse(text.replace(mutation.original, mutation.mutated))) == syntax:
+        return "it changes nothing"
+    if not mutation.nearest:
+        return "it names no tests"
+    lost = [name for name in mutation.nearest.split() if not (PROJECT / "tests" / name).exists()]
+    return f"no tests {', '.join(lost)}" if lost else None
+
+
+def test_every_mutation_has_its_place_and_its_tests():
+    assert len(MUTATIONS) > 100
+    assert {mutation.name: why for mutation in MUTATIONS if (why := fault(mutation))} == {}
+
+
+def test_a_mutation_that_cannot_be_tried_is_seen():
+    good = MUTATIONS[0]
+    assert fault(good) is None
+    assert fault(good._replace(original="an egg")) == f"its text stands 0 times in {good.file}"
+    assert fault(good._replace(mutated=good.original)) == "it changes nothing"
+    assert fault(good._replace(nearest="")) == "it names no tests"
+    assert fault(good._replace(nearest="egg/test_egg.py")) == "no tests egg/test_egg.py"
 
 
 def test_names_of_mutations_are_different():
