@@ -39,7 +39,7 @@ LOSSES = (
     ),
     Mutation(
         "reach-of-a-stress",
-        "response/wall_stress.py",
+        "response/depth_stress.py",
         "squares = hoop**2 + (axial - hoop) * axial",
         "squares = 0.25 * (hoop**2 + (axial - hoop) * axial)",
         "what the stress of an instant can reach, by which instants are left out",

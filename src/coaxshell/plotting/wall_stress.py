@@ -11,7 +11,7 @@ from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.style import new_figure, style
 from coaxshell.response.arguments import time_window
-from coaxshell.response.wall_stress import WallStress
+from coaxshell.response.wall_stress import stress_through
 from coaxshell.solver.solution import ModalSolution
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def plot_wall_stress(
     ax : Axes, optional
         Where to draw; a new figure when left out.
     component : str
-        "von_mises", "hoop", "axial" or, in three dimensions, "shear".
+        "von_mises", "hoop", "axial", in three dimensions "shear", in elastic walls "radial" or "radial_hoop".
     window : (start, end), optional
         Transits; the whole run unless given.
     station : float or str, optional
@@ -63,7 +63,7 @@ def plot_wall_stress(
     number, span = response.system.shell_index(shell), time_window(response.time, window)
     ((_, motion),) = response.stations_read(peak.station if response.stations is not None else None)
     layers = described_layers(response, number)
-    maps = [layer_map(motion.solution, number, component, span, depths) for depths in _depths(motion.solution, number)]
+    maps = layer_maps(motion.solution, number, component, span)
     largest = max(float(values.max()) for _, _, values in maps)
     unit, per_pascal = ("MPa", 1e-6) if largest >= 1e4 else ("kPa", 1e-3)
     with style():
@@ -97,7 +97,7 @@ def plot_wall_stress(
 
 
 def _words(component: str) -> str:
-    return {"von_mises": "von Mises"}.get(component, component)
+    return {"von_mises": "von Mises", "radial_hoop": "radial-hoop shear"}.get(component, component)
 
 
 def described_layers(response: Response, shell: int) -> list[str]:
@@ -105,15 +105,12 @@ def described_layers(response: Response, shell: int) -> list[str]:
     return [layer.material.name for layer in getattr(response.system.shells[shell], "layers", ())]
 
 
-def _depths(solution: ModalSolution, shell: int) -> list[FloatArray]:
-    return [np.linspace(depths[0], depths[-1], _DEPTHS) for _, depths in WallStress(solution, shell).depths()]
-
-
-def layer_map(
-    solution: ModalSolution, shell: int, component: str, window: slice, depths: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return angles (degrees), depths (m) and the largest magnitude of a stress over a window of time there, (depths, angles)."""
-    stress = WallStress(solution, shell)
+def layer_maps(solution: ModalSolution, shell: int, component: str, window: slice) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Return for each layer angles (degrees), depths (m) and the largest magnitude of a stress over a window of time, (depths, angles)."""
+    stress, found = stress_through(solution, shell), []
     angles = np.arange(0.0, 181.0) if solution.normal.shape[1] == 1 else np.arange(-180.0, 181.0)
-    values = np.stack([stress.at(float(z), component).at_angles(angles, window).max(axis=0) for z in depths])
-    return angles, depths, values
+    for ends in stress.depths():
+        depths = np.linspace(ends[0], ends[-1], _DEPTHS)
+        each = stress.at([float(z) for z in depths], component)
+        found.append((angles, depths, np.stack([at.at_angles(angles, window).max(axis=0) for at in each])))
+    return found

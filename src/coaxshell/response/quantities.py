@@ -31,7 +31,7 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
-from coaxshell.response.wall_stress import largest_of_the_core, largest_through_wall, of_the_core, through_wall
+from coaxshell.response.wall_stress import largest_of_the_core, largest_through_wall, of_the_core, searchable, through_wall
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.shell_model import FieldGain, Gain
 
@@ -189,7 +189,7 @@ class Quantity:
         """Return whether a run gives it for a shell: the shell has it, and where its transform is needed the run all its instants."""
         solution = motion.solution
         wall = solution.problem.shells[shell]
-        there = (self.dimensions == 2 or solution.along is not None) and not (self.through and not wall.sampled_depths)
+        there = (self.dimensions == 2 or solution.along is not None) and (not self.through or searchable(solution, shell))
         needed = self.rate or int(self.relaxes and wall.relaxes)
         return there and motion.has_rate(needed) and self.lack(solution.problem.system, shell) is None
 

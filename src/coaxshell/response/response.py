@@ -188,7 +188,8 @@ class Response:
         """Return the largest stress anywhere in a wall: value (Pa), time (transits), angle (degrees), depth (m), layer, station, margin.
 
         Over all angles, layers and depths, the instants of a window (start, end), and all stations unless some are named. The component is
-        "von_mises", "hoop", "axial" or, in three dimensions, "shear". See :mod:`coaxshell.response.wall_stress`.
+        "von_mises", "hoop", "axial", in three dimensions "shear", in elastic walls "radial" or "radial_hoop". See
+        :mod:`coaxshell.response.wall_stress`.
 
         Raises
         ------
@@ -201,10 +202,9 @@ class Response:
         self, shell: int | str, component: str = "von_mises", *, window: Sequence[float] | None = None, station: Any = None
     ) -> list[WallPeak]:
         """Return the largest stress in each layer of a wall, from the inside out; as :meth:`peak_stress`."""
-        allowed = wall_stress.COMPONENTS if self.stations is not None else ("von_mises", "hoop", "axial")
-        component, number = arguments.one_of("component", component, allowed), self._index(shell)
-        span, found = arguments.time_window(self.time, window), []
+        number, span, found = self._index(shell), arguments.time_window(self.time, window), []
         for z, motion in self.stations_read(station):
+            arguments.one_of("component", component, wall_stress.stress_through(motion.solution, number).components)
             found.append(wall_stress.layer_peaks(motion.solution, number, component, span, z))
         return [max(layer, key=lambda peak: peak.value) for layer in zip(*found, strict=True)]
 

@@ -9,6 +9,7 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
+from coaxshell.response.components import SOLID, solid_von_mises
 from coaxshell.response.labels import COUNTERCLOCKWISE, INWARD, history
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.wall_motion import WallMotion
@@ -30,16 +31,14 @@ def solid_stress(motion: WallMotion, shell: int, theta: FloatArray, depth: float
     depth : float or None
         z, m, outward from the middle; None for the design depth.
     component : str
-        One of :data:`COMPONENTS`; "von_mises" is sqrt(((s_r - s_t)^2 + (s_t - s_z)^2 + (s_z - s_r)^2)/2 + 3 tau^2).
+        One of :data:`COMPONENTS`; "von_mises" by :func:`~coaxshell.response.components.solid_von_mises`.
     """
     wall = motion.solution.problem.shells[shell]
     assert isinstance(wall, ElasticWall)
     z = motion.solution.problem.scales.length * wall.design_depth if depth is None else depth
     if component != "von_mises":
         return _at(motion, shell, theta, component, z)  # type: ignore[arg-type]
-    radial, hoop, axial, shear = (_at(motion, shell, theta, name, z) for name in ("radial", "hoop", "axial", "radial_hoop"))
-    squares = (radial - hoop) ** 2 + (hoop - axial) ** 2 + (axial - radial) ** 2
-    return np.asarray(np.sqrt(0.5 * squares + 3.0 * shear**2))
+    return solid_von_mises(*(_at(motion, shell, theta, name, z) for name in SOLID))  # type: ignore[arg-type]
 
 
 def _at(motion: WallMotion, shell: int, theta: FloatArray, what: Shown, depth: float) -> FloatArray:

@@ -6,14 +6,20 @@ Histories keep W, V and the hoop stress at the design depth; anything else is it
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from itertools import islice
+
 import numpy as np
 
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.structure.elastic_depth import STRESSES, Shown
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
+
+BYTES = 2**26
+"""Transforms at several depths that are found together."""
 
 
 def within(spectra: SolvedSpectra, shell: int, what: Shown, depth: float) -> FloatArray:
@@ -28,19 +34,35 @@ def within(spectra: SolvedSpectra, shell: int, what: Shown, depth: float) -> Flo
     depth : float
         z, m, outward from the middle of the wall; between two layers the outer one is meant.
     """
+    (found,) = each_within(spectra, shell, [Asked(what, depth)])
+    return np.asarray(found[0])
+
+
+def each_within(spectra: SolvedSpectra, shell: int, asked: Sequence[Asked], per: int = 1) -> Iterator[FloatArray]:
+    """Yield modal histories of quantities at depths (m) of an elastic wall, *per* of them together, (per, parities, M + 1, T), SI.
+
+    As many as fit into :data:`BYTES` are one matrix product.
+    """
     problem, grid, modes = spectra.problem, spectra.grid, spectra.modes
     wall, solid, scales = problem.shells[shell], spectra.solid, problem.scales
     assert isinstance(wall, ElasticWall)
     assert solid is not None
-    found = np.empty_like(solid.normal[shell])
+    loads, blocks = solid.loads[:, shell], node_blocks(grid, modes.max_order)
     wall.basis(modes)  # made once, before all threads ask for it
+    together = per * max(1, BYTES // (per * loads[0].nbytes))
+    for start in range(0, len(asked), together):
+        some = [Asked(one.what, one.depth / scales.length) for one in asked[start : start + together]]
+        found = np.empty((len(some), *loads.shape[1:]), np.complex128)
 
-    def work(block: slice) -> None:
-        inner, outer = wall.transfer(modes, grid.nodes[block], [Asked(what, depth / scales.length)])[0]
-        loads = solid.loads[:, shell, :, :, block]
-        found[..., block] = inner * loads[0] + outer * loads[1]
+        def work(block: slice, some: list[Asked] = some, found: ComplexArray = found) -> None:
+            inner, outer = np.moveaxis(wall.transfer(modes, grid.nodes[block], some), 1, 0)
+            for parity in range(loads.shape[1]):
+                there = found[:, parity, :, block]
+                np.multiply(inner, loads[0, parity, :, block], out=there)
+                there += outer * loads[1, parity, :, block]
 
-    with one_blas_thread():  # small products on all threads
-        map_node_blocks(node_blocks(grid, modes.max_order), work, None, "depth")
-    unit = 1.0 if what == "potential" else scales.pressure if what in STRESSES else scales.length
-    return grid.invert(found) * unit
+        with one_blas_thread():  # small products on all threads
+            map_node_blocks(blocks, work, None, "depth")
+        units = (1.0 if x.what == "potential" else scales.pressure if x.what in STRESSES else scales.length for x in some)
+        histories = (grid.invert(one) * unit for one, unit in zip(found, units, strict=True))
+        yield from (np.stack(list(islice(histories, per))) for _ in range(len(some) // per))

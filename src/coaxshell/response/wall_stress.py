@@ -3,7 +3,9 @@
 In a layer the strain is linear in the depth z, and so is the stress but for the field of a piezoelectric layer, a half cosine's
 derivative. A magnitude of what is linear in z, |sigma| or the von Mises stress (a norm), is convex in z: it is largest at a face of the
 layer. Faces of all layers are searched. The field's part, C sin x with x from -pi/2 to pi/2 through its layer, leaves the straight line
-between the faces by 0.21 C at most, which on the paper's walls is less than a thousandth of the largest stress.
+between the faces by 0.21 C at most, which on the paper's walls is less than a thousandth of the largest stress. In a layer that is an
+elastic solid the stress is a polynomial of the layer's degree: its points are searched, and then what lies between them around the
+largest (:mod:`coaxshell.response.solid_wall_stress`).
 
 At each depth no instant can exceed the sum over the orders of their amplitudes, in the norm that the von Mises stress is; instants that
 cannot reach the largest value found so far are left out, so that few are summed around the circle.
@@ -11,29 +13,30 @@ cannot reach the largest value found so far are left out, so that few are summed
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
-from typing import Any
+from itertools import islice
 
 import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.circle import FINE, circle_angles, on_circle
-from coaxshell.response.components import SIDES, STRESSES, von_mises
+from coaxshell.numerics.circle import FINE, circle_angles
+from coaxshell.response.components import STRESSES
+from coaxshell.response.depth_stress import CutVoltage, DepthStress
 from coaxshell.response.modal import amplitudes, elastic_wall, stress_gain_of
 from coaxshell.response.peaks import Peak, folded
 from coaxshell.response.relaxing import Relaxing, relaxed_solution
-from coaxshell.response.synthesis import BLOCK, angle_basis, at_angles
+from coaxshell.response.solid_wall_stress import SolidWallStress
+from coaxshell.response.synthesis import BLOCK, at_angles
 from coaxshell.response.voltages import ActuatorLimit, actuator_limit, applied, demanded_voltage
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.laminate import missing_constants
 from coaxshell.structure.losses import Relaxation
 
-COMPONENTS = ("von_mises", *STRESSES)
 _FIRST = 16
 """Instants summed before the others are judged by what they can reach."""
 
@@ -51,7 +54,7 @@ class WallPeak(Peak):
     material : str
         Of that layer.
     component : str
-        "von_mises", "hoop", "axial" or "shear".
+        "von_mises", "hoop", "axial", "shear", or of elastic walls "radial" or "radial_hoop".
     margin : float or None
         Strength over stress; of a wall that of the layer that comes nearest to its strength. None where no strength is known.
     weakest : int or None
@@ -70,7 +73,7 @@ class WallPeak(Peak):
 
 
 class WallStress:
-    """The stresses at any depth of the wall of one shell of a run.
+    """The stresses at any depth of a thin wall of a run.
 
     Parameters
     ----------
@@ -89,11 +92,14 @@ class WallStress:
         self.wall = elastic_wall(solution.problem, shell)
         self._relaxed: dict[Relaxation | None, ModalSolution] = {None: solution}
 
-    def components(self, component: str) -> tuple[str, ...]:
-        """Return the components that one is made of: in two dimensions there is no shear along the axis."""
-        if component != "von_mises":
-            return (component,)
-        return STRESSES if self.solution.along is not None else ("hoop", "axial")
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What may be asked for: in two dimensions there is no shear along the axis."""
+        return ("von_mises", *self._made_of)
+
+    @property
+    def _made_of(self) -> tuple[str, ...]:
+        return STRESSES if self.solution.along is not None else STRESSES[:2]
 
     @cached_property
     def _voltage(self) -> FloatArray:
@@ -129,81 +135,44 @@ class WallStress:
             total += per_volt * self._voltage
         return total
 
-    def cut_voltage(self, depth: float | None, component: str) -> float:
-        """Return the Pa per volt of a saturating actuator at a depth (m); 0 elsewhere."""
-        per_volt = self._per_volt(depth, component)
-        return per_volt if per_volt and self._limit.saturates else 0.0
-
     def volts(self, basis: FloatArray, window: slice | FloatArray) -> FloatArray:
         """Return the voltage of a saturating actuator at the angles of a basis, (T, A)."""
         return applied(at_angles(self._voltage[..., window], basis), self._limit)
 
-    def depths(self) -> Iterator[tuple[int, tuple[float, ...]]]:
-        """Yield each layer with the depths (m) among which its largest stress is."""
+    def depths(self) -> list[FloatArray]:
+        """Return the depths (m) of each layer, from the inside out, among which its largest stress is."""
         length = self.solution.problem.scales.length
-        for number, depths in enumerate(self.wall.sampled_depths):
-            yield number, tuple(length * z for z in depths)
+        return [length * np.array(depths) for depths in self.wall.sampled_depths]
 
-    def at(self, depth: float | None, component: str) -> AtDepth:
-        """Return a stress at a depth (m), or of the core at the mid-surface."""
-        return AtDepth(self, depth, component)
-
-
-class AtDepth:
-    """A stress at one depth: its components' amplitudes, what they can reach, and its magnitude at angles."""
-
-    def __init__(self, stress: WallStress, depth: float | None, component: str) -> None:
-        self._stress, self.names = stress, stress.components(component)
-        self.modal = {name: stress.amplitudes(depth, name) for name in self.names}
-        self._cut = {name: per_volt for name in self.names if (per_volt := stress.cut_voltage(depth, name))}
-
-    def reach(self, window: slice) -> FloatArray:
-        """Return what the magnitude cannot exceed at any angle, at the instants of a window: a sum over orders of a norm of amplitudes."""
-        parts = {name: modal[..., window] for name, modal in self.modal.items()}
-        if len(parts) == 1:
-            squares = next(iter(parts.values())) ** 2
-        else:
-            hoop, axial = parts["hoop"], parts["axial"]
-            squares = hoop**2 + (axial - hoop) * axial
-            if "shear" in parts:
-                squares = squares + 3.0 * parts["shear"] ** 2
-        bound = np.sqrt(np.maximum(squares.sum(axis=0), 0.0)).sum(axis=0)
-        cut = sum(abs(x) for x in self._cut.values()) * self._stress._limit.volts if self._cut else 0.0
-        return np.asarray((bound + cut) * (1.0 + 1e-9))
-
-    def on_circle(self, instants: Any) -> FloatArray:
-        """Return the magnitude at the angles of :func:`~coaxshell.numerics.circle.circle_angles` and some instants, (A, T)."""
-        fields = {}
-        for name, modal in self.modal.items():
-            some = modal[..., instants]
-            fields[name] = on_circle(some) if SIDES[name] == "normal" else _sines(some)
-        if self._cut:
-            parities, orders, _ = self.modal["hoop" if "hoop" in self.modal else self.names[0]].shape
-            volts = self._stress.volts(angle_basis(circle_angles(orders, parities), orders, parities), instants).T
-            fields = {name: field + self._cut.get(name, 0.0) * volts for name, field in fields.items()}
-        return self._magnitude(fields)
-
-    def at_angles(self, theta: FloatArray, window: Any) -> FloatArray:
-        """Return the magnitude at angles (degrees), (T, A)."""
-        fields = {}
-        for name, modal in self.modal.items():
-            parities, orders, _ = modal.shape
-            fields[name] = at_angles(modal[..., window], angle_basis(theta, orders, parities, SIDES[name]))
-            if name in self._cut:
-                fields[name] = fields[name] + self._cut[name] * self._stress.volts(angle_basis(theta, orders, parities), window)
-        return self._magnitude(fields)
-
-    def _magnitude(self, fields: dict[str, FloatArray]) -> FloatArray:
-        if len(fields) == 1:
-            return np.abs(next(iter(fields.values())))
-        return von_mises(fields["hoop"], fields["axial"], fields.get("shear", 0.0))
+    def at(self, depths: Sequence[float | None], component: str) -> Iterator[DepthStress]:
+        """Yield a stress at each of some depths (m), or of the core at the mid-surface."""
+        for depth in depths:
+            names = self._made_of if component == "von_mises" else (component,)
+            modal = {name: self.amplitudes(depth, name) for name in names}
+            per_volt = {name: self._per_volt(depth, name) for name in names}
+            cut = CutVoltage(per_volt, self._limit.volts, self.volts) if any(per_volt.values()) and self._limit.saturates else None
+            yield DepthStress(modal, cut)
 
 
-def _sines(modal: FloatArray) -> FloatArray:
-    """Return the sum of sin(m theta) and -cos(m theta) at the angles of the circle."""
-    if len(modal) == 2:
-        return on_circle(np.stack([-modal[1], modal[0]]))
-    return on_circle(np.stack([np.zeros_like(modal[0]), modal[0]]))[: len(circle_angles(modal.shape[1], 1))]
+def stress_through(solution: ModalSolution, shell: int) -> WallStress | SolidWallStress:
+    """Return the stresses through the wall of a shell; InputError if it is rigid, or of a theory or run whose depths are not known."""
+    if elastic_wall(solution.problem, shell).faces_move_alike:
+        found = WallStress(solution, shell)
+        if not found.wall.sampled_depths:
+            remedy = 'read response.stress at depths of your own, or use theory = "thin"'
+            raise InputError(f"shells[{shell}].theory", "the depths of a wall of this theory are not known", remedy)
+        return found
+    if solution.along is not None:
+        remedy = "read response.stress at depths of your own"
+        raise InputError(f"shells[{shell}].theory", "the largest stress through elastic walls is searched in two dimensions alone", remedy)
+    solution.need_every_instant("the largest stress through an elastic wall")
+    return SolidWallStress(solution, shell)
+
+
+def searchable(solution: ModalSolution, shell: int) -> bool:
+    """Return whether the largest stress through the wall of a shell can be told."""
+    wall = solution.problem.shells[shell]
+    return bool(wall.sampled_depths) if wall.faces_move_alike else solution.along is None and solution.whole
 
 
 def layer_peaks(solution: ModalSolution, shell: int, component: str, window: slice, station: float | None = None) -> list[WallPeak]:
@@ -214,7 +183,7 @@ def layer_peaks(solution: ModalSolution, shell: int, component: str, window: sli
     solution : ModalSolution
     shell : int
     component : str
-        One of :data:`COMPONENTS`.
+        One of the wall's.
     window : slice
         Time indices.
     station : float, optional
@@ -223,25 +192,16 @@ def layer_peaks(solution: ModalSolution, shell: int, component: str, window: sli
     Raises
     ------
     InputError
-        If the shell is rigid or no thin wall, or a material lacks constants along the axis.
+        If the shell is rigid or its depths are not known, or a material lacks constants along the axis.
     """
-    stress = WallStress(solution, shell)
-    if not stress.wall.sampled_depths:
-        remedy = 'read response.stress at depths of your own, or use theory = "thin"'
-        raise InputError(f"shells[{shell}].theory", "the largest stress is searched through thin walls alone", remedy)
+    stress = stress_through(solution, shell)
     described = solution.problem.system.shells[shell]
     layers = described.layers if isinstance(described, Shell) else ()
     found = []
-    for number, depths in stress.depths():
-        best: tuple[float, float, int, int] = (-1.0, depths[0], window.start, 0)
-        kept: AtDepth | None = None
-        for depth in depths:
-            at = stress.at(depth, component)
-            value, instant, place = _largest(at, window, best[0])
-            if value > best[0]:
-                best, kept = (value, depth, instant, place), at
-        assert kept is not None
-        peak = _refined(kept, solution, window, best[2], best[3])
+    through = stress.depths()
+    each = stress.at([float(z) for z in np.concatenate(through)], component)  # of all layers, as many together as it likes
+    for number, depths in enumerate(through):
+        peak, depth = _of_layer(stress, depths, islice(each, depths.size), component, window)
         material = layers[number].material if number < len(layers) else None
         strength = getattr(material, "strength", None)
         margin = None if strength is None or peak.value == 0.0 else strength / peak.value
@@ -251,7 +211,7 @@ def layer_peaks(solution: ModalSolution, shell: int, component: str, window: sli
                 time=peak.time,
                 angle=peak.angle,
                 growing=peak.growing,
-                depth=best[1],
+                depth=depth,
                 layer=number,
                 material=getattr(material, "name", ""),
                 component=component,
@@ -263,7 +223,29 @@ def layer_peaks(solution: ModalSolution, shell: int, component: str, window: sli
     return found
 
 
-def _largest(at: AtDepth, window: slice, above: float) -> tuple[float, int, int]:
+def _of_layer(
+    stress: WallStress | SolidWallStress, depths: FloatArray, each: Iterable[DepthStress], component: str, window: slice
+) -> tuple[Peak, float]:
+    """Return the largest magnitude in a layer, from the stress at each of its depths (m), and the depth where it is."""
+    best, kept, fields = (-1.0, window.start, 0, 0), None, []
+    for number, at in enumerate(each):
+        value, instant, place = _largest(at, window, best[0])
+        if value > best[0]:
+            best, kept = (value, instant, place, number), at
+        if isinstance(stress, SolidWallStress):
+            fields.append(at)
+    assert kept is not None
+    _, instant, place, number = best
+    near, depth = _beside(instant, window), float(depths[number])
+    if isinstance(stress, SolidWallStress):
+        fine, between = stress.between(depths, fields, number, near)
+        depth = float(fine[_refined(between, slice(None), stress.solution, window, near, place)[1]])
+        if depth not in depths:
+            (kept,) = stress.at([depth], component)
+    return _refined(kept, near, stress.solution, window, near, place)[0], depth
+
+
+def _largest(at: DepthStress, window: slice, above: float) -> tuple[float, int, int]:
     """Return the largest magnitude at one depth with its instant and place on the circle; -1 if none exceeds *above*."""
     bound = at.reach(window)
     orders = next(iter(at.modal.values())).shape[1]
@@ -281,17 +263,34 @@ def _largest(at: AtDepth, window: slice, above: float) -> tuple[float, int, int]
     return (best, instant, place) if instant >= 0 else (-1.0, window.start, 0)
 
 
-def _refined(at: AtDepth, solution: ModalSolution, window: slice, instant: int, place: int) -> Peak:
-    """Return the largest in steps of the circle FINE times finer around a place, at an instant and the two beside it."""
+def _beside(instant: int, window: slice) -> slice:
+    """Return an instant and the two beside it."""
+    return slice(max(window.start, instant - 1), min(window.stop, instant + 2))
+
+
+def _refined(at: DepthStress, which: slice, solution: ModalSolution, window: slice, near: slice, place: int) -> tuple[Peak, int]:
+    """Return the largest in steps of the circle FINE times finer around a place, and at which of several depths.
+
+    Parameters
+    ----------
+    at : DepthStress
+    which : slice
+        Of its instants: those of *near*, at one depth after the other.
+    solution : ModalSolution
+    window, near : slice
+        Time indices: all that count, and those looked at.
+    place : int
+        On the circle.
+    """
     parities, orders = solution.normal.shape[1:3]
     grid = circle_angles(orders, parities)
-    near = slice(max(window.start, instant - 1), min(window.stop, instant + 2))
     angles = grid[place] + (grid[1] - grid[0]) / FINE * np.arange(-FINE, FINE + 1)
-    values = at.at_angles(angles, near)
-    k, i = np.unravel_index(int(values.argmax()), values.shape)
+    values = at.at_angles(angles, which).reshape(-1, near.stop - near.start, angles.size)
+    depth, k, i = (int(n) for n in np.unravel_index(int(values.argmax()), values.shape))
     angle = folded(float(angles[i]))
-    growing = bool(near.start + k == window.stop - 1 and k > 0 and values[k, i] > values[k - 1, i])
-    return Peak(float(values[k, i]), float(solution.time[near.start + k]), abs(angle) if parities == 1 else angle, growing)
+    growing = bool(near.start + k == window.stop - 1 and k > 0 and values[depth, k, i] > values[depth, k - 1, i])
+    value, time = float(values[depth, k, i]), float(solution.time[near.start + k])
+    return Peak(value, time, abs(angle) if parities == 1 else angle, growing), depth
 
 
 def of_wall(layers: list[WallPeak]) -> WallPeak:
@@ -318,20 +317,22 @@ def largest_through_wall(solution: ModalSolution, shell: int, window: slice, len
 
 def largest_of_the_core(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
     """Return the largest von Mises stress of the core at the mid-surface within a window; a mean over a segment is not taken."""
-    at = WallStress(solution, shell).at(None, "von_mises")
+    (at,) = WallStress(solution, shell).at([None], "von_mises")
     _, instant, place = _largest(at, window, -1.0)
-    return _refined(at, solution, window, instant, place)
+    near = _beside(instant, window)
+    return _refined(at, near, solution, window, near, place)[0]
 
 
 def of_the_core(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
     """Return the von Mises stress of the core at the mid-surface at angles (degrees), Pa, (T, A)."""
-    at = WallStress(motion.solution, shell).at(None, "von_mises")
+    (at,) = WallStress(motion.solution, shell).at([None], "von_mises")
     return at.at_angles(np.atleast_1d(theta), slice(0, motion.solution.time.size))
 
 
 def through_wall(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
     """Return the largest stress through the wall at angles (degrees), Pa, (T, A)."""
-    stress, component = WallStress(motion.solution, shell), usual_component(motion.solution, shell)
-    every = slice(0, motion.solution.time.size)
-    each = (stress.at(z, component).at_angles(np.atleast_1d(theta), every) for _, depths in stress.depths() for z in depths)
-    return np.asarray(reduce(np.maximum, each))
+    stress, component = stress_through(motion.solution, shell), usual_component(motion.solution, shell)
+    every, depths = slice(0, motion.solution.time.size), np.concatenate(stress.depths())
+    return np.asarray(
+        reduce(np.maximum, (at.at_angles(np.atleast_1d(theta), every) for at in stress.at([float(z) for z in depths], component)))
+    )

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -58,6 +59,12 @@ class OrdersBasis:
     def faces(self) -> FloatArray:
         """u_r of the inner and of the outer face, shape (orders, 2, shapes)."""
         return np.stack([self.shapes[:, :, 0, 0], self.shapes[:, :, 0, -1]], axis=1)
+
+    @cached_property
+    def potentials(self) -> dict[LayerMesh, FloatArray]:
+        """Phi at the points of each piezoelectric layer per displacement there (:class:`PotentialOfLayer`)."""
+        ceramics = (part for part in self.mesh.layers if part.layer.coupling is not None)
+        return {part: PotentialOfLayer(part, self.orders, self.wavenumber).values for part in ceramics}
 
 
 def displacements(wavenumber: float) -> int:

@@ -13,7 +13,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.lobatto import interpolation
-from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, displacements
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements
 from coaxshell.structure.elastic_mesh import LayerMesh, strains
 from coaxshell.structure.solid import AXIAL, HOOP, HOOP_AXIAL, RADIAL, RADIAL_AXIAL, RADIAL_HOOP
 
@@ -68,7 +68,7 @@ def shown_by_shapes(basis: OrdersBasis, number: int, radius: float, what: Shown)
 
 def potential_rows(basis: OrdersBasis, part: LayerMesh, at: FloatArray) -> FloatArray:
     """Return the potential at a place per displacement at the points of a layer, shape (orders, displacements, points)."""
-    values = PotentialOfLayer(part, basis.orders, basis.wavenumber).values
+    values = basis.potentials[part]
     return np.asarray(np.einsum("q,mqcp->mcp", at, values))
 
 
@@ -90,7 +90,7 @@ def stress_rows(basis: OrdersBasis, part: LayerMesh, radius: float, at: FloatArr
     found = np.einsum("j,mjcp->mcp", part.layer.matrix[component], local)
     if part.layer.coupling is None:
         return np.asarray(found)
-    values = PotentialOfLayer(part, basis.orders, basis.wavenumber).values
+    values = basis.potentials[part]
     phi, phi_slope = (np.einsum("q,mqcp->mcp", row, values) for row in (at, slope))
     e = np.array(part.layer.coupling)[:, component]
     per_radius = (basis.orders / radius)[:, None, None]

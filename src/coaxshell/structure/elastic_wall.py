@@ -20,14 +20,19 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
 from coaxshell.structure.elastic_depth import Shown, shown_by_shapes
+from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
 
 UNSTATED_FREQUENCY = 300.0
 """Up to which waves are resolved where no run has said so, radians per transit."""
+
+SPARED, LEAST_SEARCHED = 4, 2
+"""Degrees that the search for the largest stress does without, whose polynomials are good to 1e-3 between their points, and the least."""
 
 
 class Asked(NamedTuple):
@@ -89,6 +94,20 @@ class ElasticWall(ShellModel):
         core = self.layers[self.core]
         inside = core.inner <= self.radius <= core.outer
         return 0.0 if inside else 0.5 * (core.inner + core.outer) - self.radius
+
+    def points(self, order: float) -> tuple[FloatArray, ...]:
+        """Return depths of each layer, from the inside out, through which a polynomial holds its stress up to an order.
+
+        Gauss-Lobatto points of a degree :data:`SPARED` below that of the displacements, which resolves waves to 1e-6. Between two layers
+        the outer one is meant at a depth: the last point of a layer lies within it by a hair.
+        """
+        found, hair = [], 1e-8 * (self.layers[-1].outer - self.layers[0].inner)
+        for layer in self.layers:
+            rule = lobatto(max(LEAST_SEARCHED, degree(layer, order, 0.0, self.frequency) - SPARED))
+            depths = layer.inner - self.radius + 0.5 * layer.thickness * (1.0 + rule.points)
+            depths[-1] = layer.outer - self.radius - (0.0 if layer is self.layers[-1] else hair)
+            found.append(depths)
+        return tuple(found)
 
     def layer_at(self, depth: float) -> int:
         """Return the number of the layer at a depth; between two layers the outer one is meant, but for the core at its design depth."""
