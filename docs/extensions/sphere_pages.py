@@ -14,7 +14,7 @@ TAIL = """
 
 ```sh
 python -m coaxshell.apps.paper.sphere map map.json        # the map, about a minute of one processor
-python -m coaxshell.apps.paper.sphere claims claims.json  # the statements, eight minutes
+python -m coaxshell.apps.paper.sphere claims claims.json  # the statements, ten minutes
 coaxshell reproduce --only sphere                         # all but the map, in one report
 ```
 

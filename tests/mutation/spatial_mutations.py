@@ -133,7 +133,7 @@ SPATIAL = (
         "share *= 2.0 / sampling.period",
         "share *= 4.0 / sampling.period",
         "softness that the waves left out give a wall under a point absorber: twice of it",
-        "solver/test_point_estimates.py",
+        "solver/test_axial_estimates.py",
     ),
     Mutation(
         "points-along",
@@ -303,6 +303,14 @@ SPATIAL = (
         "[response.solution]",
         "voltages of a study are those of the first station alone",
         "studies/test_spatial_studies.py",
+    ),
+    Mutation(
+        "line-softness",
+        "solver/axial/line_softness.py",
+        "mask * sample.waves * _half_of_0(sample.modes)",
+        "mask * sample.weight * _half_of_0(sample.modes)",
+        "softness that the orders left out give a wall at a line: half of it",
+        "solver/test_axial_estimates.py",
     ),
     Mutation(
         "line-lattice",

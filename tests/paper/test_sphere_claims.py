@@ -24,7 +24,7 @@ from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
 
 SMALL = Settings(duration=4.0, time_step=5e-2, modes=6)
-LATER = ("mass", "position", "count", "damping")
+LATER = ("mass", "cubic", "position", "count", "damping")
 """Topics of many runs, which are judged in earnest only."""
 QUICK = tuple(one for one in TOPICS if one.module not in LATER)
 

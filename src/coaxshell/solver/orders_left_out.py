@@ -22,13 +22,13 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
 from coaxshell.solver.limited_orders import actuators_of, asked_above, moved_above, moved_below, softened
-from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
+from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density, mobility_of
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 REST = 1e-7
 """A shell that moves less than this times the one that moves most has not been reached: what it shows is rounding."""
 LEAST_TRUE = 0.3
-_COUPLED_POINTS = 64
+COUPLED_POINTS = 64
 """Points up to which absorbers are solved together; more of them each alone with its two walls."""
 _CACHED = 512 * 1024
 """Bytes of a few orders that stay in the processor's cache."""
@@ -112,7 +112,11 @@ def mean_tangent(links: AbsorberSet, stretch: FloatArray) -> AbsorberSet:
     if links.is_linear:
         return links
     square = stretch * stretch
-    squares, fourth = square.sum(axis=(0, 2)), (square * square).sum(axis=(0, 2))
+    return with_tangent(links, square.sum(axis=(0, 2)), (square * square).sum(axis=(0, 2)))
+
+
+def with_tangent(links: AbsorberSet, squares: FloatArray, fourth: FloatArray) -> AbsorberSet:
+    """Return the absorbers with the tangent stiffness of :func:`mean_tangent`, of means D^2 and D^4, each (N,)."""
     spread = np.divide(fourth, squares, out=np.zeros_like(squares), where=squares > 0)
     return replace(links, linear=links.linear + 3.0 * links.cubic * spread, cubic=np.zeros_like(links.cubic))
 
@@ -138,29 +142,30 @@ def forces_against(
     -Y (1 + (G + dG) Y)^-1 moved, ``soft`` the mobility dG of the orders left out, shape (shells, shells, nodes).
     """
     nodes, count = structure.grid.nodes[which], links.count
-    if 2 * count > _COUPLED_POINTS:
-        mobility = _mean_mobility(structure, which)
+    if 2 * count > COUPLED_POINTS:
+        share = np.where(np.arange(structure.modes.count) == 0, 0.5, 1.0)
+        mobility = mobility_of(structure.problem, structure.compliance[..., which], share)
         return each_alone(links, nodes, mobility if soft is None else soft + mobility, moved)
     found = np.empty((2, count, nodes.size), np.complex128)
+    points = InterfacePoints(structure.problem, links, structure.modes)
     every, width = range(structure.grid.nodes.size)[which], max(1, _BLOCK_BYTES // (16 * (2 * count) ** 2))
     for start in range(0, nodes.size, width):
         part, here = slice(start, start + width), every[start : start + width]
         compliance = structure.compliance[..., here.start : here.stop : here.step]
-        found[..., part] = _against(structure, links, compliance, nodes[part], moved[..., part], None if soft is None else soft[..., part])
+        found[..., part] = against(points, links, compliance, nodes[part], moved[..., part], None if soft is None else soft[..., part])
     return found
 
 
-def _against(
-    structure: StructureSpectra,
+def against(
+    points: InterfacePoints,
     links: AbsorberSet,
     compliance: ComplexArray,
     nodes: ComplexArray,
     moved: ComplexArray,
     soft: ComplexArray | None,
 ) -> ComplexArray:
-    """Return what :func:`forces_against` does at a few nodes."""
+    """Return what :func:`forces_against` does at a few nodes, where the orders of the points have a compliance."""
     count = links.count
-    points = InterfacePoints(structure.problem, links, structure.modes)
     receptance = np.ascontiguousarray(np.moveaxis(points.between(compliance), -1, 0))
     sides, index = np.stack([links.inner_shell, links.inner_shell + 1]), np.arange(count)
     for a in (0, 1):
@@ -174,13 +179,6 @@ def _against(
     followed[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
     wall = np.linalg.solve(followed, moved.reshape(2 * count, -1).T[:, :, None]).reshape(nodes.size, 2, count)
     return np.asarray(-(wall * own[:, None] + wall[:, ::-1] * other[:, None]).transpose(1, 2, 0))
-
-
-def _mean_mobility(structure: StructureSpectra, which: slice) -> ComplexArray:
-    """Return the mobility of a point by the orders kept, shape (shells, shells, nodes)."""
-    problem, share = structure.problem, np.where(np.arange(structure.modes.count) == 0, 0.5, 1.0)
-    radius = np.pi * np.array([shell.radius for shell in problem.shells])
-    return np.asarray(np.einsum("ijmk,m->ijk", structure.compliance[..., which], share) / radius[:, None])
 
 
 def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArray) -> FloatArray:

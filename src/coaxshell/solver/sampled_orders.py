@@ -148,9 +148,8 @@ class SampledOrders:
 
         Of the orders above one alone if it is given.
         """
-        radius = np.pi * np.array([shell.radius for shell in self.problem.shells])
         share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 0.5, 1.0)
-        return np.asarray(np.einsum("ijmk,m->ijk", self.compliance, share) / radius[:, None])
+        return mobility_of(self.problem, self.compliance, share)
 
     def motion(self, above: int = -1) -> FloatArray:
         """Return the mean square of the motion of a point of every shell under the sources, shape (shells, nodes).
@@ -169,6 +168,20 @@ def force_density(problem: Problem, links: AbsorberSet, force: ComplexArray) -> 
         pair, sides = slice(inner, inner + 2), force[:, members]
         density[pair, pair] += np.einsum("ank,bnk,n->abk", sides, np.conj(sides), links.multiplicity[members])
     return density
+
+
+def mobility_of(problem: Problem, compliance: ComplexArray, share: FloatArray) -> ComplexArray:
+    """Return the displacement at a point of shell i per line force at the same angle of shell j, shape (shells, shells, nodes).
+
+    Parameters
+    ----------
+    problem : Problem
+    compliance : ndarray, shape (shells, shells, orders, nodes)
+    share : ndarray, shape (orders,)
+        How many orders each stands for, half of that for order 0.
+    """
+    radius = np.pi * np.array([shell.radius for shell in problem.shells])
+    return np.asarray(np.einsum("ijmk,m->ijk", compliance, share) / radius[:, None])
 
 
 def each_alone(links: AbsorberSet, nodes: ComplexArray, mobility: ComplexArray, motion: ComplexArray) -> ComplexArray:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.scaling import Problem
@@ -73,5 +73,4 @@ class LineForces:
 
 def line_forces(layout: LineLayout, amplitudes: ComplexArray) -> LineForces:
     """Return forces from transforms of their amplitudes along the axis, (waves, 2N, axial parities, nodes): F_0 = L f_0, else L f_j/2."""
-    per_amplitude: FloatArray = layout.sampling.period * np.where(np.arange(len(amplitudes)) == 0, 1.0, 0.5)
-    return LineForces(layout, amplitudes * per_amplitude[:, None, None, None])
+    return LineForces(layout, amplitudes * layout.squares[:, None, None, None])

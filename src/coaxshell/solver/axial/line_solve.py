@@ -14,10 +14,15 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver.axial.blocks import BlockMap, Found
 from coaxshell.solver.axial.line_forces import LineForces, line_forces
-from coaxshell.solver.axial.line_march import LineMotion, march_lines
+from coaxshell.solver.axial.line_march import LineMarch, LineMotion, march_lines
 from coaxshell.solver.axial.line_structure import line_answers, line_kernels, wave_blocks
 from coaxshell.solver.axial.lines import LineLayout
+from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.orders_left_out import with_tangent
 from coaxshell.solver.step_error import SHARES, summed_weights
+
+_INSTANTS = 64
+"""Of stretches that are taken to the points of a period together."""
 
 
 @dataclass(frozen=True)
@@ -37,12 +42,15 @@ class LineSolution:
         Relative error of what the forces do to the walls by the steps of the march; 0 where nothing was marched.
     exact : tuple of ndarray, or None
         Transforms of force and displacement, where they were not marched.
+    tangent : AbsorberSet
+        The absorbers carried, cubic springs by their mean tangent over all times and the whole axis.
     """
 
     forces: LineForces
     grid: LaplaceGrid
     force: FloatArray
     displacement: FloatArray
+    tangent: AbsorberSet
     error: float = 0.0
     exact: tuple[ComplexArray, ComplexArray] | None = None
 
@@ -67,13 +75,28 @@ def solve_lines(layout: LineLayout, grid: LaplaceGrid, on: BlockMap, progress: P
         found = _mapped(layout, grid, line_answers, on, progress)
         force, displacement = found["force"], found["displacement"]
         forces = line_forces(layout, force)
-        return LineSolution(forces, grid, grid.invert(force), grid.invert(displacement), exact=(force, displacement))
+        return LineSolution(forces, grid, grid.invert(force), grid.invert(displacement), layout.absorbers, exact=(force, displacement))
     found = _mapped(layout, grid, line_kernels, on, progress)
     motion = LineMotion(found["displacement"], found["velocity"], found["weights"], grid.time_step)
     result = march_lines(layout, motion, progress)
     spectra = grid.transform_linear(result.force)
     error = _march_error(layout, motion, result.moved)
-    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, error)
+    tangent = _mean_tangent(layout, motion, result)
+    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, tangent, error)
+
+
+def _mean_tangent(layout: LineLayout, motion: LineMotion, result: LineMarch) -> AbsorberSet:
+    """Return the absorbers carried, cubic springs by k_l + 3 k_nl <D^4>/<D^2>, means over all times and the whole axis."""
+    count = layout.absorbers.count
+    squares, fourth = np.zeros((2, count))
+    for first in range(0, motion.steps, _INSTANTS):
+        some = slice(first, first + _INSTANTS)
+        stretch = np.tile(result.displacement[..., some], (1, 2, 1, 1)) - motion.displacement[..., some] - result.moved[..., some]
+        values = layout.series.values(np.moveaxis(stretch, 2, 3).reshape(len(stretch), -1, stretch.shape[2]))
+        square = values * values
+        for total, power in ((squares, square), (fourth, square * square)):
+            total += (layout.series.weights @ power).reshape(2, count, -1).sum(axis=(0, 2))
+    return with_tangent(layout.absorbers, squares, fourth)
 
 
 def _mapped(

@@ -15,7 +15,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
-from coaxshell.solver.axial.families import Family, wave_sets
+from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.sums import normals_of
 from coaxshell.solver.coupling import ModalSystem
@@ -96,7 +96,8 @@ def wave_answers(layout: LineLayout, grid: LaplaceGrid, j: int) -> tuple[Complex
         for pressed in range(walls):
             for moved, w in enumerate(system.solve(pressed, 1.0)):
                 compliance[moved, pressed, :, block] = w
-        for family, share in _families(layout, grid.nodes[block], j):
+        sets = wave_sets(problem, layout.sampling, np.array([layout.origin]), grid.nodes[block])
+        for family, share in families_at(layout, sets, j):
             for parity, normal in enumerate(normals_of(problem, system, family, grid, block)[: len(shapes)]):
                 at_lines = np.concatenate([shapes[parity] @ w for w in normal]).reshape(walls, absorbers.count, -1)
                 here = at_lines[shell, np.tile(np.arange(absorbers.count), 2)]
@@ -105,9 +106,18 @@ def wave_answers(layout: LineLayout, grid: LaplaceGrid, j: int) -> tuple[Complex
     return motion, compliance
 
 
-def _families(layout: LineLayout, s: ComplexArray, j: int) -> Iterator[tuple[Family, tuple[float, float]]]:
-    """Yield the families of sources that make waves of a wavenumber, and how much of cos k(z - z_0) and of sin k(z - z_0) they make."""
-    for waves in wave_sets(layout.problem, layout.sampling, np.array([layout.origin]), s):
+def families_at(layout: LineLayout, sets: list[WaveSet], j: int) -> Iterator[tuple[Family, tuple[float, float]]]:
+    """Yield the families of sources that make waves of a wavenumber, and how much of cos k(z - z_0) and of sin k(z - z_0) they make.
+
+    Parameters
+    ----------
+    layout : LineLayout
+    sets : list of WaveSet
+        Of all sources, at the station z_0.
+    j : int
+        Number of the wavenumber.
+    """
+    for waves in sets:
         if waves.modes is layout.sampling.modes or j == 0:
             for family in waves.families:
                 yield family, (float(family.even[0, j]), -float(family.odd[0, j]))

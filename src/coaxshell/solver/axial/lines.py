@@ -95,6 +95,11 @@ class LineLayout:
         found[..., :count, :] = values
         return found
 
+    @property
+    def squares(self) -> FloatArray:
+        """The integral of cos^2 k_j z over a period: L for k_0, else L/2, shape (waves,)."""
+        return np.asarray(self.sampling.period * np.where(self.sampling.wavenumbers == 0.0, 1.0, 0.5))
+
     def along(self, z: FloatArray) -> FloatArray:
         """Return cos k_j (z - z_0), and sin, at some z (in a): shape (z, waves, axial parities)."""
         phase = np.multiply.outer(z - self.origin, self.sampling.wavenumbers)

@@ -55,6 +55,20 @@ def samples_of(problem: Problem, sampling: AxialSampling, waves: WaveSet) -> lis
     return [_sample(orders_above(problem, sampling.max_order + 1), waves.modes[0].wavenumber, 1.0, True)]
 
 
+def sample_beside(problem: Problem, sampling: AxialSampling, wave: int) -> Sample:
+    """Return a sample of the orders left out at a wavenumber of the run, by its number."""
+    modes = sampling.modes[wave]
+    if len(sampling.modes) == 1:
+        return _sample(orders_above(problem, sampling.max_order + 1), modes.wavenumber, 1.0, True)
+    orders = _orders_beyond(sampling, modes.max_order + 1.0)
+    return _sample(orders, modes.wavenumber, 1.0, orders / sampling.max_order >= sampling.wavenumbers[wave] / sampling.highest)
+
+
+def _orders_beyond(sampling: AxialSampling, first: float) -> FloatArray:
+    """Return some orders from the first one left out to four times M."""
+    return np.unique((np.geomspace(first + 1.0, _FARTHEST * sampling.max_order + 1.0, _ORDERS) - 1.0).round())
+
+
 def spherical_samples(sampling: AxialSampling) -> list[Sample]:
     """Return samples of what lies beyond the kept waves of spherical sources and of forces at points."""
     top, highest = float(sampling.max_order), sampling.highest
@@ -66,6 +80,6 @@ def spherical_samples(sampling: AxialSampling) -> list[Sample]:
     for each, stands_for in zip(k, waves, strict=True):
         share = (each / highest) ** 2
         first = float(np.floor(top * np.sqrt(1.0 - share))) + 1.0 if share < 1.0 else 0.0
-        orders = np.unique((np.geomspace(first + 1.0, _FARTHEST * top + 1.0, _ORDERS) - 1.0).round())
+        orders = _orders_beyond(sampling, first)
         samples.append(_sample(orders, float(each), float(stands_for), orders / top >= each / highest))
     return samples

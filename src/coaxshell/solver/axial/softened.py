@@ -18,6 +18,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial.families import WaveSet, wave_sets
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.linked import PointSolution, PointStructure, point_law
 from coaxshell.solver.axial.point_forces import PointForces, patch
 from coaxshell.solver.axial.points import PointLayout
@@ -36,14 +37,14 @@ class Softened(NamedTuple):
 
     Attributes
     ----------
-    forces : PointForces
+    forces : WallForces
         With what all of these change.
     changed : ndarray, shape (2, shells, 2, M + 1)
         Mean squares along the axis of W and of the strains, parities and nodes added up, of what orders left out [0] and axial wavenumbers
         left out [1] change in the waves kept.
     """
 
-    forces: PointForces
+    forces: WallForces
     changed: FloatArray
 
 
@@ -56,7 +57,7 @@ def softened(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, linke
     forces = [PointForces(layout.points, layout.of_every(change), layout.parities) for change in each]
     known = linked.forces.at(NODES)
     whole = PointForces(known.points, known.force + forces[0].force + forces[1].force, known.parities)
-    return Softened(whole, np.stack([_in_the_waves_kept(problem, grid, sampling, one) for one in forces]))
+    return Softened(whole, np.stack([in_the_waves_kept(problem, grid, sampling, one) for one in forces]))
 
 
 def softness(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, layout: PointLayout) -> ComplexArray:
@@ -132,7 +133,7 @@ def _forces_changed(
     return np.asarray(-(law @ walls)[:, :, 0].T)
 
 
-def _in_the_waves_kept(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, forces: PointForces) -> FloatArray:
+def in_the_waves_kept(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, forces: WallForces) -> FloatArray:
     """Return the mean squares along the axis of W and of the strains of what forces at the sampled nodes move, (shells, 2, M + 1)."""
     found = np.zeros((len(problem.shells), 2, sampling.max_order + 1))
     kept = wave_sets(problem, sampling, np.zeros(1), grid.nodes[NODES], forces)[-1]

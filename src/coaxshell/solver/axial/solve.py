@@ -18,13 +18,14 @@ from coaxshell.solver import checks
 from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.left_out import estimated_errors
+from coaxshell.solver.axial.line_softness import softened_lines
 from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
 from coaxshell.solver.axial.lines import line_layout, require_lines_alone
 from coaxshell.solver.axial.linked import PointSolution, point_structure, solve_points
 from coaxshell.solver.axial.mode_choice import resolved_sampling
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.softened import softened
+from coaxshell.solver.axial.softened import Softened, softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
@@ -82,7 +83,7 @@ def solve_spatial(
     stopwatch.lap("inverse transform")
     motion = StationSpectra(grid, spectra["w"], spectra["v"])
     moved = histories["w"], histories["v"]
-    soft = softened(problem, grid, sampling, linked) if isinstance(linked, PointSolution) else None
+    soft = _softened(problem, grid, sampling, linked)
     force_error = 0.0 if linked is None else linked.error
     estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, soft, forces, force_error)
     stopwatch.lap("error estimates")
@@ -96,6 +97,13 @@ def solve_spatial(
         force, moved_masses = linked.at(solution.stations / problem.scales.length)
         solution = replace(solution, line_displacement=moved_masses[..., keep], line_force=force[..., keep])
     return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
+
+
+def _softened(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, linked: PointSolution | LineSolution | None) -> Softened | None:
+    """Return what the absorbers do with the waves left out, None if there are none."""
+    if isinstance(linked, PointSolution):
+        return softened(problem, grid, sampling, linked)
+    return None if linked is None else softened_lines(problem, grid, linked)
 
 
 def _voltage_rates(problem: Problem, grid: LaplaceGrid, spectra: dict[str, ComplexArray]) -> dict[str, ComplexArray]:

@@ -1,7 +1,7 @@
 """Make what the package holds about slice and sphere again.
 
 ``python -m coaxshell.apps.paper.sphere map [FILE]``: the map of the slice's error, two minutes of one processor;
-``python -m coaxshell.apps.paper.sphere claims [FILE]``: the paper's claims under both, eight minutes.
+``python -m coaxshell.apps.paper.sphere claims [FILE]``: the paper's claims under both, ten minutes.
 """
 
 from __future__ import annotations

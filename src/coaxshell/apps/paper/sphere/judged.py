@@ -115,6 +115,18 @@ TOPICS = (
         OF_ABSORBERS,
     ),
     Topic(
+        "cubic",
+        (
+            "weak-cubic-spring-is-linear",
+            "adopted-cubic-spring-works-better",
+            "adopted-cubic-force-is-comparable",
+            "strong-cubic-spring-nears-a-rigid-link",
+            "rigid-link-spoils-the-mitigation",
+        ),
+        lambda: cases.cubic_stiffness(_bare()) | {"rigid": systems.with_rigid_link()},
+        OF_ABSORBERS,
+    ),
+    Topic(
         "position",
         ("three-degrees-matter", "difference-widens", "marginal-beyond-30-degrees", "gone-at-60-degrees"),
         lambda: cases.offset(_bare()),

@@ -1,4 +1,4 @@
-"""What was found about the paper's claims under slice and sphere at the finest resolution, eight minutes of a processor: kept."""
+"""What was found about the paper's claims under slice and sphere at the finest resolution, ten minutes of a processor: kept."""
 
 from __future__ import annotations
 
