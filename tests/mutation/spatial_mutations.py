@@ -338,9 +338,9 @@ SPATIAL = (
     ),
     Mutation(
         "line-forces-along",
-        "solver/axial/line_forces.py",
-        "np.where(np.arange(len(amplitudes)) == 0, 1.0, 0.5)",
-        "np.where(np.arange(len(amplitudes)) == 0, 1.0, 1.0)",
+        "solver/axial/lines.py",
+        "np.where(self.sampling.wavenumbers == 0.0, 1.0, 0.5)",
+        "np.where(self.sampling.wavenumbers == 0.0, 1.0, 1.0)",
         "what forces along a line load the waves with",
         "solver/test_line_absorbers.py",
     ),
