@@ -101,4 +101,28 @@ ELASTIC = (
         "series of the shapes far above the nodes: alternating",
         "structure/test_elastic_solids.py",
     ),
+    Mutation(
+        "solid-low-shapes",
+        "structure/elastic_basis.py",
+        "squares[:, :low] = values[:, ::-1] ** 2",
+        "squares[:, :low] = squares[:, :low]",
+        "low eigenvalues of waves along the axis are mended",
+        "structure/test_elastic_solids.py",
+    ),
+    Mutation(
+        "solid-along-the-axis",
+        "solver/axial/sums.py",
+        '_ODD = ("u", "shear", "radial_axial")',
+        '_ODD = ("u", "shear")',
+        "shears with the axis in them go along it as the axial displacement does",
+        "solver/test_elastic_stations.py",
+    ),
+    Mutation(
+        "solid-fields-at-faces",
+        "response/fields/spatial_waves.py",
+        "self.radial, faces[-1])",
+        "self.radial, faces[0])",
+        "the fluid outside an elastic wall feels its outer face, at stations too",
+        "solver/test_elastic_stations.py",
+    ),
 )

@@ -280,7 +280,6 @@ def test_orders_left_out_are_estimated():
 @pytest.mark.parametrize(
     ("changed", "settings", "message"),
     [
-        ({}, {"dimensions": 3}, r"shells\[0\]\.theory: 'elastic' is solved in two dimensions only"),
         ({}, {"engine": "direct"}, r"shells\[0\]\.theory: 'elastic' is not known to the direct engine"),
         (
             {"absorbers": [cx.Absorber(angle=0, mass=1, damping=0, linear_stiffness=1e9)]},

@@ -10,7 +10,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.components import SIDES, STRESSES, von_mises
-from coaxshell.response.labels import COUNTERCLOCKWISE, TENSION, history, modal_array
+from coaxshell.response.labels import ALONG_AXIS, COUNTERCLOCKWISE, TENSION, history, modal_array
 from coaxshell.response.modal import amplitudes, combined, elastic_wall, stress_gain_of, voltage_gain
 from coaxshell.response.quantities import QUANTITIES, Quantity
 from coaxshell.response.solid_histories import component_of, solid_stress
@@ -163,8 +163,7 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
         in the actuator of a controlled shell, of the control voltage (-e32 u/t, Eq. A.10).
     component : str
         "hoop", "axial" (in two dimensions that of plane strain), "von_mises", and at stations of three-dimensional runs "shear"
-        (between hoop and axis); of an elastic wall in two dimensions "hoop", "axial", "radial", "radial_hoop" (the shear across the
-        wall) and "von_mises".
+        (between hoop and axis); elastic walls have "radial" and "radial_hoop" (the shear across the wall) too, at stations "radial_axial".
 
     Returns
     -------
@@ -180,7 +179,7 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
     if wall.faces_move_alike:
         component = arguments.one_of("component", component, (*STRESSES, "von_mises"))
     else:
-        component = component_of(wall, component)
+        component = component_of(wall, component, plane=solution.along is None)
     if wall.faces_move_alike and component == "shear" and solution.along is None:
         raise InputError("component", f"{component!r} belongs to three dimensions", "run with dimensions=3")
     z, long_name = None, ""
@@ -188,7 +187,8 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
         length = solution.problem.scales.length
         z = arguments.depth_of((length * wall.faces[0], length * wall.faces[1]), depth)
         long_name = f"{component.replace('_', ' ')} stress at {z:g} m outward of the mid-surface"
-    if not wall.faces_move_alike and (z is not None or component != "hoop"):
+    kept = STRESSES if solution.along is not None else ("hoop",)
+    if not wall.faces_move_alike and (z is not None or component not in kept):
         values = solid_stress(motion, shell, theta, z, component)
     elif component == "von_mises":
         parts = STRESSES if solution.along is not None else ("hoop", "axial")
@@ -199,7 +199,7 @@ def stress(motion: WallMotion, shell: int, angle: npt.ArrayLike, depth: float | 
         labelled = _labelled(solution, shell, QUANTITIES[_STRESS_NAMES[component]], values, theta, long_name)
     else:
         told = long_name or f"{component.replace('_', ' ')} stress of the core"
-        sign = COUNTERCLOCKWISE if component == "radial_hoop" else TENSION
+        sign = {"radial_hoop": COUNTERCLOCKWISE, "radial_axial": ALONG_AXIS}.get(component, TENSION)
         labelled = history(solution, values, theta, shell, name=f"{component}_stress", long_name=told, units="Pa", sign=sign)
     if z is not None:
         labelled.attrs["depth"] = z

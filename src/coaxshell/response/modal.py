@@ -54,15 +54,16 @@ def axial_gain(solution: ModalSolution) -> FieldGain:
 def stress_gain_of(solution: ModalSolution, shell: int, depth: float | None = None, component: str = "hoop") -> Gain | FieldGain | Relaxing:
     """Return the gain of a stress, Pa: of the core at the mid-surface (Eq. 22), or at a depth (m; Eqs. A.4, A.5).
 
-    Of an elastic wall at its design depth alone: the middle of the wall, or of its core; the rest is in :mod:`coaxshell.response.through`.
+    Of an elastic wall at its design depth alone: the middle of the wall, or of its core, in two dimensions the hoop stress; the rest is
+    read from the transforms (:mod:`coaxshell.response.through`) or, at stations, by solving once more.
     At a station of a three-dimensional run the hoop stress feels the axial strain, and "axial" and "shear" are others. In a wall whose
     layers have losses it is a sum of parts, each under a factor g(s).
     """
     scales, wall = solution.problem.scales, elastic_wall(solution.problem, shell)
     depth, modes = None if depth is None else depth / scales.length, Modes(orders(solution))
     if not wall.faces_move_alike:
-        assert depth is None  # the rest is read from the transforms
-        return FieldGain(hoop=np.full_like(modes.orders, scales.pressure))
+        assert depth is None  # the rest is read in another way
+        return FieldGain(**{component: np.full_like(modes.orders, scales.pressure)})  # type: ignore[arg-type]
     parts: list[tuple[Relaxation | None, Gain | FieldGain]]
     if solution.along is None:
         plane = wall.stress_parts(modes, depth, component)

@@ -71,5 +71,5 @@ def relaxed_solution(solution: ModalSolution, factor: Relaxation | None, shell: 
     along = solution.along
     if along is not None:
         moved = {name: of(getattr(along, name)) for name in ("u", "w_z", "w_zz", "v_z", "u_z")}
-        along = along._replace(**moved, potentials=tuple(of(potential) for potential in along.potentials), potential_rates=())
+        along = along._replace(**moved, potentials=tuple(of(x) for x in along.potentials), potential_rates=(), stresses=along.stresses)
     return replace(solution, normal=of(solution.normal), tangential=of(solution.tangential), along=along)

@@ -146,8 +146,9 @@ class Response:
     ) -> xr.DataArray:
         """Return the displacement of the mid-surface, m, dims (time, angle): "normal" (positive inward) or "tangential".
 
-        ``relative=True`` takes the translation of the shell's section off it, so that only what deforms the shell is left. An elastic
-        wall is read at any *depth* (m outward of its middle, or a face). See :func:`coaxshell.response.histories.displacement`.
+        Three-dimensional runs have "axial" too. ``relative=True`` takes the translation of the shell's section off it, so that only what
+        deforms the shell is left. An elastic wall is read at any *depth* (m outward of its middle, or a face).
+        See :func:`coaxshell.response.histories.displacement`.
         """
         number = self._index(shell)
         if depth is not None:
@@ -176,7 +177,7 @@ class Response:
         """Return the stress, Pa, dims (time, angle): the core's at the mid-surface (Eq. 22), or at a depth (m outward, or a face).
 
         The component is "hoop", "axial" or "von_mises"; three-dimensional runs have "shear" too, elastic walls "radial" and
-        "radial_hoop".
+        "radial_hoop", and both together "radial_axial".
         See :func:`coaxshell.response.histories.stress`.
         """
         number = self._index(shell)

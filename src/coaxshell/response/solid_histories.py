@@ -10,7 +10,8 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import arguments
 from coaxshell.response.components import SOLID, solid_von_mises
-from coaxshell.response.labels import COUNTERCLOCKWISE, INWARD, history
+from coaxshell.response.labels import ALONG_AXIS, COUNTERCLOCKWISE, INWARD, history
+from coaxshell.response.modal import combined, stress_gain_of
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.structure.elastic_depth import SIDES, STRESSES, Shown
@@ -18,6 +19,8 @@ from coaxshell.structure.elastic_wall import ElasticWall
 
 COMPONENTS = ("hoop", "axial", "radial", "radial_hoop", "von_mises")
 """Stresses of a plane problem; those with the axis in their shear vanish."""
+AT_STATIONS = (*STRESSES, "von_mises")
+"""Those at stations along the axis."""
 
 
 def solid_stress(motion: WallMotion, shell: int, theta: FloatArray, depth: float | None, component: str) -> FloatArray:
@@ -31,14 +34,22 @@ def solid_stress(motion: WallMotion, shell: int, theta: FloatArray, depth: float
     depth : float or None
         z, m, outward from the middle; None for the design depth.
     component : str
-        One of :data:`COMPONENTS`; "von_mises" by :func:`~coaxshell.response.components.solid_von_mises`.
+        One of :data:`COMPONENTS`, or of :data:`AT_STATIONS`; "von_mises" by :func:`~coaxshell.response.components.solid_von_mises`.
     """
     wall = motion.solution.problem.shells[shell]
     assert isinstance(wall, ElasticWall)
-    z = motion.solution.problem.scales.length * wall.design_depth if depth is None else depth
+    solution = motion.solution
+    z = solution.problem.scales.length * wall.design_depth if depth is None else depth
+
+    def of(name: Shown) -> FloatArray:
+        if depth is None and solution.along is not None:
+            return combined(solution, shell, stress_gain_of(solution, shell, component=name), theta, SIDES[name])
+        return _at(motion, shell, theta, name, z)
+
     if component != "von_mises":
-        return _at(motion, shell, theta, component, z)  # type: ignore[arg-type]
-    return solid_von_mises(*(_at(motion, shell, theta, name, z) for name in SOLID))  # type: ignore[arg-type]
+        return of(component)  # type: ignore[arg-type]
+    names = SOLID if solution.along is None else STRESSES
+    return solid_von_mises(**{name: of(name) for name in names})  # type: ignore[arg-type]
 
 
 def _at(motion: WallMotion, shell: int, theta: FloatArray, what: Shown, depth: float) -> FloatArray:
@@ -58,7 +69,7 @@ def displacement_at_depth(motion: WallMotion, shell: int, angle: npt.ArrayLike, 
     depth : float or str
         z in metres from the middle of the wall, positive outward, or a face, "inner" or "outer".
     component : str
-        "normal" (positive inward) or "tangential" (positive towards increasing angle).
+        "normal" (positive inward), "tangential" (positive towards increasing angle) or, at stations, "axial" (towards increasing z).
 
     Raises
     ------
@@ -67,21 +78,24 @@ def displacement_at_depth(motion: WallMotion, shell: int, angle: npt.ArrayLike, 
     """
     solution = motion.solution
     wall, length = solution.problem.shells[shell], solution.problem.scales.length
-    component = arguments.one_of("component", component, ("normal", "tangential"))
+    component = arguments.one_of("component", component, ("normal", "tangential", *(("axial",) if solution.along is not None else ())))
     if not isinstance(wall, ElasticWall):
         raise InputError("depth", "a thin wall moves as its mid-surface does", 'leave it out, or use theory = "elastic"')
     z = arguments.depth_of((length * wall.faces[0], length * wall.faces[1]), depth)
     theta = arguments.angles(angle)
-    values = _at(motion, shell, theta, component, z)  # type: ignore[arg-type]
-    sign = INWARD if component == "normal" else COUNTERCLOCKWISE
+    what: Shown = "along_axis" if component == "axial" else component  # type: ignore[assignment]
+    values = _at(motion, shell, theta, what, z)
+    sign = {"normal": INWARD, "tangential": COUNTERCLOCKWISE, "axial": ALONG_AXIS}[component]
     told = f"{component} displacement at {z:g} m outward of the middle"
     labelled = history(solution, values, theta, shell, name=f"{component}_displacement", long_name=told, units="m", sign=sign)
     labelled.attrs["depth"] = z
     return labelled
 
 
-def component_of(wall: object, component: str) -> str:
-    """Return the component asked for of an elastic wall in a plane problem; InputError if it has none of that name."""
+def component_of(wall: object, component: str, *, plane: bool = True) -> str:
+    """Return the component asked for of an elastic wall, in a plane problem or at a station; InputError if it has none of that name."""
+    if not plane:
+        return arguments.one_of("component", component, AT_STATIONS)
     if component in STRESSES and component not in COMPONENTS:
         raise InputError(
             "component", f"{component!r} vanishes where nothing changes along the axis", f"must be one of {', '.join(COMPONENTS)}"

@@ -21,7 +21,9 @@ from coaxshell.solver.axial.solution import LINES, SpatialSolution, StationSpect
 from coaxshell.solver.axial.sums import piezoelectric_layers
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.solution import QUANTITIES, Estimates
+from coaxshell.structure.shell_model import SOLID_STRESSES
 
 if TYPE_CHECKING:
     from coaxshell.response.foreign import ForeignFile
@@ -37,6 +39,14 @@ FIELDS: dict[str, tuple[str, str, str]] = {
     "normal_zz": ("w_zz", "1/a", "d2W/dz2"),
     "tangential_z": ("v_z", "1", "dV/dz"),
     "axial_z": ("u_z", "1", "dU/dz"),
+    **{
+        f"{name}_stress": (
+            name,
+            "rho_e c_e^2",
+            f"modal {name.replace('_', ' ')} stress of elastic walls at their design depths; 0 of others",
+        )
+        for name in SOLID_STRESSES
+    },
 }
 """Arrays of a file by name: field of the solution, unit, meaning. Those that are zero at all stations are left out."""
 VOLTAGES = {
@@ -106,9 +116,9 @@ def solution_of(file: ForeignFile) -> SpatialSolution:
     """Return the solution that a file holds; see :func:`coaxshell.response.restored.solution_of`."""
     told = restored.described(file)
     sizes = sizes_of(file)
-    problem = dimensionless(told.system, dimensions=3, settings=told.settings)
-    sampling = _sampling(told.about["axial_sampling"], problem, told.settings)
     grid = LaplaceGrid(told.settings.time_step / told.settings.refinement, told.settings.steps * told.settings.refinement)
+    problem = dimensionless(told.system, dimensions=3, settings=told.settings).resolving(band(grid))
+    sampling = _sampling(told.about["axial_sampling"], problem, told.settings)
     _agree(sizes, file, problem, told.settings, grid)
     arrays = {name: file.array(name) for name in ("time", "error_estimate", "station", *dimensions_of(file)) if name in file}
     if not np.array_equal(arrays["station"], told.settings.stations):

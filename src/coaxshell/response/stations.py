@@ -12,7 +12,11 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.wall_motion import MotionSpectra, WallMotion
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
-from coaxshell.solver.axial.solve import station_spectra
+from coaxshell.solver.axial.solve import histories_within, station_spectra
+from coaxshell.structure.elastic_depth import Shown
+
+_NAMES = {"normal": "w", "tangential": "v", "along_axis": "u"}
+"""Displacements as fields are named."""
 
 
 def joined(arrays: Sequence[xr.DataArray], known: FloatArray, chosen: Sequence[int], *, alone: bool) -> xr.DataArray:
@@ -38,10 +42,17 @@ class Transforms:
 
     def __init__(self, spatial: SpatialSolution) -> None:
         self.spatial = spatial
+        self._within: tuple[int, float, dict[str, FloatArray]] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: not the transforms."""
-        return {"spatial": self.spatial}
+        return {"spatial": self.spatial, "_within": None}
+
+    def within(self, shell: int, depth: float) -> dict[str, FloatArray]:
+        """Return motion and stresses at a depth (in a) of an elastic wall at all stations; those asked for last are kept."""
+        if self._within is None or self._within[:2] != (shell, depth):
+            self._within = shell, depth, histories_within(self.spatial, shell, depth)
+        return self._within[2]
 
     @property
     def at_hand(self) -> bool:
@@ -72,6 +83,17 @@ class StationMotion(WallMotion):
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: not the transforms."""
         return {name: value for name, value in vars(self).items() if name not in ("for_rates", "spectra")}
+
+    def within(self, shell: int, what: Shown, depth: float) -> FloatArray:
+        """Return modal histories of a displacement or a stress at a depth (m) of an elastic wall, SI, (parities, M + 1, T).
+
+        The waves of the run are solved once more for all stations and all that stands at that depth.
+        """
+        scales, name = self.solution.problem.scales, _NAMES.get(what, what)
+        found = self._transforms.within(shell, depth / scales.length)
+        if name not in found:
+            return np.zeros(self.solution.normal.shape[1:])
+        return np.asarray(found[name][self._station] * (scales.length if what in _NAMES else scales.pressure))
 
     def has_rate(self, rate: int) -> bool:
         """Return whether derivatives of an order are there without solving the run again, which takes as long as the run."""

@@ -36,6 +36,7 @@ from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.laminate import missing_constants
 from coaxshell.structure.losses import Relaxation
+from coaxshell.structure.shell_model import SOLID_STRESSES
 
 _FIRST = 16
 """Instants summed before the others are judged by what they can reach."""
@@ -99,6 +100,8 @@ class WallStress:
 
     @property
     def _made_of(self) -> tuple[str, ...]:
+        if not self.wall.faces_move_alike:
+            return SOLID_STRESSES
         return STRESSES if self.solution.along is not None else STRESSES[:2]
 
     @cached_property

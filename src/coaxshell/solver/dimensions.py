@@ -27,13 +27,19 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 
 
 def require_sources_alone(system: System, dimensions: int) -> None:
-    """Raise InputError if more than sources in two dimensions is asked of a system with elastic walls."""
+    """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
         return
     thin = f'or shells[{solid}].theory = "thin"'
-    if dimensions == 3:
-        raise InputError(f"shells[{solid}].theory", "'elastic' is solved in two dimensions only", f"use dimensions=2, {thin}")
+    for number, source in enumerate(system.sources if dimensions == 3 else ()):
+        if getattr(source, "inclination", 0.0):
+            where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
+            problem = f"a wave along the axis has complex wavenumbers, which shells[{solid}], an elastic wall, does not know"
+            raise InputError(f"{where}.inclination", problem, f"use inclination = 0, {thin}")
+    if system.point_absorbers:
+        problem = f"a point force has no finite displacement on shells[{solid}], an elastic wall"
+        raise InputError("absorbers", problem, f"leave them out, {thin}")
     if system.absorber_list:
         problem = f"a line force has no finite displacement on shells[{solid}], an elastic wall"
         raise InputError("absorbers", problem, f"leave them out, {thin}")

@@ -101,6 +101,13 @@ class SolidSpectra:
         return self.hoop.nbytes + self.faces.nbytes + self.loads.nbytes + self.potentials.nbytes
 
 
+class FacedMotion(NamedTuple):
+    """Transforms of the displacements of the faces and the loads on them, each (2, shells, parities, orders, nodes)."""
+
+    faces: ComplexArray
+    loads: ComplexArray
+
+
 def solid_spectra(
     problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None = None, progress: Progress | None = None
 ) -> SolidSpectra:

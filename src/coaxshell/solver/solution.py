@@ -112,6 +112,8 @@ class AxialMotion(NamedTuple):
         Open-circuit voltages of the walls' piezoelectric layers, V, by their number from the inside out; 0 of walls with fewer.
     potential_rates : tuple of ndarray
         Their derivatives by time, V per transit, where there is feedback; else none.
+    stresses : dict of str to ndarray
+        Those of elastic walls at their design depths, in rho_e c_e^2, by name; 0 of other walls, none where there is no elastic one.
     """
 
     u: FloatArray
@@ -121,6 +123,7 @@ class AxialMotion(NamedTuple):
     u_z: FloatArray
     potentials: tuple[FloatArray, ...]
     potential_rates: tuple[FloatArray, ...] = ()
+    stresses: dict[str, FloatArray] = {}  # noqa: RUF012 - nobody changes it
 
 
 @dataclass(frozen=True)
@@ -220,6 +223,8 @@ class ModalSolution:
         """
         if name in ("w", "v"):
             return self.normal if name == "w" else self.tangential
+        if self.along is not None and name in self.along.stresses:
+            return self.along.stresses[name]
         if name == "hoop":
             assert self.hoop is not None
             return self.hoop

@@ -10,14 +10,18 @@ from dataclasses import replace
 
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.solver.axial.blocks import BLOCK_NODES
+from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.line_march import block_steps
 from coaxshell.solver.axial.lines import LineLayout, line_layout
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
 from coaxshell.solver.run_size import COMPLEX, REAL, Size
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.solid_spectra import band
+from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.shell_model import SOLID_STRESSES
 
 _FIELDS = 9
 """Transforms kept at each station: three displacements, four derivatives along the axis, potentials of two layers."""
@@ -26,6 +30,8 @@ _WORKING = 40.0
 _SIDE_BY_SIDE = 1000
 """Nodes below which threads take turns: there are two blocks, and NumPy lets others run only beside loops of more than 500 numbers."""
 _NANOSECONDS = 1e-9
+_PER_SHAPE, _PER_TERM = 40e-9, 10e-9
+"""Seconds of the shapes of a wave, per their number to the power 2.5, and of what each adds at a node."""
 
 
 def sampling_of(system: System, settings: Settings, highest_order: int) -> AxialSampling:
@@ -39,17 +45,36 @@ def _sampling(problem: Problem, settings: Settings, highest_order: int) -> Axial
 
 def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     """Return the cost of a run in three dimensions, given the *size* of the same run in two; InputError for a period that is too short."""
-    problem = dimensionless(system, dimensions=3, settings=settings)
+    grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+    problem = dimensionless(system, dimensions=3, settings=settings).resolving(band(grid))
     sampling = _sampling(problem, settings, size.orders - 1)
     pairs = float(sampling.tops.sum() + sampling.tops.size) * size.nodes
     stations, amplitudes = len(settings.stations), size.shells * size.source_parities
-    kept = stations * amplitudes * (_FIELDS * (size.plane + size.history) + 6.0 * size.plane)
+    solids = _solids_cost(problem, sampling, size)
+    fields = _FIELDS + (len(SOLID_STRESSES) if size.solids else 0)
+    kept = stations * amplitudes * (fields * (size.plane + size.history) + 6.0 * size.plane)
     turns = 2.0 if size.nodes < _SIDE_BY_SIDE else 1.0
     lines = _lines_cost(line_layout(problem, sampling), size, pairs) if system.absorber_list else Cost(0.0)
     return Cost(
-        lines.memory + kept + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
-        lines.seconds + 0.1 + turns * pairs * (0.3e-6 * size.shells + 2e-9 * _FIELDS * stations * amplitudes),
+        lines.memory
+        + solids.memory
+        + kept
+        + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
+        lines.seconds + solids.seconds + 0.1 + turns * pairs * (0.3e-6 * size.shells + 2e-9 * fields * stations * amplitudes),
     )
+
+
+def _solids_cost(problem: Problem, sampling: AxialSampling, size: Size) -> Cost:
+    """Return what elastic walls add: their shapes in every wave, which blocks share, and the sums over them at every node."""
+    memory = seconds = 0.0
+    waves = float(sampling.tops.sum() + sampling.tops.size)
+    for wall in problem.shells:
+        if not isinstance(wall, ElasticWall):
+            continue
+        shapes, rows = wall.shape_count(size.orders - 1.0, 0.0), 3.0 + len(READ) + len(wall.piezoelectric)
+        memory += REAL * waves * shapes * rows + WORKERS * 4.0 * rows * size.plane * min(0.5, BLOCK_NODES / size.nodes)
+        seconds += waves * (_PER_SHAPE * shapes**2.5 + size.nodes * shapes * _PER_TERM)
+    return Cost(memory, seconds)
 
 
 def _lines_cost(layout: LineLayout, size: Size, pairs: float) -> Cost:

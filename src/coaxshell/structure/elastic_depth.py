@@ -53,17 +53,39 @@ def shown_by_shapes(basis: OrdersBasis, number: int, radius: float, what: Shown)
     what : str
         The potential only of a piezoelectric layer.
     """
-    part = basis.mesh.layers[number]
-    place = 2.0 * (radius - part.layer.inner) / part.layer.thickness - 1.0
-    at = interpolation(part.degree, min(max(place, -1.0), 1.0))
+    part, at = _place(basis, number, radius)
     shapes = basis.shapes[..., part.nodes]
     if what in DISPLACEMENTS:
         which, sign = DISPLACEMENTS[what]
         if which >= shapes.shape[2]:
             return np.zeros(shapes.shape[:2])
         return np.asarray(sign * (shapes[:, :, which] @ at))
-    rows = potential_rows(basis, part, at) if what == "potential" else stress_rows(basis, part, radius, at, STRESSES[what])
+    rows = potential_rows(basis, part, at) if what == "potential" else stress_rows(basis, part, radius, at, (STRESSES[what],))[:, 0]
     return np.asarray(np.einsum("mcp,mncp->mn", rows, shapes))
+
+
+def all_by_shapes(basis: OrdersBasis, number: int, radius: float) -> FloatArray:
+    """Return the three displacements and the six stresses at a radius of a layer per unit of each shape, shape (orders, 9, shapes).
+
+    In the order of :data:`DISPLACEMENTS` and :data:`STRESSES`.
+    """
+    part, at = _place(basis, number, radius)
+    shapes = basis.shapes[..., part.nodes]
+    flat = shapes.reshape(*shapes.shape[:2], -1).swapaxes(1, 2)
+    stresses = stress_rows(basis, part, radius, at, tuple(STRESSES.values()))
+    found = np.zeros((shapes.shape[0], len(DISPLACEMENTS) + len(STRESSES), shapes.shape[1]))
+    for row, (which, sign) in enumerate(DISPLACEMENTS.values()):
+        if which < shapes.shape[2]:
+            found[:, row] = sign * (shapes[:, :, which] @ at)
+    found[:, len(DISPLACEMENTS) :] = stresses.reshape(*stresses.shape[:2], -1) @ flat
+    return found
+
+
+def _place(basis: OrdersBasis, number: int, radius: float) -> tuple[LayerMesh, FloatArray]:
+    """Return the points of a layer, and what makes of values at them the value at a radius."""
+    part = basis.mesh.layers[number]
+    place = 2.0 * (radius - part.layer.inner) / part.layer.thickness - 1.0
+    return part, interpolation(part.degree, min(max(place, -1.0), 1.0))
 
 
 def potential_rows(basis: OrdersBasis, part: LayerMesh, at: FloatArray) -> FloatArray:
@@ -72,8 +94,8 @@ def potential_rows(basis: OrdersBasis, part: LayerMesh, at: FloatArray) -> Float
     return np.asarray(np.einsum("q,mqcp->mcp", at, values))
 
 
-def stress_rows(basis: OrdersBasis, part: LayerMesh, radius: float, at: FloatArray, component: int) -> FloatArray:
-    """Return one stress at a place per displacement at the points of a layer, shape (orders, displacements, points).
+def stress_rows(basis: OrdersBasis, part: LayerMesh, radius: float, at: FloatArray, components: tuple[int, ...]) -> FloatArray:
+    """Return stresses at a place per displacement at the points of a layer, shape (orders, components, displacements, points).
 
     Parameters
     ----------
@@ -82,16 +104,18 @@ def stress_rows(basis: OrdersBasis, part: LayerMesh, radius: float, at: FloatArr
     radius : float
     at : ndarray, shape (points,)
         From values at the points to the value there.
-    component : int
-        Place among the stresses.
+    components : tuple of int
+        Places among the stresses.
     """
     slope = at @ part.derivative
     local = strains(basis.orders, basis.wavenumber, np.array([radius]), slope[None], at[None])[:, :, 0, : displacements(basis.wavenumber)]
-    found = np.einsum("j,mjcp->mcp", part.layer.matrix[component], local)
+    found = np.stack([np.einsum("j,mjcp->mcp", part.layer.matrix[component], local) for component in components], axis=1)
     if part.layer.coupling is None:
-        return np.asarray(found)
+        return found
     values = basis.potentials[part]
     phi, phi_slope = (np.einsum("q,mqcp->mcp", row, values) for row in (at, slope))
-    e = np.array(part.layer.coupling)[:, component]
     per_radius = (basis.orders / radius)[:, None, None]
-    return np.asarray(found + e[0] * phi_slope - (e[1] * per_radius + e[2] * basis.wavenumber) * phi)
+    for row, component in enumerate(components):
+        e = np.array(part.layer.coupling)[:, component]
+        found[:, row] = found[:, row] + e[0] * phi_slope - (e[1] * per_radius + e[2] * basis.wavenumber) * phi
+    return found

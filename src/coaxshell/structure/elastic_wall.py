@@ -23,7 +23,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
-from coaxshell.structure.elastic_depth import Shown, shown_by_shapes
+from coaxshell.structure.elastic_depth import DISPLACEMENTS, Shown, all_by_shapes, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
@@ -42,6 +42,23 @@ class Asked(NamedTuple):
     depth: float
 
 
+class Port(NamedTuple):
+    """What some orders show at their faces and within, per unit of each shape.
+
+    Attributes
+    ----------
+    squares : ndarray, shape (orders, shapes)
+        omega^2.
+    faces : ndarray, shape (orders, 2, shapes)
+        u_r of the faces.
+    shown : ndarray, shape (orders, quantities, shapes)
+    """
+
+    squares: FloatArray
+    faces: FloatArray
+    shown: FloatArray
+
+
 @dataclass(frozen=True, kw_only=True)
 class ElasticWall(ShellModel):
     """A wall of solid layers.
@@ -54,11 +71,14 @@ class ElasticWall(ShellModel):
         Number of the layer whose stress is reported.
     frequency : float
         Up to which waves are resolved, radians per transit; a matter of a run's resolution, not of the wall.
+    depth_read : float or None
+        Depth at which stations read it; None for the motion of its middle and the stresses at its design depth.
     """
 
     layers: tuple[SolidLayer, ...]
     core: int
     frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
+    depth_read: float | None = field(default=None, compare=False)
 
     @classmethod
     def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
@@ -119,6 +139,9 @@ class ElasticWall(ShellModel):
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes, made once as long as these are in use; nobody may change them."""
+        return self._shapes(modes)
+
+    def _shapes(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         if np.ndim(modes.wavenumber):
             raise InputError(
                 "source.inclination",
@@ -144,6 +167,36 @@ class ElasticWall(ShellModel):
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
         found = self._summed(modes, s, self._weights(modes, asked))
         return found.reshape(-1, 2, *found.shape[1:])
+
+    def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
+        """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it.
+
+        W, V and U of the middle, the six stresses at the design depth (:data:`coaxshell.structure.elastic_depth.STRESSES`) and the
+        potentials; at :attr:`depth_read` all but the potentials, if there is one.
+        """
+        parts = []
+        for port in self.ports(modes):
+            pressed, weights = -port.faces * np.array(self.wetted)[:, None], _products(port.faces)
+            if reads:
+                shown = (port.shown[:, :, None] * pressed[:, None]).reshape(len(weights), -1, weights.shape[-1])
+                weights = np.concatenate([weights, shown], axis=1)
+            parts.append(modal_sums(weights, port.squares, s))
+        found = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+        return FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
+
+    @kept_with_modes
+    def ports(self, modes: Modes) -> tuple[Port, ...]:
+        """Return what stations need of the shapes of some modes, made once as long as these are in use; nobody may change it."""
+        middles = [0.5 * (self.layers[i].inner + self.layers[i].outer) for i in self.piezoelectric]
+        stressed = self.design_depth if self.depth_read is None else self.depth_read
+        moved, count, found = 0.0 if self.depth_read is None else stressed, len(DISPLACEMENTS), []
+        for part in self._shapes(modes):
+            rows = all_by_shapes(part, self.layer_at(stressed), self.radius + stressed)
+            if moved != stressed:
+                rows[:, :count] = all_by_shapes(part, self.layer_at(moved), self.radius + moved)[:, :count]
+            volts = [-shown_by_shapes(part, i, r, "potential")[:, None] for i, r in zip(self.piezoelectric, middles, strict=True)]
+            found.append(Port(part.squares, part.faces, np.concatenate([rows, *volts], axis=1)))
+        return tuple(found)
 
     @kept_with_modes
     def _of_port(self, modes: Modes) -> list[FloatArray]:
@@ -188,6 +241,10 @@ class ElasticWall(ShellModel):
 
     # What else is asked of a wall
 
+    def shape_count(self, order: float, wavenumber: float) -> int:
+        """Return how many shapes there are in a wave along the axis."""
+        return 3 * (1 + sum(degree(layer, order, wavenumber, self.frequency) for layer in self.layers))
+
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return the frequency at which each order stretches along the wall, that of its fastest layer's plate waves."""
         return np.asarray(self.plate_speed * np.sqrt(modes.gradient_squared(self.radius)))
@@ -215,5 +272,9 @@ class ElasticWall(ShellModel):
 
 def _of_faces(part: OrdersBasis) -> FloatArray:
     """Return the weights of the shapes in H_ii, H_io and H_oo, shape (orders, 3, shapes)."""
-    inner, outer = part.faces[:, 0], part.faces[:, 1]
+    return _products(part.faces)
+
+
+def _products(faces: FloatArray) -> FloatArray:
+    inner, outer = faces[:, 0], faces[:, 1]
     return np.stack([inner * inner, inner * outer, outer * outer], axis=1)

@@ -69,8 +69,10 @@ class Gain(NamedTuple):
         return found if self.u is None or axial is None else found + self.u * axial
 
 
-FIELDS = ("w", "w_z", "w_zz", "v", "v_z", "u", "u_z", "hoop")
-"""Displacements and their derivatives along the axis, at a station; the hoop stress of an elastic wall at its design depth."""
+SOLID_STRESSES = ("radial", "hoop", "axial", "shear", "radial_axial", "radial_hoop")
+"""Stresses of an elastic wall at its design depth."""
+FIELDS = ("w", "w_z", "w_zz", "v", "v_z", "u", "u_z", *SOLID_STRESSES)
+"""Displacements and their derivatives along the axis, at a station; the stresses of elastic walls."""
 
 
 class FieldGain(NamedTuple):
@@ -78,8 +80,10 @@ class FieldGain(NamedTuple):
 
     Attributes
     ----------
-    w, w_z, w_zz, v, v_z, u, u_z, hoop : ndarray or None
-        Per unit amplitude of w, dw/dz, d2w/dz2, v, dv/dz, u, du/dz and of the hoop stress of an elastic wall.
+    w, w_z, w_zz, v, v_z, u, u_z : ndarray or None
+        Per unit amplitude of w, dw/dz, d2w/dz2, v, dv/dz, u and du/dz.
+    radial, hoop, axial, shear, radial_axial, radial_hoop : ndarray or None
+        Per unit of the stresses of an elastic wall.
     potential : float or ndarray
         Per volt of the potential of a piezoelectric layer, such as that in which the point lies.
     layer : int or None
@@ -93,7 +97,12 @@ class FieldGain(NamedTuple):
     v_z: FloatArray | None = None
     u: FloatArray | None = None
     u_z: FloatArray | None = None
+    radial: FloatArray | None = None
     hoop: FloatArray | None = None
+    axial: FloatArray | None = None
+    shear: FloatArray | None = None
+    radial_axial: FloatArray | None = None
+    radial_hoop: FloatArray | None = None
     potential: FloatArray | float = 0.0
     layer: int | None = None
 

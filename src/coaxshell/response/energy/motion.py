@@ -16,7 +16,7 @@ from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.interface.link_motion import LinkMotion
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.solid_spectra import SolidSpectra, band
+from coaxshell.solver.solid_spectra import FacedMotion, SolidSpectra, band
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
@@ -49,7 +49,7 @@ class Motion:
         Of the absorbers, if there are any.
     actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
-    solid : SolidSpectra or None
+    solid : SolidSpectra, FacedMotion or None
         What walls whose faces move differently do.
     usual_power : ndarray, shape (shells,), or None
         Of a motion that is one of many: all :meth:`power` of each wall in such a one on average. What is left out of a motion is measured
@@ -66,7 +66,7 @@ class Motion:
     incident: Incident
     links: LinkMotion | None = None
     actuation: FloatArray | None = None
-    solid: SolidSpectra | None = None
+    solid: SolidSpectra | FacedMotion | None = None
     usual_power: FloatArray | None = None
 
     @classmethod

@@ -79,7 +79,8 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
     forces = held.forces if held is not None else None if linked is None else linked.forces
     for j, wave in enumerate(wave_motions(problem, sampling, grid, forces)):
-        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, every * settings.refinement, wave.incident)
+        moved = wave.normal, wave.tangential, wave.axial
+        motion = Motion(problem, grid, wave.modes, *moved, every * settings.refinement, wave.incident, solid=wave.solid)
         power += [wave.length * motion.power(wall).sum() for wall in range(power.size)]
         if not uniform:
             motion = replace(motion, usual_power=_ALIKE * power / (count * wave.length))

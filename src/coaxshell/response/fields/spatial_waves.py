@@ -22,6 +22,7 @@ from coaxshell.response.fields.inversion import direct_matrix, window
 from coaxshell.response.fields.modal_field import Transfer, region_slopes
 from coaxshell.response.fields.request import SMEAR, FieldRequest, Region, Tell, filter_weight
 from coaxshell.solver.axial.causality import reach
+from coaxshell.solver.axial.faced import faces_of, make_shapes
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts
@@ -54,8 +55,8 @@ class Drive:
     ----------
     radial : RadialBasis
         Orders, wavenumber and nodes.
-    normal : ndarray, shape (shells, families, parities, orders, nodes)
-        W.
+    normal : ndarray, shape (1 or 2, shells, families, parities, orders, nodes)
+        W, or that of inner and of outer faces.
     incident : ndarray, shape (families, parities, orders, nodes)
         Slope of the incident wave at the outermost surface.
     """
@@ -67,13 +68,13 @@ class Drive:
     def added_up(self, shares: npt.NDArray[np.number]) -> Drive:
         """Return sums of the families in the place of these, each family times its share in a sum: (sums, families, 1 or nodes)."""
         weight = shares[:, :, None, None]
-        normal = np.stack([np.sum(self.normal * each, axis=1) for each in weight], axis=1)
+        normal = np.stack([np.sum(self.normal * each, axis=2) for each in weight], axis=2)
         return Drive(self.radial, normal, np.stack([np.sum(self.incident * each, axis=0) for each in weight]))
 
     def transfer(self, region: Region, part: str) -> Transfer | None:
         """Return the field of a region, its families and parities in one dimension; None where the part vanishes."""
-        normal, incident = self.normal.reshape(self.normal.shape[0], -1, *self.normal.shape[3:]), self.incident
-        slopes = region_slopes(region, part, normal, lambda: incident.reshape(-1, *incident.shape[2:]), self.radial)
+        faces, incident = self.normal.reshape(*self.normal.shape[:2], -1, *self.normal.shape[4:]), self.incident
+        slopes = region_slopes(region, part, faces[0], lambda: incident.reshape(-1, *incident.shape[2:]), self.radial, faces[-1])
         return None if slopes is None else Transfer(region, slopes, self.radial.s, self.radial.modes)
 
 
@@ -121,15 +122,21 @@ class SpatialWaves:
         modes = waves.modes[j]
         radial = RadialBasis(modes, self.grid.nodes[block])
         weight = self._weight(waves, j)[:, None]
-        moved = [found[0] for found in amplitudes_of(self.problem, waves, j, self.grid, block)]
-        normal = np.zeros((moved[0].shape[0], len(moved), self.parities, *moved[0].shape[2:]), np.complex128)
-        incident = np.zeros(normal.shape[1:], np.complex128)
-        for number, (family, w) in enumerate(zip(waves.families, moved, strict=True)):
-            normal[:, number, : w.shape[1]] = w * weight
+        faces = self._faces(waves, j, block)
+        moved = np.zeros((len(faces[0]), faces[0].shape[1], len(faces), self.parities, *faces[0].shape[3:]), np.complex128)
+        incident = np.zeros(moved.shape[2:], np.complex128)
+        for number, (family, w) in enumerate(zip(waves.families, faces, strict=True)):
+            moved[:, :, number, : w.shape[2]] = w * weight
             if family.groups:
                 slope = self._incident(family, radial)
                 incident[number, : slope.shape[0]] = slope * weight
-        return Drive(radial, normal, incident)
+        return Drive(radial, moved, incident)
+
+    def _faces(self, waves: WaveSet, j: int, block: slice) -> list[ComplexArray]:
+        """Return W of all walls for each family, or of their inner and outer faces, (1 or 2, shells, parities, orders, nodes)."""
+        if self.problem.two_faced:
+            return [found[:2] for found in faces_of(self.problem, waves, j, self.grid, block)]
+        return [found[:1] for found in amplitudes_of(self.problem, waves, j, self.grid, block)]
 
     def _incident(self, family: Family, radial: RadialBasis) -> ComplexArray:
         units = ((group.geometry.incident(self.grid, radial)[1], group) for group in family.groups)
@@ -192,6 +199,7 @@ def cut_waves(
         return None, felt
     ends = sorted({float(z[felt].min()) * problem.scales.length, float(z[felt].max()) * problem.scales.length})
     sampling = axial_sampling(problem, replace(settings, stations=tuple(ends), duration=until, axial_period=None))
+    make_shapes(problem, sampling.modes)
     return SpatialWaves(problem, sampling, grid, z[felt], asked.part, asked.filter, forces_of(spatial)), felt
 
 

@@ -24,13 +24,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities
+from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities, superposed
 from coaxshell.solver.scaling import Problem
 
 
@@ -80,6 +82,12 @@ class WaveSet:
     def wavenumber(self) -> npt.NDArray[np.number]:
         """k of every wave, shape (waves,), or (1, nodes) where it is complex."""
         return np.stack([np.asarray(modes.wavenumber) for modes in self.modes])
+
+
+def outside_loads(family: Family, radial: RadialBasis, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
+    """Return what the sources of a family load the outermost surface with in a wave, (orders, nodes) of each parity; none without any."""
+    units = [(group.geometry.prepare(grid, radial.modes)(radial, block), group) for group in family.groups]
+    return superposed(family.parities, radial.modes, units) if units else []
 
 
 def axial_position(source: Source) -> float:

@@ -23,6 +23,7 @@ from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.faced import make_shapes, motions_and_faces
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.point_forces import WallPoints
@@ -30,6 +31,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import amplitudes_of
 from coaxshell.solver.excitation import incident_of, source_parities
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solid_spectra import FacedMotion
 from coaxshell.solver.spectral import node_blocks
 
 _NOTHING = 1e-13
@@ -47,6 +49,8 @@ class WaveMotion:
         Integral along the axis of a product of two amplitudes 1, in a; 1 where all is uniform along it, for its energy per length.
     normal, tangential, axial : ndarray, shape (shells, parities, orders, nodes)
         Transforms of W, V and U.
+    solid : FacedMotion or None
+        What the faces do, where they move differently.
     """
 
     modes: Modes
@@ -59,6 +63,7 @@ class WaveMotion:
     _around: int
     _problem: Problem
     _grid: LaplaceGrid
+    solid: FacedMotion | None = None
 
     @property
     def around(self) -> int:
@@ -109,15 +114,18 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
             shares = shares[:, :1]
 
         def work(which: int, j: int = j, shares: FloatArray = shares) -> ComplexArray:
-            found = amplitudes_of(problem, per_block[which], j, grid, blocks[which])
-            return _superposed(shares, [amplitude[:3] for amplitude in found], around)
+            solve = motions_and_faces if problem.two_faced else amplitudes_of
+            found = solve(problem, per_block[which], j, grid, blocks[which])
+            return _superposed(shares, [amplitude[: 7 if problem.two_faced else 3] for amplitude in found], around)
 
+        make_shapes(problem, [modes])
         with ThreadPoolExecutor(WORKERS) as pool:
             motion = np.concatenate(list(pool.map(work, range(len(blocks)))), axis=-1)
         length = sampling.period * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
-        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, around, problem, grid)
+        solid = FacedMotion(motion[3:5], motion[5:7]) if problem.two_faced else None
+        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, around, problem, grid, solid)
 
 
 def _one_set(sets: list[WaveSet]) -> WaveSet:

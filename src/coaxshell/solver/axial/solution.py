@@ -15,7 +15,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution, is_whole
-from coaxshell.structure.shell_model import FIELDS
+from coaxshell.structure.shell_model import FIELDS, SOLID_STRESSES
 
 LINES = ("line_displacement", "line_force")
 """Histories of line absorbers at the stations."""
@@ -115,7 +115,8 @@ class SpatialSolution:
             tuple(found[f"{name} {number}"][station] for number in layers if f"{name} {number}" in found)
             for name in ("potential", "potential_rate")
         )
-        motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates)
+        stresses = {name: of[name] for name in SOLID_STRESSES if self.problem.two_faced}
+        motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates, stresses)
         return ModalSolution(
             self.problem, self.settings, self.time, of["w"], of["v"], self.estimates, self.warnings, self.timings, along=motion
         )

@@ -16,6 +16,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver import checks
 from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
+from coaxshell.solver.axial.faced import READ, make_shapes
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.left_out import estimated_errors
 from coaxshell.solver.axial.line_softness import softened_lines
@@ -31,6 +32,7 @@ from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.solution import KEPT_BYTES
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
@@ -60,9 +62,9 @@ def solve_spatial(
     """
     stopwatch = Stopwatch()
     progress = progress or (None if workplace is None else workplace.progress)
-    problem = dimensionless(system, dimensions=3, settings=settings)
-    require_known(problem, settings)
     grid = laplace_grid(settings)
+    problem = dimensionless(system, dimensions=3, settings=settings).resolving(band(grid))
+    require_known(problem, settings)
     sampling, notes = resolved_sampling(problem, grid, settings)
     stopwatch.lap("choosing the number of modes")
     period = sampling.period * problem.scales.length
@@ -125,6 +127,33 @@ def station_spectra(solution: SpatialSolution) -> StationSpectra:
     return StationSpectra(grid, spectra["w"], spectra["v"])
 
 
+def histories_within(solution: SpatialSolution, shell: int, depth: float) -> dict[str, FloatArray]:
+    """Return W, V, U and all stresses at a depth of an elastic wall at all stations of a finished run, whose waves are solved once more.
+
+    Arrays (stations, parities, M + 1, T) by the names of the fields, dimensionless; those left out are zero.
+
+    Parameters
+    ----------
+    solution : SpatialSolution
+    shell : int
+    depth : float
+        Outward from the middle of the wall, in a.
+
+    Raises
+    ------
+    InputError
+        If instants of the run are missing, or there is no room for it.
+    """
+    solution.at(0).need_every_instant("what stands within an elastic wall away from its middle")
+    require_room(solution.problem, solution.settings)
+    wall = solution.problem.shells[shell]
+    shells = tuple(replace(wall, depth_read=depth) if one is wall else one for one in solution.problem.shells)  # type: ignore[call-arg]
+    problem, grid = replace(solution.problem, shells=shells), laplace_grid(solution.settings)
+    spectra, _ = _summed(problem, grid, solution.sampling, solution.settings, None, None, on_threads)
+    keep = slice(None, None, solution.settings.refinement)
+    return {name: grid.invert(spectra[name][:, shell])[..., keep] for name in READ if name in spectra}
+
+
 def forces_of(solution: SpatialSolution) -> WallForces | None:
     """Return the transforms of the forces of a finished run's absorbers, solved again if it was loaded; None without absorbers."""
     if not solution.forces:
@@ -164,6 +193,10 @@ def _summed(
     """Return the transforms of the motion at all stations, and its mean squares along the axis, from those of blocks of nodes in turn."""
     stations = np.array(settings.stations) / problem.scales.length
     blocks = node_blocks(grid)
+    if problem.two_faced:
+        sampling = replace(sampling)  # its modes keep the shapes of elastic walls, as long as this takes
+        if on is on_threads:
+            make_shapes(problem, sampling.modes)
     work = partial(station_sums, problem, grid, sampling, stations, forces)
     spectra: dict[str, ComplexArray] = {}
     squares: FloatArray = np.zeros(1)

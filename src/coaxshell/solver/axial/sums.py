@@ -14,18 +14,22 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
-from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.faced import READ, faced_amplitudes
+from coaxshell.solver.axial.families import Family, WaveSet, outside_loads, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.coupling import ModalSystem
-from coaxshell.solver.excitation import source_parities, superposed
+from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
+from coaxshell.structure.elastic_wall import ElasticWall
 
 _TOGETHER = 4
 """Wavenumbers whose amplitudes are added up at once, by a matrix product."""
 
 
 SQUARES = "squares"
+_ODD = ("u", "shear", "radial_axial")
+"""What goes along the axis as the odd function o."""
 _ORDER_0 = Modes.up_to(0)
 
 
@@ -48,20 +52,20 @@ def station_sums(
     shape = (stations.size, len(problem.shells), parities, sampling.max_order + 1, s.size)
     fields: dict[str, ComplexArray] = {}
     squares = np.zeros((2, shape[1], 2, shape[3]))
-    layers = piezoelectric_layers(problem)
+    names = amplitude_names(problem)
     sets = wave_sets(problem, sampling, stations, s, None if forces is None else forces.at(block))
-    done, whole = 0, pair_count(sets)
+    done, whole, bends = 0, pair_count(sets), any(wall.faces_move_alike and wall.moves for wall in problem.shells)
     for waves in sets:
         for first in range(0, len(waves.modes), _TOGETHER):
             some = range(first, min(first + _TOGETHER, len(waves.modes)))
-            amplitudes = [np.zeros((3 + layers, len(some), *shape[1:]), np.complex128) for _ in waves.families]
+            amplitudes = [np.zeros((len(names), len(some), *shape[1:]), np.complex128) for _ in waves.families]
             for place, j in enumerate(some):
                 for one, solved in zip(amplitudes, amplitudes_of(problem, waves, j, grid, block), strict=True):
                     one[:, place, :, : solved.shape[2], : waves.modes[j].count] = solved
                 done += waves.modes[j].count
                 tell_share(done / whole)
             for family, found in zip(waves.families, amplitudes, strict=True):
-                _add(fields, shape, family, waves.wavenumber, some, found)
+                _add(fields, shape, family, waves.wavenumber, some, dict(zip(names, found, strict=True)), derivatives=bends)
                 under = squares[int(family.forces is not None)]
                 under += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
     return {**fields, SQUARES: squares}
@@ -73,10 +77,12 @@ def pair_count(sets: list[WaveSet]) -> int:
 
 
 def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
-    """Return W, V, U of wave j under each family's loads, and the potentials of piezoelectric layers if there are any.
+    """Return what walls are read for in wave j under each family's loads: W, V, U first, see :func:`amplitude_names`.
 
-    One array a family, (3 + layers, shells, parities, orders, nodes).
+    One array a family, (names, shells, parities, orders, nodes).
     """
+    if problem.two_faced:
+        return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
     system = ModalSystem(problem, grid.nodes[block], waves.modes[j])
     return [motions_of(problem, system, family, grid, block) for family in waves.families]
 
@@ -93,19 +99,24 @@ def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: Lapl
 def normals_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> list[list[ComplexArray]]:
     """Return W of every shell, (orders, nodes), under the loads of a family, for each parity around."""
     modes, found = system.modes, []
-    units = [(group.geometry.prepare(grid, modes)(system.radial, block), group) for group in family.groups]
-    on_outermost = superposed(family.parities, modes, units) if units else []
+    on_outermost = outside_loads(family, system.radial, grid, block)
     forces = {} if family.forces is None else family.forces.loads(problem, modes, odd=family.odd_forces)
     for parity in range(family.parities):
-        each = [system.solve_outside(on_outermost[parity])] if units else []
+        each = [system.solve_outside(on_outermost[parity])] if on_outermost else []
         each += [system.solve(shell, pressures[parity]) for shell, pressures in forces.items()]
         found.append([np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)])
     return found
 
 
+def amplitude_names(problem: Problem) -> list[str]:
+    """Return what walls are read for: W, V, U, stresses where some are elastic solids, potentials of piezoelectric layers."""
+    potentials = [f"potential {number}" for number in range(piezoelectric_layers(problem))]
+    return [*(READ if problem.two_faced else READ[:3]), *potentials]
+
+
 def piezoelectric_layers(problem: Problem) -> int:
     """Return the largest number of piezoelectric layers of a wall."""
-    return max(len(wall.potential_gains(_ORDER_0)) for wall in problem.shells)
+    return max(len(wall.piezoelectric) if isinstance(wall, ElasticWall) else len(wall.potential_gains(_ORDER_0)) for wall in problem.shells)
 
 
 def _potentials(
@@ -126,22 +137,17 @@ def _add(
     family: Family,
     wavenumber: npt.NDArray[np.number],
     some: range,
-    amplitudes: ComplexArray,
+    amplitudes: dict[str, ComplexArray],
+    *,
+    derivatives: bool,
 ) -> None:
-    """Add some waves of a family to the fields, by e and o and their derivatives."""
-    w, v, u, *potentials = amplitudes
+    """Add some waves of a family to the fields, by e and o and, if the stresses of thin walls need them, their derivatives."""
     part = slice(some.start, some.stop)
     even, odd, k = family.even[:, part], family.odd[:, part], wavenumber[part]
-    shares = {
-        "w": (even, w),
-        "v": (even, v),
-        "u": (odd, u),
-        "w_z": (-k * odd, w),
-        "w_zz": (-k * k * even, w),
-        "v_z": (-k * odd, v),
-        "u_z": (k * even, u),
-    }
-    shares |= {f"potential {number}": (even, x) for number, x in enumerate(potentials)}
+    shares = {name: (odd if name in _ODD else even, amplitude) for name, amplitude in amplitudes.items()}
+    if derivatives:
+        w, v, u = (amplitudes[name] for name in ("w", "v", "u"))
+        shares |= {"w_z": (-k * odd, w), "w_zz": (-k * k * even, w), "v_z": (-k * odd, v), "u_z": (k * even, u)}
     for name, (share, amplitude) in shares.items():
         if not np.any(share):
             continue

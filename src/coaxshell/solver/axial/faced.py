@@ -1,0 +1,123 @@
+"""Walls whose faces move differently, in one wave along the axis: the cascade (:mod:`coaxshell.solver.cascade`) at a wavenumber.
+
+Every wall is read where stations read it, its amplitudes in the order of :data:`READ`: W, V and U, and of an elastic wall the stresses at
+its design depth, 0 of others, whose stresses are made of the motion and its derivatives along the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.solver.axial.families import Family, WaveSet, outside_loads
+from coaxshell.solver.cascade import CascadeSystem, FaceMotion
+from coaxshell.solver.scaling import Problem
+from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.shell_model import SOLID_STRESSES, FaceReceptance, ShellModel, WallOperator
+
+READ = ("w", "v", "u", *SOLID_STRESSES)
+"""What a wall is read for, before the potentials of its piezoelectric layers."""
+
+
+class FacedWave:
+    """All walls and fluids at some modes and a block of Laplace nodes.
+
+    Parameters
+    ----------
+    problem : Problem
+    s : ndarray, shape (nodes,)
+    modes : Modes
+        Of a real wavenumber.
+    reads : bool
+        Whether elastic walls are read, or their faces alone.
+    """
+
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, *, reads: bool = True) -> None:
+        self.problem, self.modes = problem, modes
+        self._readings: list[ComplexArray | WallOperator] = []
+        receptances = []
+        for wall in problem.shells:
+            if isinstance(wall, ElasticWall):
+                receptance, reading = wall.station_port(modes, s, reads=reads)
+                self._readings.append(reading)
+            else:
+                operator = wall.operator(modes, s)
+                self._readings.append(operator)
+                receptance = _alike(wall, operator) if wall.moves else wall.receptance(modes, s)
+            receptances.append(receptance)
+        self.cascade = CascadeSystem(problem, s, modes, walls=receptances)
+
+    def faces(self, family: Family, grid: LaplaceGrid, block: slice) -> list[list[FaceMotion]]:
+        """Return what the faces of all walls do under the sources of a family, for each parity around."""
+        return [self.cascade.solve_outside(load) for load in outside_loads(family, self.cascade.radial, grid, block)]
+
+    def read(self, faces: list[FaceMotion], layers: int) -> ComplexArray:
+        """Return what all walls are read for, (9 + layers, shells, orders, nodes), from the motion of their faces and the loads on them."""
+        found = np.zeros((len(READ) + layers, len(faces), *faces[0].outer.shape), np.complex128)
+        for i, (reading, moving) in enumerate(zip(self._readings, faces, strict=True)):
+            if isinstance(reading, WallOperator):
+                self._read_thin(found[:, i], self.problem.shells[i], reading, moving.outer)
+            else:
+                rows = reading[:, 0] * moving.load_inner
+                rows += reading[:, 1] * moving.load_outer
+                found[: len(rows), i] = rows[: len(found)]
+        return found
+
+    def _read_thin(self, found: ComplexArray, wall: ShellModel, operator: WallOperator, w: ComplexArray) -> None:
+        v = operator.tangential * w
+        u = np.zeros_like(w) if operator.axial is None else operator.axial * w
+        found[:3] = w, v, u
+        for number, gain in enumerate(wall.potential_gains(self.modes)[: len(found) - len(READ)]):
+            per = gain.columns
+            found[len(READ) + number] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
+
+
+def _alike(wall: ShellModel, operator: WallOperator) -> FaceReceptance:
+    """Return the receptance of a wall with one W."""
+    both = np.reciprocal(wall.radius * operator.impedance)
+    return FaceReceptance(both, both, both, operator.impedance)
+
+
+def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
+    """Return what walls are read for in wave j under each family's sources, (9 + layers, shells, parities, orders, nodes)."""
+    wave = FacedWave(problem, grid.nodes[block], waves.modes[j])
+    return [np.stack([wave.read(faces, layers) for faces in wave.faces(family, grid, block)], axis=2) for family in waves.families]
+
+
+def motions_and_faces(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
+    """Return W, V, U and what :func:`faces_of` gives, (7, shells, parities, orders, nodes) of each family."""
+    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j]), []
+    for family in waves.families:
+        each = [
+            np.concatenate([wave.read(faces, 0)[:3], np.stack([np.stack(moving) for moving in faces], axis=1)])
+            for faces in wave.faces(family, grid, block)
+        ]
+        found.append(np.stack(each, axis=2))
+    return found
+
+
+def faces_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
+    """Return what the faces of all walls do in wave j under each family's sources, (4, shells, parities, orders, nodes).
+
+    Displacements of the inner and of the outer faces and the loads on them, all positive inward; nothing within elastic walls is read.
+    """
+    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j], reads=False), []
+    for family in waves.families:
+        each = [np.stack([np.stack(moving) for moving in faces], axis=1) for faces in wave.faces(family, grid, block)]
+        found.append(np.stack(each, axis=2))
+    return found
+
+
+def make_shapes(problem: Problem, modes: Sequence[Modes]) -> None:
+    """Make what all blocks of nodes share of elastic walls, on all threads: once, as long as these modes are in use."""
+    solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
+    pairs = [(wall, one) for one in modes for wall in solids]
+    if pairs:
+        with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:  # many small matrices
+            list(pool.map(lambda pair: pair[0].ports(pair[1]), pairs))
