@@ -15,6 +15,7 @@ from coaxshell.model import materials, presets
 BARE = presets.load("bare")
 HYBRID = presets.load("hybrid")
 SINGLE = presets.load("iakovlev-filled")
+GAINS = {"proportional": -1.0, "derivative": -1.0}
 PZT = materials.PZT4
 ALUMINIUM = materials.ALUMINIUM
 STEP = cx.Step(pressure=1.0)
@@ -80,16 +81,33 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "negative thickness": (lambda: cx.Layer(ALUMINIUM, -0.003), ("thickness:", "-0.003 m", "greater than 0")),
     "misspelt thickness": (lambda: cx.Layer(ALUMINIUM, thicknes=1e-3), ("thicknes:", "is not an entry of Layer", "'thickness'")),
     "missing thickness": (lambda: cx.Layer(ALUMINIUM), ("thickness:", "is missing", "Layer needs it")),
-    "ceramic without role": (lambda: cx.Layer(PZT, 0.003), ("role:", "missing", "'PZT-4'", "'sensor', 'actuator' or 'passive'")),
-    "ceramic as core": (lambda: cx.Layer(PZT, 0.003, "core"), ("role:", "'core'", "'PZT-4'", "'sensor', 'actuator' or 'passive'")),
+    "ceramic without role": (lambda: cx.Layer(PZT, 0.003), ("role:", "missing", "'PZT-4'", "'self-sensing' or 'passive'")),
+    "ceramic as core": (lambda: cx.Layer(PZT, 0.003, "core"), ("role:", "'core'", "'PZT-4'", "'self-sensing' or 'passive'")),
     "elastic sensor": (lambda: cx.Layer(ALUMINIUM, 0.003, "sensor"), ("role:", "'sensor'", "'aluminium'", "'core' or 'passive'")),
-    "unknown role": (lambda: cx.Layer(ALUMINIUM, 1, "skin"), ("role:", "'skin'", "'core', 'sensor', 'actuator' or 'passive'")),  # type: ignore[arg-type]
+    "unknown role": (
+        lambda: cx.Layer(ALUMINIUM, 1, "skin"),
+        ("role:", "'skin'", "'core', 'sensor', 'actuator', 'self-sensing' or 'passive'"),
+    ),  # type: ignore[arg-type]
     "no layers": (lambda: wall(), ("layers:", "0 given", "at least 1")),
     "thick shell": (lambda: wall(cx.Layer(ALUMINIUM, 2)), ("layers:", "2 m", "must be less than the radius 1 m")),
     "two sensors": (
-        lambda: wall(cx.Layer(PZT, 0.01, "sensor"), cx.Layer(PZT, 0.01, "sensor")),
-        ("layers[1].role:", "'sensor'", "layers[0]", "at most one sensor"),
+        lambda: BARE.with_overrides({"shells[0].layers[2].role": "sensor", "control": GAINS}),
+        ("shells[0].layers[2].role:", "'sensor'", "layers[0]", "at most one sensor", 'transducers = "electrodes"'),
     ),
+    "two actuators": (
+        lambda: BARE.with_overrides({"shells[1].layers": [*BARE.shells[1].layers, cx.Layer(PZT, 0.001, "actuator")], "control": GAINS}),
+        ("shells[1].layers[3].role:", "'actuator'", "layers[2]", "at most one actuator", 'transducers = "electrodes"'),
+    ),
+    "self-sensing in the paper's law": (
+        lambda: BARE.with_overrides({"shells[1].layers[0].role": "self-sensing", "control": GAINS}),
+        ("shells[1].layers[0].role:", "'self-sensing'", "grounded faces", 'transducers = "electrodes"'),
+    ),
+    "gains for other shells": (
+        lambda: BARE.replace(control={**GAINS, "derivative": [1, 2, 3]}),
+        ("control.derivative:", "3 for 2", "1 or 2"),
+    ),
+    "a gain that is none": (lambda: cx.PDControl(proportional=[1, "a"], derivative=0), ("proportional[1]:", "'a'", "not a plain number")),
+    "no gains": (lambda: cx.PDControl(proportional=[], derivative=0), ("proportional:", "list is empty", "one for each shell")),
     "zero radius": (lambda: cx.RigidShell(radius=0), ("radius:", "0.0 m", "greater than 0")),
     "no shells": (lambda: BARE.replace(shells=[]), ("shells:", "empty", "at least 1")),
     "shells outside in": (

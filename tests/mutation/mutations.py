@@ -6,6 +6,7 @@ One row a mistake that a person could make: a sign, a factor, an index, a power 
 from __future__ import annotations
 
 from elastic_mutations import ELASTIC
+from electrode_mutations import ELECTRODES
 from loss_mutations import LOSSES
 from reading_mutations import READING
 from spatial_mutations import SPATIAL
@@ -193,8 +194,8 @@ MUTATIONS = (
     Mutation(
         "stability-feedback-sign",
         "solver/stability.py",
-        "diagonal[i] - gains.at(nodes)",
-        "diagonal[i] + gains.at(nodes)",
+        "diagonal[i] - law * (pressure",
+        "diagonal[i] + law * (pressure",
         "feedback in the determinant of the closed loop: sign",
         "solver/test_stability.py",
     ),
@@ -485,5 +486,6 @@ MUTATIONS = (
     *WETTED,
     *READING,
     *ELASTIC,
+    *ELECTRODES,
     *LOSSES,
 )

@@ -296,7 +296,7 @@ def test_what_is_not_solved_is_refused(changed, settings, message):
 def test_feedback_and_missing_constants_are_refused():
     active = cx.presets.load("active")
     solid = active.replace(shells=[shell.replace(theory="elastic") for shell in active.shells])
-    with pytest.raises(cx.InputError, match=r"control: the paper's law acts on thin walls, and shells\[0\] is elastic"):
+    with pytest.raises(cx.InputError, match=r"control: feedback acts on thin walls, and shells\[0\] is elastic"):
         cx.simulate(solid, duration=0.5, time_step=1e-2, modes=4)
     lacking = [cx.Layer(PZT.replace(c44=None), 1e-2, role="passive")]
     with pytest.raises(cx.InputError, match=r"shells\[0\]\.layers\[0\]\.material\.c44"):

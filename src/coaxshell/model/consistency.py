@@ -8,6 +8,7 @@ from itertools import pairwise
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.fluids import Vacuum
+from coaxshell.model.layers import Shell, serves
 from coaxshell.model.parts import SystemParts
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
@@ -104,6 +105,14 @@ def _control(system: SystemParts) -> None:
         except InputError as error:
             raise InputError("control.shells", error.problem, error.remedy) from None
     numbers = system.controlled_shells
+    for name in ("proportional", "derivative"):
+        gains = getattr(system.control, name)
+        if isinstance(gains, tuple) and len(gains) != len(numbers):
+            raise InputError(
+                f"control.{name}",
+                f"the list has {len(gains)} for {len(numbers)} shell(s) under control",
+                f"must be 1 or {len(numbers)} gains",
+            )
     if len(set(numbers)) < len(numbers):
         raise InputError("control.shells", f"{list(system.control.shells)!r} names a shell twice", "must name each shell once")
     for number in numbers:
@@ -119,3 +128,23 @@ def _control(system: SystemParts) -> None:
                     f"shells[{number}] has no {role} layer",
                     "give it one, or name only the shells that have both, e.g. shells = ['outer']",
                 )
+            if system.control.transducers == "paper":
+                _one_of_each(shell_, number, role)
+
+
+def _one_of_each(shell: Shell, number: int, role: str) -> None:
+    """Check that the paper's law, which knows one sensor and one actuator, has no choice of them."""
+    of_electrodes = 'or use control.transducers = "electrodes"'
+    first, *others = [i for i, layer in enumerate(shell.layers) if serves(layer.role, role)]
+    if shell.layers[first].role == "self-sensing":
+        raise InputError(
+            f"shells[{number}].layers[{first}].role",
+            "'self-sensing' is not known to the paper's law, whose sensor has grounded faces",
+            f"must be 'sensor' or 'actuator', {of_electrodes}",
+        )
+    if others:
+        raise InputError(
+            f"shells[{number}].layers[{others[0]}].role",
+            f"{role!r} is already the role of layers[{first}]",
+            f"the paper's law has at most one {role} a shell: make it 'passive', {of_electrodes}",
+        )

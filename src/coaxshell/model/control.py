@@ -1,17 +1,20 @@
-"""Piezoelectric proportional-derivative control (paper's Eq. 17)."""
+"""Piezoelectric proportional-derivative control: the paper's (Eq. 17), or by electrodes as they can be made."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
+from pydantic_core import core_schema
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
-from coaxshell.model.units import Number, quantity
+from coaxshell.model.units import DIMENSIONS, Quantity, quantity
 from coaxshell.numerics.scalars import plain
 
 End = Literal["inner", "middle", "outer"]
+Transducers = Literal["paper", "electrodes"]
 ALLOWED = "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer', 'middle' (of three)"
 
 
@@ -35,17 +38,46 @@ def _shell(item: Any) -> int | str:
     raise InputError("", f"{item!r} is not allowed", ALLOWED)
 
 
+@dataclass(frozen=True, repr=False)
+class _OneOrEach(Quantity):
+    """A number for all shells, or a list of one for each."""
+
+    def _each(self, value: Any) -> float | tuple[float, ...]:
+        if not isinstance(value, list | tuple):
+            return self.validate(value)
+        if not value:
+            raise InputError("", "the list is empty", "give a number, or a list of one for each shell under control")
+        found = []
+        for place, one in enumerate(value):
+            try:
+                found.append(self.validate(one))
+            except InputError as error:
+                raise InputError(f"[{place}]", error.problem, error.remedy) from None
+        return tuple(found)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self._each)
+
+    def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"type": "number", "unit": self.dimension.unit, "examples": [self.dimension.example]}  # forms ask for one
+
+
+Gain = Annotated[float | tuple[float, ...], _OneOrEach(DIMENSIONS["number"])]
+
+
 class PDControl(Described):
     """Describe the control law u = k_p phi_s + k_d dphi_s/dt, phi_s the sensor's potential and u the actuator's (V).
 
     Time in the derivative is dimensionless, in transits a/c_e, as in the paper: both gains are plain numbers.
-    Negative gains stiffen and damp.
+    With the paper's transducers negative gains stiffen and damp, with electrodes positive ones.
     """
 
-    proportional: Number
-    """Proportional gain k_p (V/V)."""
-    derivative: Number
-    """Derivative gain k_d (V/V, per unit of dimensionless time)."""
+    proportional: Gain
+    """Proportional gain k_p (V/V), or a list of one for each shell under control, in the order of "shells"."""
+    derivative: Gain
+    """Derivative gain k_d (V/V, per unit of dimensionless time), or such a list."""
+    transducers: Transducers = "paper"
+    """What reads and drives: "paper" reads curvature and drives by a pressure alone, "electrodes" strain, by traction and moment too."""
     shells: Annotated[tuple[int | End, ...] | Literal["all"], BeforeValidator(_shells)] = "all"
     """Which shells: "all", or numbers from 0 inside, "inner", "outer", "middle"; ``System.controlled_shells`` gives the numbers."""
     saturation: bool = False

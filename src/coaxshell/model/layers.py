@@ -14,9 +14,15 @@ from coaxshell.model.materials import AnyMaterial, Material
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.units import Length
 
-Role = Literal["core", "sensor", "actuator", "passive"]
+Role = Literal["core", "sensor", "actuator", "self-sensing", "passive"]
 Wetted = Literal["mid-surface", "faces"]
 Theory = Literal["thin", "elastic"]
+PIEZOELECTRIC_ROLES = "'sensor', 'actuator', 'self-sensing' or 'passive'"
+
+
+def serves(own: str, role: str) -> bool:
+    """Return whether a layer of a role of its *own* serves as a "sensor" or "actuator": a self-sensing one as both."""
+    return own == role or (own == "self-sensing" and role in ("sensor", "actuator"))
 
 
 class Layer(Described):
@@ -27,7 +33,7 @@ class Layer(Described):
     thickness: Length
     """Thickness (m)."""
     role: Role = Field(default_factory=lambda data: "core" if isinstance(data["material"], Elastic) else "passive")
-    """"core" bears the load, "sensor" and "actuator" are piezoelectric and wired to the controller, "passive" is neither."""
+    """"core" bears the load; piezoelectric and wired: "sensor", "actuator", "self-sensing" (both, by a bridge); "passive": neither."""
 
     def __init__(
         self,
@@ -47,16 +53,12 @@ class Layer(Described):
     def _role_fits(self) -> Self:
         if isinstance(self.material, Piezoelectric):
             if "role" not in self.model_fields_set:
-                raise InputError(
-                    "role", f"is missing for the piezoelectric {self.material.name!r}", "must be 'sensor', 'actuator' or 'passive'"
-                )
+                raise InputError("role", f"is missing for the piezoelectric {self.material.name!r}", f"must be {PIEZOELECTRIC_ROLES}")
             if self.role == "core":
                 raise InputError(
-                    "role",
-                    f"'core' is not allowed for the piezoelectric {self.material.name!r}",
-                    "must be 'sensor', 'actuator' or 'passive'",
+                    "role", f"'core' is not allowed for the piezoelectric {self.material.name!r}", f"must be {PIEZOELECTRIC_ROLES}"
                 )
-        elif self.role in ("sensor", "actuator"):
+        elif self.role in ("sensor", "actuator", "self-sensing"):
             raise InputError(
                 "role",
                 f"{self.role!r} is not allowed for the {self.material.type} {self.material.name!r}",
@@ -85,12 +87,6 @@ class Shell(Described):
                 f"total thickness {self.thickness:g} m is not thin against the radius {self.radius:g} m",
                 f"must be less than the radius {self.radius:g} m",
             )
-        for role in ("sensor", "actuator"):
-            found = [i for i, layer in enumerate(self.layers) if layer.role == role]
-            if len(found) > 1:
-                raise InputError(
-                    f"layers[{found[1]}].role", f"{role!r} is already the role of layers[{found[0]}]", f"a shell has at most one {role}"
-                )
         return self
 
     @property
@@ -125,10 +121,14 @@ class Shell(Described):
 
     @property
     def sensor(self) -> Layer | None:
-        """The sensor layer, if there is one."""
-        return next((layer for layer in self.layers if layer.role == "sensor"), None)
+        """The first layer that senses, if there is one."""
+        return next(iter(self.serving("sensor")), None)
 
     @property
     def actuator(self) -> Layer | None:
-        """The actuator layer, if there is one."""
-        return next((layer for layer in self.layers if layer.role == "actuator"), None)
+        """The first layer that drives, if there is one."""
+        return next(iter(self.serving("actuator")), None)
+
+    def serving(self, role: str) -> list[Layer]:
+        """Return the layers that serve as "sensor" or "actuator", from the inside out; self-sensing ones as both."""
+        return [layer for layer in self.layers if serves(layer.role, role)]

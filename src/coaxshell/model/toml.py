@@ -8,6 +8,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
+from coaxshell.model.gains import gains_of
 from coaxshell.model.materials import Material, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
 from coaxshell.model.parts import SystemParts
@@ -96,6 +97,9 @@ def canonical(system: SystemParts) -> dict[str, Any]:
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
     data["absorbers"] = [_plain(absorber) for absorber in (*system.absorber_list, *system.point_absorbers)]
     if system.control is not None:
+        gains = [gains_of(system, number) for number in system.controlled_shells]
+        each = zip(("proportional", "derivative"), zip(*gains, strict=True), strict=True)
+        data["control"] |= {name: x[0] if len(set(x)) == 1 else list(x) for name, x in each}
         data["control"]["shells"] = list(system.controlled_shells)
     return _nameless(data)  # type: ignore[no-any-return]
 
@@ -123,7 +127,7 @@ def _source(source: Source, beside: Path | None, *, hashed: bool = False) -> dic
     return {**data, "pulse": storing.table(source.pulse, *(storing.write(source.pulse, beside) if beside is not None else ()))}
 
 
-_USUAL: dict[str, Any] = {"absorbers": [], "wetted": "mid-surface", "theory": "thin"}
+_USUAL: dict[str, Any] = {"absorbers": [], "wetted": "mid-surface", "theory": "thin", "transducers": "paper"}
 """What descriptions leave out where it is as usual, so that they are written as before there was anything else."""
 
 

@@ -143,7 +143,8 @@ def actuators(solution: ModalSolution) -> list[str]:
             remedy = "lower the gains to stay within what the actuator can do"
         else:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
-            remedy = "set control.saturation = true to see what it can really do, or lower the gains"
+            paper = control.transducers == "paper"  # electrodes are not marched yet
+            remedy = "set control.saturation = true to see what it can really do, or lower the gains" if paper else "lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
 
@@ -205,6 +206,8 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
     control = problem.system.control
     changed = " without saturation" if control is not None and control.saturation else ""
+    if control is not None and control.transducers == "electrodes":
+        changed = ' with transducers="paper"'
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"

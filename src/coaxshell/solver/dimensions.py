@@ -28,6 +28,7 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
+    _require_plane_electrodes(system, dimensions)
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
         return
@@ -44,11 +45,26 @@ def require_sources_alone(system: System, dimensions: int) -> None:
         problem = f"a line force has no finite displacement on shells[{solid}], an elastic wall"
         raise InputError("absorbers", problem, f"leave them out, {thin}")
     if system.control is not None:
-        raise InputError("control", f"the paper's law acts on thin walls, and shells[{solid}] is elastic", f"leave it out, {thin}")
+        raise InputError("control", f"feedback acts on thin walls, and shells[{solid}] is elastic", f"leave it out, {thin}")
+
+
+def _require_plane_electrodes(system: System, dimensions: int) -> None:
+    """Raise InputError if feedback by electrodes is asked for in three dimensions, or is to saturate."""
+    if system.control is None or system.control.transducers != "electrodes":
+        return
+    paper = 'or transducers = "paper"'
+    if dimensions == 3:
+        raise InputError("control.transducers", "'electrodes' is solved in two dimensions only", f"use dimensions=2, {paper}")
+    if system.control.saturation:
+        problem = "electrodes push along the wall too, where no limit of the voltage is marched yet"
+        raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {paper}")
 
 
 def require_mid_surfaces(system: System) -> None:
-    """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know."""
+    """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know, or electrodes push it."""
+    if system.control is not None and system.control.transducers == "electrodes":
+        problem = "'electrodes' push along the wall too, and the direct engine knows the paper's pressure alone"
+        raise InputError("control.transducers", problem, 'use engine="spectral", or transducers = "paper"')
     for number, shell in enumerate(system.shells):
         if isinstance(shell, Shell) and shell.theory == "elastic":
             problem = "'elastic' is not known to the direct engine, which steps thin walls"

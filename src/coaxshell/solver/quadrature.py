@@ -29,10 +29,10 @@ RESOLVED = 0.6
 
 
 def unresolved_orders(problem: Problem, grid: LaplaceGrid, modes: Modes) -> npt.NDArray[np.bool_]:
-    """Return which orders have a shell whose highest frequency the step does not resolve: shape (orders,)."""
+    """Return which orders have a shell whose fastest motion the step does not resolve: shape (orders,)."""
     late = np.zeros(modes.count, dtype=bool)
     for wall in problem.shells:
-        late |= wall.highest_frequency(modes) > RESOLVED * grid.nyquist
+        late |= wall.fastest_rate(modes) > RESOLVED * grid.nyquist
     return late
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import SourceGeometry, source_geometry
 from coaxshell.model.fluids import Fluid
+from coaxshell.model.gains import gains_of
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
@@ -20,6 +21,8 @@ from coaxshell.solver.point_forces import PointForceShares, point_force_shares
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.constituents import constituents, loses
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
+from coaxshell.structure.electrodes import with_plane_stress
 from coaxshell.structure.losses import USUAL_BAND, Band
 from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.rigid import RigidWall
@@ -169,12 +172,16 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
         return RigidWall(radius=shell.radius / scales.length)
     if shell.theory == "elastic":
         return _solid(shell, index, scales, system.exterior.density)
+    gains, faces = _gains(system, index), shell.wetted == "faces"
+    thin: type[ThinWall] = ThinWall
+    lossy: type[LossyWall] = LossyWall
+    if gains is not None and system.control is not None and system.control.transducers == "electrodes":
+        shell, thin, lossy = with_plane_stress(shell), ElectrodedWall, LossyElectrodedWall
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
-    faces = shell.wetted == "faces"
     if not any(loses(layer.material) for layer in shell.layers):
-        return ThinWall.of(in_units, _gains(system, index), wetted_faces=faces)
+        return thin.of(in_units, gains, wetted_faces=faces)
     parts = tuple(part.in_units(scales.pressure) for part in constituents(shell, scales.time, band))
-    return LossyWall.with_losses(in_units, parts, shell.layers.index(shell.core), _gains(system, index), wetted_faces=faces)
+    return lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces)
 
 
 def _solid(shell: Shell, index: int, scales: Scales, density: float) -> ElasticWall:
@@ -187,4 +194,4 @@ def _gains(system: System, index: int) -> ControlGains | None:
     control = system.control
     if control is None or index not in system.controlled_shells:
         return None
-    return ControlGains(control.proportional, control.derivative)
+    return ControlGains(*gains_of(system, index))

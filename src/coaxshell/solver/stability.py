@@ -3,6 +3,15 @@
 The modal determinants with and without feedback, D_m and D0_m, have the same leading behaviour, and D0_m has no zero in the
 right half plane. By the argument principle the number of unstable poles of order m is minus the change of arg(D_m/D0_m) along
 s = sigma_0 + i omega, omega from 0 to infinity, divided by pi.
+
+D_m is that of V and W of all shells. Where V is eliminated first, of a shell with feedback H P S' (:mod:`.electroded_wall`) its entry of
+the tridiagonal matrix of W, times the relative stiffness along the hoop that feedback leaves, 1 - H P_v S_v/A_vv, is
+
+    D_i - H [(P_w + P_v V/W)(S_w + S_v V/W) + P_v S_v D_i/A_vv],
+
+linear in H, as a change of rank one has to be; V/W and A_vv = M s^2 + K_vv are those without feedback.
+
+An unstable loop cannot be seen in its answer: the inverse transform of poles right of its contour is smooth, plausible and wrong.
 """
 
 from __future__ import annotations
@@ -16,6 +25,8 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
+from coaxshell.model.prefixes import engineering
+from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.winding import turning
 from coaxshell.solver.coupling import ModalSystem, determinant
@@ -26,6 +37,9 @@ _MAX_NODES = 8192
 _SPACING = 0.8
 """Node spacing over sigma_0: the phase of a pole on the imaginary axis turns by less than a radian between nodes."""
 _BLOCK = 512
+_ROUGHLY = 1.15
+"""How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
+_ITERATIONS = 40
 
 
 class UnstablePoles(NamedTuple):
@@ -46,17 +60,20 @@ class OpenLoop:
     determinant : ndarray, shape (orders, nodes)
     fed_back : dict of int to ndarray
         By number of the controlled shell.
+    along : dict of int to ndarray or float
+        P_v S_v/A_vv of it; 0 where it is driven by a normal pressure.
     """
 
     diagonal: Sequence[ComplexArray]
     coupling: Sequence[ComplexArray | float]
     determinant: ComplexArray
     fed_back: dict[int, ComplexArray]
+    along: dict[int, ComplexArray | float]
 
     @property
     def nbytes(self) -> int:
         """Bytes of all arrays."""
-        arrays = [*self.diagonal, *self.coupling, self.determinant, *self.fed_back.values()]
+        arrays = [*self.diagonal, *self.coupling, self.determinant, *self.fed_back.values(), *self.along.values()]
         return sum(x.nbytes for x in arrays if isinstance(x, np.ndarray))
 
     @classmethod
@@ -68,16 +85,20 @@ class OpenLoop:
             for i, (wall, operator) in enumerate(zip(problem.shells, system.shells, strict=True))
             if wall.gains is not None
         }
-        return cls(system.diagonal, system.coupling, determinant(system.diagonal, system.coupling), fed_back)
+        along = {i: problem.shells[i].fed_back_along(modes, nodes) for i in fed_back}
+        return cls(system.diagonal, system.coupling, determinant(system.diagonal, system.coupling), fed_back, along)
 
     def closed(self, problem: Problem, nodes: ComplexArray) -> ComplexArray:
         """Return D_m/D0_m, the determinant with the feedback of a problem over that without."""
-        diagonal = list(self.diagonal)
+        diagonal, left = list(self.diagonal), [np.ones(1, np.complex128) for _ in self.diagonal]
         for i, pressure in self.fed_back.items():
             gains = problem.shells[i].gains
             if gains is not None:
-                diagonal[i] = diagonal[i] - gains.at(nodes) * pressure
-        return np.asarray(determinant(diagonal, self.coupling) / self.determinant)
+                law = gains.at(nodes)
+                diagonal[i] = diagonal[i] - law * (pressure + self.along[i] * diagonal[i])
+                left[i] = 1.0 - law * self.along[i]
+        coupling = [x * left[i] * left[i + 1] for i, x in enumerate(self.coupling)]
+        return np.asarray(determinant(diagonal, coupling) / self.determinant)
 
 
 def with_gains(problem: Problem, proportional: float, derivative: float) -> Problem:
@@ -92,30 +113,37 @@ def highest_frequency(problem: Problem, max_order: int, wavenumber: float | Comp
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
-def _contour(problem: Problem, modes: Modes, duration: float) -> tuple[float, FloatArray]:
-    """Return sigma_0 and the frequencies: evenly spaced as far as shells resonate, then by a growing step to where feedback fades."""
+def _contour(problem: Problem, modes: Modes, least: float) -> ComplexArray:
+    """Return sigma_0 + i omega: evenly spaced as far as shells resonate, then by a growing step to where feedback fades.
+
+    sigma_0 is the *least* growth that counts, or more where as many nodes cannot tell it from none.
+    """
     highest = Modes(modes.orders[-1:], modes.wavenumber)
     resonance = max(float(wall.highest_frequency(highest)[0]) for wall in problem.shells)
     fades = highest_frequency(problem, modes.max_order, modes.wavenumber)
     dense = min(1.2 * resonance, fades)
-    shift = max(1.0 / duration, dense / (_SPACING * _MAX_NODES))
+    shift = max(least, dense / (_SPACING * _MAX_NODES))
     even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)
     beyond = np.geomspace(even[-1], max(fades, 1.02 * even[-1]), 200)
-    return shift, np.concatenate([even, beyond[1:]])
+    return np.asarray(shift + 1j * np.concatenate([even, beyond[1:]]), dtype=np.complex128)
 
 
 def unstable_poles(
     problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0
 ) -> UnstablePoles:
     """Return the orders whose response, at an axial wavenumber, would grow by more than a factor e within the duration."""
-    modes = Modes.up_to(max_order, wavenumber)
-    shift, frequencies = _contour(problem, modes, duration)
+    return _poles_beyond(problem, Modes.up_to(max_order, wavenumber), 1.0 / duration, shared)
+
+
+def _poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedParts | None = None) -> UnstablePoles:
+    """Return the orders with poles that grow by more than a rate per transit."""
+    contour = _contour(problem, modes, least)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
     known = (problem.open_loop.shells, controlled, problem.fluids, problem.scales, modes.key)
     orders = modes.orders
     turned = np.zeros(orders.size)
-    for start in range(0, frequencies.size, _BLOCK):
-        block = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
+    for start in range(0, contour.size, _BLOCK):
+        block = contour[start : start + _BLOCK + 1]  # shares a node with the next
         make = partial(OpenLoop.of, problem, block, modes, shared)
         if shared is not None:
             open_loop = shared.get_or_make(("open loop", *known, block.tobytes()), make)
@@ -129,6 +157,51 @@ def unstable_poles(
     return UnstablePoles(orders[found], counts[found])
 
 
+class Growth(NamedTuple):
+    """The fastest growing motion: e^{(rate + i frequency) t} of an order, t in transits."""
+
+    order: int
+    rate: float
+    frequency: float
+
+
+def fastest_growth(problem: Problem, orders: FloatArray, least: float, wavenumber: float = 0.0) -> Growth:
+    """Return the fastest growth among orders known to grow by more than a rate per transit.
+
+    The rate is bisected roughly; Newton's method, from where on the contour beside it it has the shortest way, finds the pole itself.
+    """
+    low, high = least, 4.0 * least
+    while (beyond := _poles_beyond(problem, Modes(orders, wavenumber), high).orders).size:
+        low, high, orders = high, 4.0 * high, beyond
+    while high > _ROUGHLY * low:
+        middle = float(np.sqrt(low * high))
+        beyond = _poles_beyond(problem, Modes(orders, wavenumber), middle).orders
+        low, high = (middle, high) if beyond.size else (low, middle)
+        orders = beyond if beyond.size else orders
+    poles = {int(order): _pole(problem, Modes(np.array([order]), wavenumber), low) for order in orders}
+    order = max(poles, key=lambda one: poles[one].real)
+    return Growth(order, float(poles[order].real), abs(float(poles[order].imag)))
+
+
+def _pole(problem: Problem, modes: Modes, least: float) -> complex:
+    """Return a pole of one order near the contour of a rate, which it grows by at least."""
+
+    def newton(s: ComplexArray) -> ComplexArray:
+        """Return D_m/D0_m over its derivative: how far Newton's method goes from each place."""
+        step = 1e-6 * np.abs(s)
+        here, ahead = (OpenLoop.of(problem, x, modes, None).closed(problem, x)[0] for x in (s, s + step))
+        return np.asarray(here * step / np.where(ahead == here, 1e-300, ahead - here))
+
+    contour = _contour(problem, modes, least)
+    s = contour[[int(np.abs(newton(contour)).argmin())]]  # the pole is nearer to the contour than any that does not grow
+    for _ in range(_ITERATIONS):
+        change = newton(s)
+        s = np.maximum((s - change).real, 0.5 * least) + 1j * (s - change).imag
+        if abs(change[0]) < 1e-9 * abs(s[0]):
+            break
+    return complex(max(s[0].real, least), s[0].imag)
+
+
 def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0) -> None:
     """Raise InputError, naming gain and order, if the closed loop is unstable at an axial wavenumber."""
     if all(shell.gains is None for shell in problem.shells):
@@ -138,16 +211,40 @@ def require_stable(problem: Problem, max_order: int, duration: float, shared: Sh
         return
     control = problem.system.control
     assert control is not None
-    gains = {"proportional": control.proportional, "derivative": control.derivative}
+    fastest = fastest_growth(problem, unstable.orders, 1.0 / duration, wavenumber)
+    gains = {name: getattr(control, name) for name in ("proportional", "derivative")}
     alone = {
         "proportional": unstable_poles(with_gains(problem, 1.0, 0.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
         "derivative": unstable_poles(with_gains(problem, 0.0, 1.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
     }
     guilty = [name for name, bad in alone.items() if bad] or list(gains)
     where = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
-    listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5]) + (", ..." if unstable.orders.size > 5 else "")
+    listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5])
+    listed += f", ..., {unstable.orders[-1]:.0f} ({unstable.orders.size} in all)" if unstable.orders.size > 5 else ""
+    hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
+    told = f"order {fastest.order} by e^({fastest.rate:.3g} t), t in transits, at {engineering(hertz, 'Hz')}"
     raise InputError(
         " and ".join(f"control.{name}" for name in guilty),
-        f"{' and '.join(f'{gains[name]:g}' for name in guilty)} makes the closed loop unstable: order {listed}{where} grows without bound",
-        "use a smaller magnitude or the other sign (negative gains stiffen and damp)",
+        f"{' and '.join(_shown(gains[name]) for name in guilty)} makes the closed loop unstable: order {listed}{where} grows without "
+        f"bound, fastest {told}",
+        _remedy(problem),
     )
+
+
+def _shown(gain: float | tuple[float, ...]) -> str:
+    return f"{gain:g}" if not isinstance(gain, tuple) else f"[{', '.join(f'{one:g}' for one in gain)}]"
+
+
+def _remedy(problem: Problem) -> str:
+    """Return what makes a loop stable: signs and sizes, and with electrodes where sensors and actuators are."""
+    system = problem.system
+    assert system.control is not None
+    if system.control.transducers == "paper":
+        return "use a smaller magnitude or the other sign (negative gains stiffen and damp)"
+    other = "use a smaller magnitude or the other sign (positive gains stiffen and damp)"
+    for number in system.controlled_shells:
+        shell = system.shells[number]
+        if isinstance(shell, Shell) and set(shell.serving("sensor")) != set(shell.serving("actuator")):
+            apart = f"sensors and actuators of shells[{number}] lie apart, which turns the sign of bending"
+            return f'make one layer both, role = "self-sensing" ({apart}), or {other}'
+    return other

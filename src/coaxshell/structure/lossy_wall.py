@@ -28,7 +28,7 @@ from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.section import Section
 from coaxshell.structure.shell_model import Arm, ControlGains, FieldGain, Gain, WallEnergy, WallMotion, WallOperator, WallStiffness
 from coaxshell.structure.thin import wall_stiffness
-from coaxshell.structure.thin_wall import ThinWall, strain_energy, tangent_eliminated
+from coaxshell.structure.thin_wall import ThinWall, strain_energy
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,15 +79,22 @@ class LossyWall(ThinWall):
         """Refuse: with losses a wall has no stiffness that steps could be taken with."""
         raise InputError("engine", "'direct' cannot step a wall whose layers have losses", 'use engine="spectral", or loss_factor = 0')
 
+    def _factors(self, s: ComplexArray) -> ComplexArray:
+        """Return g(s) of each part, shape (parts, nodes)."""
+        return np.stack([np.ones_like(s) if factor is None else factor.at(s) for factor, _ in self.parts])
+
+    def dynamic_stiffness(self, modes: Modes, s: ComplexArray) -> WallStiffness:
+        """Return K(s) in two dimensions, each entry of shape (orders, nodes)."""
+        rows = np.stack([np.stack(wall_stiffness(section, modes.orders)) for _, section in self.parts])
+        return WallStiffness(*_summed(rows, self._factors(s)))
+
     def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
         """Return impedance, V/W and U/W without feedback."""
-        factors = np.stack([np.ones_like(s) if factor is None else factor.at(s) for factor, _ in self.parts])
         if modes.two_dimensional:
-            rows = np.stack([np.stack(wall_stiffness(section, modes.orders)) for _, section in self.parts])
-            return tangent_eliminated(WallStiffness(*_summed(rows, factors)), self.mass * s * s, modes)
+            return super().passive(modes, s)
         each = [axial_stiffness(section, modes) for _, section in self.parts]
         rows = np.stack([np.stack([k[a, b] for a, b in ENTRIES]) for k in each])
-        return eliminated(AxialStiffness(*_summed(rows, factors)), self.mass * s * s, modes)
+        return eliminated(AxialStiffness(*_summed(rows, self._factors(s))), self.mass * s * s, modes)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return that of the wall at its stiffest."""

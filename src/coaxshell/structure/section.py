@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from coaxshell.model.layers import Layer, Shell
+from coaxshell.model.layers import Layer, Shell, serves
 from coaxshell.model.materials import Material, Piezoelectric
 from coaxshell.structure.laminate import Laminate, laminate
 
@@ -55,7 +55,7 @@ class PiezoelectricLayer:
     Attributes
     ----------
     role : str
-        "sensor", "actuator" or "passive".
+        "sensor", "actuator", "self-sensing" or "passive".
     thickness, centre : float
         t_j and the z of the layer's middle, m.
     coupling : float
@@ -82,6 +82,11 @@ class PiezoelectricLayer:
     actuator_coupling: float
     field_limit: float
     axial: AxialCoupling | None = None
+
+    @property
+    def permittivity(self) -> float:
+        """mu33~, F/m."""
+        return self.zeta33 * 2.0 * self.thickness / math.pi**2
 
 
 @dataclass(frozen=True)
@@ -116,8 +121,8 @@ class Section:
     laminate: Laminate | None = None
 
     def layer(self, role: str) -> PiezoelectricLayer | None:
-        """Return the piezoelectric layer of the given role, or None."""
-        return next((layer for layer in self.piezoelectric if layer.role == role), None)
+        """Return the first piezoelectric layer that serves in the given role, or None."""
+        return next((layer for layer in self.piezoelectric if serves(layer.role, role)), None)
 
     def in_units(self, length: float, pressure: float, mass: float) -> Section:
         """Return the section of SI values in units of a length (m), a pressure (Pa), a mass per area (kg/m^2), and volts."""

@@ -350,6 +350,10 @@ class ShellModel(ABC):
         """Inward pressure per volt of control (Eqs. 4, 13); 0 without an actuator."""
         return 0.0
 
+    def drive(self, modes: Modes) -> Gain:
+        """Return the load on (V, W) per volt of control: the actuator's pressure on W alone, unless said otherwise."""
+        return Gain(np.zeros_like(modes.orders), np.full_like(modes.orders, self.actuator_pressure))
+
     def voltage_limit(self, field: float | None = None) -> float:
         """Return the largest voltage of its actuator, V, by its material's field limit or another (V per a); infinite without one."""
         return float("inf")
@@ -358,6 +362,18 @@ class ShellModel(ABC):
         """Return the actuator's pressure per W and unit gain: pressure per volt times the sensor's voltage per W; V/W and U/W are given."""
         volts = self.sensor_gain(modes).columns.recovered(moving.tangential, moving.axial)
         return np.asarray(self.actuator_pressure * volts)
+
+    def charges(self, modes: Modes) -> tuple[tuple[Gain, float], ...]:
+        """Return the charge of each layer that an amplifier drives, per area: per unit (V, W), and per volt; none of the paper's law."""
+        return ()
+
+    def fed_back_along(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
+        """Return what a unit gain takes off the relative stiffness along the hoop, without feedback: nothing of a normal pressure."""
+        return 0.0
+
+    def fastest_rate(self, modes: Modes) -> FloatArray:
+        """Return the highest rate of each order that steps have to resolve, that of strong damping included."""
+        return self.highest_frequency(modes)
 
     def feedback_frequency(self, modes: Modes) -> float:
         """Return a frequency above which feedback is less than half of its inertia; 0 without feedback."""

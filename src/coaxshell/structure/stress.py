@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.structure.section import PiezoelectricLayer, Section
 from coaxshell.structure.shell_model import Gain
@@ -103,7 +104,7 @@ def stress_gain(section: Section, m: npt.ArrayLike, where: WallPoint) -> Gain:
 def control_stress(where: WallPoint, component: str = "hoop") -> float:
     """Return a stress per volt of control at a point, Pa/V: in the actuator -e32/t (hoop; Eqs. 4, A.10) or -e31/t (axial), else 0."""
     layer = where.piezoelectric
-    if layer is None or layer.role != "actuator" or component == "shear":
+    if layer is None or not serves(layer.role, "actuator") or component == "shear":
         return 0.0
     if component == "hoop":
         return -layer.actuator_coupling / layer.thickness

@@ -14,6 +14,7 @@ from typing import Self
 
 import numpy as np
 
+from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.axial import axial_gain, axial_operator, laminate_of, natural_frequencies, potential, strain
@@ -85,11 +86,15 @@ class ThinWall(ShellModel):
         """Return K, membrane, cross, bending and open-circuit stiffness together."""
         return wall_stiffness(self.section, modes.orders)
 
+    def dynamic_stiffness(self, modes: Modes, s: ComplexArray) -> WallStiffness:
+        """Return K(s) in two dimensions, each entry of shape (orders, 1), or (orders, nodes) where it depends on s."""
+        return WallStiffness(*(entry[:, None] for entry in self.stiffness(modes)))
+
     def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
         """Return impedance, V/W and U/W without feedback."""
         if not modes.two_dimensional:
             return axial_operator(self.section, modes, s)
-        return tangent_eliminated(WallStiffness(*(entry[:, None] for entry in self.stiffness(modes))), self.mass * s * s, modes)
+        return tangent_eliminated(self.dynamic_stiffness(modes, s), self.mass * s * s, modes)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return the membrane frequency of each order, sqrt(K_vv/M); with an axial wavenumber the highest of the three frequencies."""
@@ -123,7 +128,7 @@ class ThinWall(ShellModel):
 
     def layer_number(self, role: str) -> int | None:
         """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
-        return next((number for number, layer in enumerate(self.section.piezoelectric) if layer.role == role), None)
+        return next((number for number, layer in enumerate(self.section.piezoelectric) if serves(layer.role, role)), None)
 
     @kept_with_modes
     def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:

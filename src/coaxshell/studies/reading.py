@@ -124,7 +124,11 @@ class MetricSource(DesignReading):
 
     def peak_actuator_field(self, shell: int) -> float:
         """Return the same as a field across the actuator, V/m."""
-        return self.peak_actuator_voltage(shell) / self._wall(shell).actuator.thickness  # type: ignore[union-attr]
+        return self.peak_actuator_voltage(shell) / self._thinnest(shell)
+
+    def _thinnest(self, shell: int) -> float:
+        """Return the thickness of the thinnest actuator of a shell, m, in which the field is largest."""
+        return min(layer.thickness for layer in self._wall(shell).serving("actuator"))
 
     def actuator_field_ratio(self, shell: int) -> float:
         """Return the same over what the actuator stands (its material's or the controller's field limit)."""
@@ -144,7 +148,7 @@ class MetricSource(DesignReading):
 
     def segment_actuator_field(self, shell: int) -> float:
         """Return the same as a field across the actuator, V/m."""
-        return self.segment_actuator_voltage(shell) / self._wall(shell).actuator.thickness  # type: ignore[union-attr]
+        return self.segment_actuator_voltage(shell) / self._thinnest(shell)
 
     def segment_field_ratio(self, shell: int) -> float:
         """Return the same over what the actuator stands (its material's or the controller's field limit)."""

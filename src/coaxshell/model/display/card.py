@@ -8,6 +8,7 @@ from html import escape
 from coaxshell.model.absorbers import AbsorberRing
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
 from coaxshell.model.fluids import Fluid, Vacuum
+from coaxshell.model.gains import gains_of
 from coaxshell.model.parts import SystemParts
 from coaxshell.model.places import region_side, shell_phrase
 from coaxshell.model.prefixes import engineering
@@ -29,7 +30,8 @@ def system_line(system: SystemParts) -> str:
     if system.point_absorbers:
         parts.append(f"{len(system.point_absorbers)} point absorbers")
     if system.control is not None:
-        parts.append("saturating control" if system.control.saturation else "control")
+        words = "control by electrodes" if system.control.transducers == "electrodes" else "control"
+        parts.append(f"saturating {words}" if system.control.saturation else words)
     name = f"{system.name!r}, " if system.name else ""
     return f"<System: {name}{'; '.join(parts)}>"
 
@@ -89,9 +91,13 @@ def _parts(system: SystemParts) -> list[Cells]:
         rows.append(("", "point absorbers", _point_absorbers(system)))
     if system.control is not None:
         control = system.control
-        stop = ", stops at the field limit" if control.saturation else ""
-        shells = ", ".join(shell_phrase(i, len(system.shells)) for i in system.controlled_shells)
-        rows.append(("", "control", f"k_p = {control.proportional:g}, k_d = {control.derivative:g} on {shells}{stop}"))
+        stop = ", by electrodes" if control.transducers == "electrodes" else ""
+        stop += ", stops at the field limit" if control.saturation else ""
+        each: dict[tuple[float, float], list[str]] = {}
+        for i in system.controlled_shells:
+            each.setdefault(gains_of(system, i), []).append(shell_phrase(i, len(system.shells)))
+        laws = "; ".join(f"k_p = {p:g}, k_d = {d:g} on {', '.join(names)}" for (p, d), names in each.items())
+        rows.append(("", "control", f"{laws}{stop}"))
     return rows
 
 

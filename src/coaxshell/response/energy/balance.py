@@ -34,7 +34,8 @@ def energy(
       ``interior_`` and ``gap_kinetic``, ``_compression``, integrated from the field in the fluid, not from work at its walls;
       ``absorber_kinetic``, ``absorber_spring``.
     - loss, since the start: ``damper_dissipation``; ``<shell>_dissipation`` of a wall that has losses; ``actuator_work``, taken from
-      the shells by the actuators (negative: given).
+      the shells by the actuators (negative: given). With electrodes ``amplifier_work`` (role work), the energy that amplifiers have
+      supplied, is ``actuator_field``, what the driven layers' fields hold, less ``actuator_work``.
     - work on the outer shell, since the start: ``exterior_work`` of the total exterior pressure, the sum of ``incident_work``
       (the wave as if nothing were there), ``scattered_work`` (what a rigid cylinder adds to it) and ``radiated_work``. The
       ``radiated_energy`` is minus the last: all that the shell's motion gave the exterior fluid, its near field included.

@@ -8,6 +8,7 @@ from coaxshell.model.places import region_name, shell_name, shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.response.energy.absorbers import AbsorberEnergy, absorber_energy
+from coaxshell.response.energy.electrodes import electrical_energy
 from coaxshell.response.energy.fluids import fluid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.shells import actuator_work, shell_energy
@@ -64,7 +65,12 @@ def _shells(motion: Motion) -> dict[str, Entry]:
         if lost is not None:
             entries[f"{name}_dissipation"] = Entry(lost, "loss", group, f"energy dissipated in the {group}")
     taken = actuator_work(motion)[motion.kept]
-    return entries | {"actuator_work": Entry(taken, "loss", "actuators", "work that the actuators have taken from the shells")}
+    entries["actuator_work"] = Entry(taken, "loss", "actuators", "work that the actuators have taken from the shells")
+    if (electrical := electrical_energy(motion)) is not None:
+        supplied, held = (values[motion.kept] for values in electrical)
+        entries["amplifier_work"] = Entry(supplied, "work", "actuators", "energy from the amplifiers of the actuators, since the start")
+        entries["actuator_field"] = Entry(held, "work", "actuators", "energy in the fields of the actuators that amplifiers charge")
+    return entries
 
 
 def absorber_entries(found: AbsorberEnergy) -> dict[str, Entry]:

@@ -50,8 +50,8 @@ def _of_wall(motion: Motion, shell: int, instants: slice) -> WallMotion:
 def actuator_work(motion: Motion) -> FloatArray:
     """Return the work that the actuators of all shells have taken from them, shape (T,).
 
-    Minus the integral of the actuators' pressure times dw/dt over the surfaces: the linear law's (Eqs. 4, 17) or, where the
-    voltage saturates, what was given.
+    Minus the integral of the actuators' pressure times dw/dt over the surfaces, and of electrodes of their traction times dv/dt: the
+    linear law's (Eqs. 4, 17) or, where the voltage saturates, what was given.
     """
     problem, grid, s = motion.problem, motion.grid, motion.grid.nodes
     given = motion.actuation
@@ -66,6 +66,10 @@ def actuator_work(motion: Motion) -> FloatArray:
             volts = sensor.v * motion.tangential[i] + sensor.w * motion.normal[i]
             if sensor.u is not None and motion.axial is not None:
                 volts += sensor.u * motion.axial[i]
-            pressure = wall.actuator_pressure * wall.gains.at(s) * volts
+            drive = wall.drive(motion.modes).columns
+            pressure = drive.w * wall.gains.at(s) * volts
+            if np.any(drive.v):
+                traction = drive.v * wall.gains.at(s) * volts
+                total -= SurfaceWork(grid, wall.radius * motion.circle, motion.tangential[i] * s)(traction)
         total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

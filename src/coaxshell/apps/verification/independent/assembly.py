@@ -13,9 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from coaxshell.apps.verification.independent.electrodes import Electrodes
 from coaxshell.apps.verification.independent.elements import RadialMatrices, elements
 from coaxshell.apps.verification.independent.walls import Wall
 from coaxshell.model.fluids import Fluid
+from coaxshell.model.gains import gains_of
+from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
@@ -57,6 +60,10 @@ class Assembly:
     def of(cls, system: System, duration: float, element: float, wavenumber: float = 0.0) -> Assembly:
         """Return the assembly of a system of elastic shells for a duration in transits, at an axial wavenumber in 1/a."""
         a, c, rho = system.reference_radius, system.exterior.sound_speed, system.exterior.density
+        if system.control is not None and system.control.transducers == "electrodes":
+            if wavenumber or system.control.saturation:
+                raise NotImplementedError("electrodes are written without wavenumbers and limits in the independent solver")
+            system = _with_standard_permittivity(system)
         walls = tuple(Wall.of(shell) for shell in system.shells if isinstance(shell, Shell))
         if len(walls) != len(system.shells):
             raise NotImplementedError("the independent solver has no rigid shells")
@@ -114,10 +121,20 @@ class Assembly:
         stiffness[np.ix_(at, at)] += wall.stiffness(m, self._per_metre) * self.length / self.pressure * radius
         control = self.system.control
         if control is not None and i in self.system.controlled_shells and not self.saturates:
+            proportional, derivative = gains_of(self.system, i)
+            if control.transducers == "electrodes":
+                shell = self.system.shells[i]
+                assert isinstance(shell, Shell)
+                found = Electrodes.of(shell, m)
+                stiffness[np.ix_(at, at)] += found.stiffness * self.length / self.pressure * radius
+                fed_back = np.outer(found.load, found.reading) * self.length / self.pressure * radius
+                stiffness[np.ix_(at, at)] -= proportional * fed_back
+                damping[np.ix_(at, at)] -= derivative * fed_back
+                return
             volts = self.volts(i, m)
             inward = self.inward(i)
-            stiffness[n + i, at] -= inward * control.proportional * volts
-            damping[n + i, at] -= inward * control.derivative * volts
+            stiffness[n + i, at] -= inward * proportional * volts
+            damping[n + i, at] -= inward * derivative * volts
 
     @property
     def _per_metre(self) -> float:
@@ -136,3 +153,17 @@ class Assembly:
         """Return the inward load of the actuator on the W equation of a shell per volt, -e32/R times the radius of the row."""
         wall = self.walls[i]
         return -wall.actuator.actuation / (wall.radius * self.pressure) * wall.radius / self.length
+
+
+def _with_standard_permittivity(system: System) -> System:
+    """Return a system whose controlled shells have mu33 + e33^2/c33 in all fields, as walls between electrodes do."""
+    shells = list(system.shells)
+    for i in system.controlled_shells:
+        shell = shells[i]
+        assert isinstance(shell, Shell)
+        layers = [
+            x.replace(material=x.material.replace(permittivity_reduction="standard")) if isinstance(x.material, Piezoelectric) else x
+            for x in shell.layers
+        ]
+        shells[i] = shell.replace(layers=layers)
+    return system.replace(shells=shells)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.apps.verification.independent.assembly import Assembly
+from coaxshell.model.gains import gains_of
 from coaxshell.numerics.arrays import FloatArray
 
 
@@ -52,6 +53,8 @@ class Links:
         self._k_nl = np.repeat([x.cubic_stiffness for x in absorbers], 2) * assembly.length**2 / assembly.pressure
         self._links = len(self._rows)
         self._limit = np.array(self._voltages(angles))
+        controlled = system.controlled_shells if assembly.saturates else ()
+        self._gains = np.repeat([gains_of(system, i) for i in controlled], angles, axis=0).T
         self.read = np.array([p for p, _ in self._rows]).reshape(-1, places.size)
         self.apply = np.array([b for _, b in self._rows]).reshape(-1, places.size).T
 
@@ -94,10 +97,10 @@ class Links:
         f, by, bd = np.zeros_like(y), np.zeros_like(y), np.zeros_like(y)
         f[:, a] = self._c * dy[:, a] + self._k_l * y[:, a] + self._k_nl * y[:, a] ** 3
         by[:, a], bd[:, a] = self._k_l + 3 * self._k_nl * y[:, a] ** 2, self._c
-        control = self._assembly.system.control
-        if self._limit.size and control is not None:
-            asked = control.proportional * y[:, s] + control.derivative * dy[:, s]
+        if self._limit.size:
+            proportional, derivative = self._gains
+            asked = proportional * y[:, s] + derivative * dy[:, s]
             free = np.abs(asked) < self._limit
             f[:, s] = np.clip(asked, -self._limit, self._limit)
-            by[:, s], bd[:, s] = control.proportional * free, control.derivative * free
+            by[:, s], bd[:, s] = proportional * free, derivative * free
         return f.ravel(), by.ravel(), bd.ravel()

@@ -1,0 +1,36 @@
+"""What amplifiers give to layers between electrodes, and what the fields of these hold (theory manual, "Electrodes").
+
+The charge of a driven layer, e32~ B(z_a) (V, W) + (mu33~/t) u per area, takes the power u dD/dt from its amplifier: what does not move
+the wall, the work of the actuators on it, charges the layer's capacitance, (1/2) (mu33~/t) u^2 per area.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.structure.shell_model import Gain
+
+
+def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
+    """Return the energy from the amplifiers since the start and that in the layers' fields, each (T,); None where nothing is driven."""
+    grid, s = motion.grid, motion.grid.nodes
+    supplied, held, driven = np.zeros(grid.time.size), np.zeros(grid.time.size), False
+    for i, wall in enumerate(motion.problem.shells):
+        charges = () if wall.gains is None else wall.charges(motion.modes)
+        if wall.gains is None or not charges:
+            continue
+        driven, area, w, v = True, wall.radius * motion.circle, motion.normal[i], motion.tangential[i]
+        volts = wall.gains.at(s) * _combined(wall.sensor_gain(motion.modes), v, w)
+        history = grid.invert(volts)
+        for charge, capacitance in charges:
+            current = s * (_combined(charge, v, w) + capacitance * volts)
+            supplied += SurfaceWork(grid, area, current)(volts)
+            held += 0.5 * capacitance * np.einsum("m,hmt,hmt->t", area, history, history)
+    return (supplied, held) if driven else None
+
+
+def _combined(gain: Gain, tangential: ComplexArray, normal: ComplexArray) -> ComplexArray:
+    return np.asarray(gain.columns.v * tangential + gain.columns.w * normal)

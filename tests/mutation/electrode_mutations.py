@@ -1,0 +1,66 @@
+"""Mutations of layers between electrodes and of feedback through them."""
+
+from __future__ import annotations
+
+from mutation import Mutation
+
+WHERE = "structure/test_electrodes.py solver/test_control_by_electrodes.py"
+
+ELECTRODES = (
+    Mutation(
+        "open-circuit-voltage",
+        "structure/electrodes.py",
+        "return -layer.thickness * layer.reduced_coupling / layer.permittivity",
+        "return -layer.thickness * layer.reduced_coupling * layer.permittivity",
+        "voltage of an open circuit: t e/mu",
+        WHERE,
+    ),
+    Mutation(
+        "mean-of-sensors",
+        "structure/electrodes.py",
+        "open_circuit_voltage(layer) / len(sensors)",
+        "open_circuit_voltage(layer)",
+        "the mean of the readings, not their sum",
+        WHERE,
+    ),
+    Mutation(
+        "driven-layers-are-short",
+        "structure/electrodes.py",
+        'if layer.role == "sensor":',
+        'if layer.role != "passive":',
+        "no open-circuit stiffening of a driven layer",
+        WHERE,
+    ),
+    Mutation(
+        "traction-of-electrodes",
+        "structure/electroded_wall.py",
+        "tangential = -(k.vw - law * (push.v * read.w)) / along",
+        "tangential = -k.vw / along",
+        "feedback drives V by what W reads",
+        WHERE,
+    ),
+    Mutation(
+        "pressure-of-v",
+        "structure/electroded_wall.py",
+        "(k.vw - law * (push.w * read.v)) * tangential",
+        "(k.vw - law * (push.v * read.w)) * tangential",
+        "feedback is not symmetric: W driven by what V reads",
+        WHERE,
+    ),
+    Mutation(
+        "rank-one",
+        "solver/stability.py",
+        "diagonal[i] - law * (pressure + self.along[i] * diagonal[i])",
+        "diagonal[i] - law * pressure",
+        "the determinant of V and W of walls with electrodes",
+        WHERE,
+    ),
+    Mutation(
+        "charging",
+        "response/energy/electrodes.py",
+        "held += 0.5 * capacitance",
+        "held += capacitance",
+        "energy in the field of a driven layer",
+        "solver/test_control_by_electrodes.py",
+    ),
+)
