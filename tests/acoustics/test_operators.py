@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.special import iv, ivp, kv, kvp
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus
+from coaxshell.acoustics.operators import all_orders, annulus
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 S = np.array([0.05 + 0.0j, 0.7 + 0.4j, 2.0 + 6.0j, 1.0 + 40.0j, 30.0 + 5.0j])
 ORDERS = all_orders(24)

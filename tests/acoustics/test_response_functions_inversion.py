@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from scipy.special import erfc
 
-from coaxshell.acoustics.operators import RadialFunctions, annulus
+from coaxshell.acoustics.operators import annulus
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field, exterior_field
 from coaxshell.acoustics.response_functions import exterior, gap, interior
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 RA, RB, ALPHA = 0.5, 1.0, 0.8
 LOW = np.array([0, 1, 5, 20])

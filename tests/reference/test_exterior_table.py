@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 GRID = LaplaceGrid(5e-3, 1200, wrap_around=1e-12)
 

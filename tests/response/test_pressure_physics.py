@@ -7,9 +7,10 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field, exterior_field
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.response import Response
 from coaxshell.response.fields.modal_field import modal_field
 from coaxshell.response.fields.request import regions

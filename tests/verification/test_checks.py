@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coaxshell.acoustics import operators
 from coaxshell.apps.verification import checks, chosen, run
 from coaxshell.apps.verification.bench import Bench, bare_double_shell, tables
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.structure.thin_wall import ThinWall
 
 
@@ -32,9 +32,9 @@ def failing(*names):
 
 
 def test_a_wrong_fluid_is_seen(monkeypatch):
-    right = operators.RadialFunctions.__dict__["exterior"].func
+    right = RadialFunctions.__dict__["exterior"].func
     wrong = property(lambda self: 1.001 * right(self))
-    monkeypatch.setattr(operators.RadialFunctions, "exterior", wrong)
+    monkeypatch.setattr(RadialFunctions, "exterior", wrong)
     names = {"reference-values", "transparency", "form-function", "published", "independent"}
     assert failing(*names) == names
 

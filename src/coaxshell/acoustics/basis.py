@@ -9,9 +9,9 @@ the only place where k enters a fluid; s^2 in front of a wall's motion stays s^2
 
 from __future__ import annotations
 
-from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 __all__ = ["Modes", "RadialBasis"]
 

@@ -10,112 +10,17 @@ Kinematics on a wall moving with displacement w, positive inward (theory manual,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.bessel_samples import BesselSample, i_sample, k_sample
+from coaxshell.numerics.radial_functions import RadialFunctions, i_across, k_across
 
 
 def all_orders(max_order: int) -> FloatArray:
     """Return 0, 1, ..., max_order."""
     return np.arange(max_order + 1, dtype=np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class RadialFunctions:
-    """Modified Bessel functions at the arguments kappa * radius, as ratios, computed when first asked for.
-
-    Parameters
-    ----------
-    kappa : ndarray, shape (n,)
-        Radial wavenumbers, Re kappa > 0.
-    radius : float
-        Radius in units of the reference radius.
-    orders : ndarray, shape (M,)
-        Ascending circumferential orders to be kept, all or a sample; the recurrences run through all of them.
-    sparse : bool
-        Whether they run by the functions themselves, of which the sample is kept, instead of by ratios of all orders.
-    """
-
-    kappa: ComplexArray
-    radius: float
-    orders: FloatArray
-    sparse: bool = False
-
-    @cached_property
-    def argument(self) -> ComplexArray:
-        """kappa * radius."""
-        return self.kappa * self.radius
-
-    @property
-    def max_order(self) -> int:
-        """The highest order."""
-        return int(self.orders[-1])
-
-    def keep(self, rows: ComplexArray) -> ComplexArray:
-        """Return the rows of the orders to be kept, from rows of all orders."""
-        return rows if self.orders.size == rows.shape[0] else rows[self.orders.astype(int)]
-
-    @cached_property
-    def i_ratios(self) -> ComplexArray:
-        """I_{m+1}/I_m for all orders 0..max_order, shape (max_order + 1, n)."""
-        return br.i_ratios(self.max_order, self.argument)
-
-    @cached_property
-    def k_ratios(self) -> ComplexArray:
-        """K_{m+1}/K_m for all orders 0..max_order, shape (max_order + 1, n)."""
-        return br.k_ratios(self.max_order, self.argument)
-
-    @cached_property
-    def i_sample(self) -> BesselSample:
-        """I_m at the orders kept."""
-        return i_sample(self.orders.astype(np.int64), self.argument)
-
-    @cached_property
-    def k_sample(self) -> BesselSample:
-        """K_m at the orders kept."""
-        return k_sample(self.orders.astype(np.int64), self.argument)
-
-    @cached_property
-    def disc(self) -> ComplexArray:
-        """I_m(kr)/(k I_m'(kr)) = r/(m + kr R_m) (DLMF 10.29.2), shape (M, n).
-
-        Wall pressure per unit wall acceleration of a disc of radius r.
-        """
-        derivative = self.argument * (self.i_sample.ratio if self.sparse else self.keep(self.i_ratios))
-        derivative += self.orders[:, None]
-        return np.divide(self.radius, derivative, out=derivative)
-
-    @cached_property
-    def exterior(self) -> ComplexArray:
-        """K_m(kr)/(k K_m'(kr)) = r/(m - kr S_m) (DLMF 10.29.2), shape (M, n).
-
-        Wall pressure per unit wall acceleration of the unbounded fluid outside radius r.
-        """
-        derivative = self.argument * (self.k_sample.ratio if self.sparse else self.keep(self.k_ratios))
-        np.subtract(self.orders[:, None], derivative, out=derivative)
-        return np.divide(self.radius, derivative, out=derivative)
-
-
-def i_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
-    """Return I_m(kr)/I_m(k r1), the smaller of two radii over the larger, shape (M, n)."""
-    za, zb = inner.argument, outer.argument
-    if inner.sparse:
-        return np.asarray(inner.i_sample.over(outer.i_sample) * np.exp(za.real - zb.real), dtype=np.complex128)
-    return inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, za, zb))
-
-
-def k_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
-    """Return K_m(kr)/K_m(k r1), the larger of two radii over the smaller, shape (M, n)."""
-    za, zb = inner.argument, outer.argument
-    if inner.sparse:
-        return np.asarray(outer.k_sample.over(inner.k_sample) * np.exp(za - zb), dtype=np.complex128)
-    return inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, za, zb))
 
 
 class AnnulusOperator(NamedTuple):

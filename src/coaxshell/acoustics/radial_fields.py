@@ -15,8 +15,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from coaxshell.acoustics.operators import AnnulusAmplitudes, RadialFunctions, annulus_amplitudes, i_across, k_across
+from coaxshell.acoustics.operators import AnnulusAmplitudes, annulus_amplitudes
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.radial_functions import RadialFunctions, i_across, k_across
 
 
 class RadialField(NamedTuple):

@@ -23,12 +23,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.radial_fields import exterior_field as laplace_field
 from coaxshell.acoustics.response_functions.echoes import waves
 from coaxshell.acoustics.response_functions.sums import ladder, leg_nodes, lowest, needed, product, sines
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_ratios import k_ratios
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 TABLE = "exterior_poles.npz"
 _TOLERANCE = 1e-12

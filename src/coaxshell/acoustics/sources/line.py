@@ -15,13 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
-from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.rays import path_to
 from coaxshell.acoustics.sources.source import NEAREST, SurfaceLoad, TimeFunction, UniformField, incident_of_regular, rays
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_ratios import kve
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 _WAKE_STEP = 1e-3
 _WAKE_RADII = 24

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
-from coaxshell.acoustics.operators import RadialFunctions
 from coaxshell.acoustics.sources.source import SurfaceLoad, TimeFunction, incident_of_regular
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 
 @dataclass(frozen=True)

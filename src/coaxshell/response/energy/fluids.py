@@ -29,11 +29,12 @@ import numpy as np
 from scipy import fft
 
 from coaxshell.acoustics.basis import RadialBasis
-from coaxshell.acoustics.operators import RadialFunctions, annulus_amplitudes
+from coaxshell.acoustics.operators import annulus_amplitudes
 from coaxshell.acoustics.radial_fields import annulus_field, disc_field
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import ShareDone
+from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.response.energy.motion import Motion
 from coaxshell.solver.scaling import FluidRegion
 

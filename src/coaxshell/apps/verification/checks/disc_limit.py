@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coaxshell.acoustics.operators import RadialFunctions, all_orders, annulus
+from coaxshell.acoustics.operators import all_orders, annulus
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Curve, Finding, Panel, Sheet, at_least, orders, within
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 HOLES = np.array([1e-1, 1e-2, 1e-3, 1e-4])
 NODES = np.asarray(0.5 + 1j * np.linspace(0.0, 20.0, 81), dtype=np.complex128)

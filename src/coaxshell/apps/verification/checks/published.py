@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from coaxshell.acoustics.operators import RadialFunctions, annulus
+from coaxshell.acoustics.operators import annulus
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Finding, close
+from coaxshell.numerics.radial_functions import RadialFunctions
 
 ZEROS = {(0, 1): 3.83170597, (1, 1): 1.84118378, (1, 2): 5.33144277, (2, 1): 3.05423693, (2, 2): 6.70613319, (3, 1): 4.20118894}
 """(m, n): the n-th positive zero of J_m' (Abramowitz and Stegun, Table 9.5; the zero of J_0' at 0 not counted)."""

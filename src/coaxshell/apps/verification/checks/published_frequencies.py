@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from coaxshell.acoustics.operators import RadialFunctions, annulus
+from coaxshell.acoustics.operators import annulus
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Finding, close
@@ -19,6 +19,7 @@ from coaxshell.model.layers import Layer, Shell
 from coaxshell.model.sources import PlaneShock
 from coaxshell.model.system import System
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import dimensionless
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import gamma
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.acoustics.operators import RadialFunctions, all_orders
+from coaxshell.acoustics.operators import all_orders
 from coaxshell.apps.verification.bench import Bench, tables
 from coaxshell.apps.verification.loads import surface_pressure
 from coaxshell.apps.verification.registry import check
@@ -16,6 +16,7 @@ from coaxshell.apps.verification.rows import Curve, Finding, Panel, Sheet, value
 from coaxshell.apps.verification.systems import PLANE_STEP, STEP, evacuated
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
 
