@@ -26,6 +26,7 @@ def test_names() -> None:
         "iakovlev-filled",
         "iakovlev-double",
         "steel-tube",
+        "coated",
     )
 
 
@@ -44,6 +45,24 @@ def test_table_1(name: str) -> None:
     assert (source.distance, source.peak_pressure, source.decay_time) == (5.0, 2.5e4, 1.314e-4)
     assert (len(system.absorber_list) == 25) is (name in ("absorbers", "hybrid"))
     assert (system.control is not None) is (name in ("active", "hybrid"))
+
+
+def test_coated_is_the_bare_shells_with_rubber_on_the_inner_one() -> None:
+    coated, bare = presets.load("coated"), presets.load("bare")
+    for number, (shell, plain) in enumerate(zip(coated.shells, bare.shells, strict=True)):
+        assert isinstance(shell, cx.Shell)
+        assert isinstance(plain, cx.Shell)
+        assert shell.theory == "elastic"
+        assert shell.inner_radius == pytest.approx(plain.inner_radius)
+        layers = [(layer.thickness, layer.role, layer.material.density) for layer in shell.layers]
+        assert layers[:3] == [(layer.thickness, layer.role, layer.material.density) for layer in plain.layers]
+        assert layers[3:] == ([(0.03, "passive", 1240.0)] if number == 0 else [])
+    assert coated.replace(shells=bare.shells, name="bare").canonical() == bare.canonical()
+    rubber = coated.shells[0].layers[3].material  # type: ignore[union-attr]
+    assert isinstance(rubber, cx.Viscoelastic)
+    assert rubber.long_term_modulus / (3.0 * (1.0 - 2.0 * rubber.poisson_ratio)) == pytest.approx(2e9, rel=0.05)
+    low, high = cx.materials.RUBBERS["neoprene"].youngs_modulus
+    assert low <= rubber.long_term_modulus <= high
 
 
 def test_hybrid_is_the_example_of_the_interface() -> None:

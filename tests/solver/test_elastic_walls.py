@@ -315,13 +315,6 @@ def test_components_and_depths_are_refused_by_name():
         thin.stress("inner", component="shear")
 
 
-def test_losses_are_refused():
-    lossy = [cx.Layer(STEEL.replace(loss_factor=0.02), 1e-2)]
-    system = thick().replace(shells=[cx.Shell(radius=1.0, layers=lossy, theory="elastic")], fluids=[WATER] * 2)
-    with pytest.raises(cx.InputError, match=r"shells\[0\]\.layers\[0\]\.material: steel has losses"):
-        cx.simulate(system, duration=0.5, time_step=1e-2, modes=4)
-
-
 def test_the_memory_of_a_run_counts_what_elastic_walls_keep():
     settings = Settings(duration=4.0, time_step=1e-3, modes=100)
     thin, solid = (run_cost(thick(**theory), settings).memory for theory in ({}, {"theory": "elastic"}))

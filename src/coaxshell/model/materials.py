@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator
 
@@ -25,6 +25,7 @@ __all__ = [
     "PZT4_STANDARD",
     "PZT5A",
     "PZT5H",
+    "RUBBERS",
     "STAINLESS_STEEL_316L",
     "STEEL_IAKOVLEV_2008",
     "STEEL_IAKOVLEV_2014",
@@ -189,6 +190,25 @@ LOSS_FACTORS: dict[str, tuple[float, float, str]] = {
     "brass": (0.0, 1e-3, f"{CREMER} (an upper bound)"),
 }
 """Least and largest loss factor of metals by themselves, and where it comes from; structures with joints lose far more."""
+
+ASHBY = "Ashby, Materials Selection in Mechanical Design, 3rd ed. (2005), Appendix C"
+
+
+class RubberRange(NamedTuple):
+    """Least and largest values of one kind of rubber: density (kg/m^3), Young's modulus at rest (Pa), and where they come from."""
+
+    density: tuple[float, float]
+    youngs_modulus: tuple[float, float]
+    reference: str
+
+
+RUBBERS: dict[str, RubberRange] = {
+    "butyl rubber": RubberRange((900.0, 920.0), (1.0e6, 2.0e6), ASHBY),
+    "natural rubber": RubberRange((920.0, 930.0), (1.5e6, 2.5e6), ASHBY),
+    "neoprene": RubberRange((1230.0, 1250.0), (0.7e6, 2.0e6), ASHBY),
+    "silicone": RubberRange((1300.0, 1800.0), (5.0e6, 20.0e6), ASHBY),
+}
+"""Ranges of rubbers at rest. What relaxes, and how fast, is a matter of the compound: no table has it, a test does."""
 
 _LIBRARY: dict[str, Elastic | Viscoelastic | Piezoelectric] = {
     material.name.lower(): material

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,9 @@ from coaxshell.model.pulses import Sampled
 from coaxshell.model.sources import OFF_THE_PLANE, LineWave, PlaneWave, Source, SphericalWave
 from coaxshell.model.toml_text import parsed
 from coaxshell.numerics.reading import decoded, regular_bytes
+
+_PAIR = re.compile(r"\[\n\s+([-+.\w]+),\n\s+([-+.\w]+),\n\s+\]")
+"""A list of two numbers, such as a modulus and the time in which it relaxes: on one line a person can read it."""
 
 
 def read(path: Path) -> str:
@@ -70,7 +74,7 @@ def dumps(system: SystemParts, beside: Path | None = None) -> str:
         if "samples" in pulse:  # put in afterwards, between marks that spare writer and reader the look at every letter
             mark = f"samples of {pulse['sha256']}"
             packed[mark], pulse["samples"] = pulse["samples"], mark
-    text = tomli_w.dumps(data)
+    text = _PAIR.sub(r"[\1, \2]", tomli_w.dumps(data))
     for mark, samples in packed.items():
         text = text.replace(f'samples = "{mark}"', f"samples = '{samples}'")
     return text

@@ -48,7 +48,7 @@ def each_within(spectra: SolvedSpectra, shell: int, asked: Sequence[Asked], per:
     assert isinstance(wall, ElasticWall)
     assert solid is not None
     loads, blocks = solid.loads[:, shell], node_blocks(grid, modes.max_order)
-    wall.basis(modes)  # made once, before all threads ask for it
+    wall.prepare(modes)
     together = per * max(1, BYTES // (per * loads[0].nbytes))
     for start in range(0, len(asked), together):
         some = [Asked(one.what, one.depth / scales.length) for one in asked[start : start + together]]

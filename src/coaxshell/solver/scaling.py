@@ -24,6 +24,7 @@ from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
 from coaxshell.structure.electrodes import with_plane_stress
 from coaxshell.structure.losses import USUAL_BAND, Band
+from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
@@ -171,7 +172,7 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
     if isinstance(shell, RigidShell):
         return RigidWall(radius=shell.radius / scales.length)
     if shell.theory == "elastic":
-        return _solid(shell, index, scales, system.exterior.density)
+        return _solid(shell, index, scales, system.exterior.density, band)
     gains, faces = _gains(system, index), shell.wetted == "faces"
     thin: type[ThinWall] = ThinWall
     lossy: type[LossyWall] = LossyWall
@@ -184,10 +185,11 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
     return lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces)
 
 
-def _solid(shell: Shell, index: int, scales: Scales, density: float) -> ElasticWall:
+def _solid(shell: Shell, index: int, scales: Scales, density: float, band: Band) -> ElasticWall:
     require_solid(shell, f"shells[{index}]")
-    layers = tuple(layer.in_units(scales.length, scales.pressure, density) for layer in solid_layers(shell))
-    return ElasticWall.of(layers, shell.layers.index(shell.core))
+    layers = tuple(layer.in_units(scales.length, scales.pressure, density) for layer in solid_layers(shell, scales.time, band))
+    kind = ElasticWall if all(layer.factor is None for layer in layers) else LossySolidWall
+    return kind.of(layers, shell.layers.index(shell.core))
 
 
 def _gains(system: System, index: int) -> ControlGains | None:

@@ -19,8 +19,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coaxshell.model.elastic import Elastic
 from coaxshell.model.layers import Shell
 from coaxshell.model.materials import Material
+from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.viscoelastic import Viscoelastic
 from coaxshell.structure.laminate import Laminate, PlaneStiffness, missing_constants, plane_stiffness
 from coaxshell.structure.losses import Band, Prony, Relaxation, constant_q, prony_fit, relaxing_sum
@@ -82,22 +84,32 @@ def _of_material(material: Material, transit_time: float, band: Band) -> list[tu
         whole = PlaneStiffness(math.nan, math.nan, plane_modulus(material), math.nan)
     else:
         whole = plane_stiffness(material)
+    return [(relaxation_of(material, transit_time, band), whole)]
+
+
+def relaxation_of(material: Elastic | Piezoelectric, transit_time: float, band: Band) -> Relaxation | None:
+    """Return the factor g(s) on all moduli of a material with a loss factor, dimensionless; None without one."""
     if material.loss_factor == 0.0:
-        return [(None, whole)]
+        return None
     reference = 2.0 * math.pi * material.reference_frequency * transit_time
     if material.loss_model == "constant-q":
-        return [(constant_q(material.loss_factor, reference, band), whole)]
-    return [(prony_fit(material.loss_factor, reference, band.with_frequency(reference)), whole)]
+        return constant_q(material.loss_factor, reference, band)
+    return prony_fit(material.loss_factor, reference, band.with_frequency(reference))
+
+
+def shear_relaxation(material: Viscoelastic, transit_time: float) -> Prony:
+    """Return the factor g(s) on the shear modulus of a rubber, dimensionless, 1 at rest."""
+    arms = ((modulus / material.long_term_modulus, time / transit_time) for modulus, time in material.prony)
+    strengths, times = zip(*arms, strict=True)
+    return Prony(1.0, strengths, times)
 
 
 def _of_rubber(material: Viscoelastic, transit_time: float) -> list[tuple[Relaxation | None, PlaneStiffness]]:
     """Return G and h of a rubber; their factors are 1 at rest."""
     shear = material.long_term_modulus / (2.0 * (1.0 + material.poisson_ratio))
     bulk = material.long_term_modulus / (3.0 * (1.0 - 2.0 * material.poisson_ratio))
-    moduli, times = np.array(material.prony).T
-    relative, times = moduli / material.long_term_modulus, times / transit_time
-    shear_series = Prony(1.0, tuple(relative.tolist()), tuple(times.tolist()))
-    arms = relaxing_sum(3.0 * bulk, 4.0 * shear, 4.0 * shear * relative, times)
+    shear_series = shear_relaxation(material, transit_time)
+    arms = relaxing_sum(3.0 * bulk, 4.0 * shear, 4.0 * shear * np.array(shear_series.strengths), np.array(shear_series.times))
     plane = 9.0 * bulk * shear / (3.0 * bulk + 4.0 * shear)
     plane_series = Prony(1.0, tuple(6.75 * bulk**2 / plane * x for x in arms.strengths), arms.times)
     return [

@@ -238,6 +238,12 @@ class PotentialOfLayer:
         self.rows: FloatArray = np.linalg.solve(self._root, flat).reshape(charge.shape)
 
     @property
+    def per_row(self) -> FloatArray:
+        """Return Phi at the points of the layer per unit of each row, L'^-1, shape (orders, points, p - 1)."""
+        inverse = np.linalg.inv(np.swapaxes(self._root, 1, 2))
+        return np.pad(inverse, ((0, 0), (1, 1), (0, 0)))
+
+    @property
     def values(self) -> FloatArray:
         """Return Phi at the points of the layer per displacement there, shape (orders, points, displacements, points)."""
         flat = self.rows.reshape(*self.rows.shape[:2], -1)

@@ -13,7 +13,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.lobatto import interpolation
-from coaxshell.structure.elastic_basis import OrdersBasis, displacements
+from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, displacements
 from coaxshell.structure.elastic_mesh import LayerMesh, strains
 from coaxshell.structure.solid import AXIAL, HOOP, HOOP_AXIAL, RADIAL, RADIAL_AXIAL, RADIAL_HOOP
 
@@ -119,3 +119,24 @@ def stress_rows(basis: OrdersBasis, part: LayerMesh, radius: float, at: FloatArr
         e = np.array(part.layer.coupling)[:, component]
         found[:, row] = found[:, row] + e[0] * phi_slope - (e[1] * per_radius + e[2] * basis.wavenumber) * phi
     return found
+
+
+def field_stress(basis: OrdersBasis, number: int, radius: float, what: Shown) -> FloatArray:
+    """Return what the field of a piezoelectric layer adds to a stress per row of its potential, shape (orders, p - 1).
+
+    Parameters
+    ----------
+    basis : OrdersBasis
+    number : int
+        Of the layer, from the inside out.
+    radius : float
+    what : str
+        A stress.
+    """
+    part = basis.mesh.layers[number]
+    at = interpolation(part.degree, min(max(2.0 * (radius - part.layer.inner) / part.layer.thickness - 1.0, -1.0), 1.0))
+    per_row = PotentialOfLayer(part, basis.orders, basis.wavenumber).per_row
+    phi, slope = (np.einsum("q,mqi->mi", row, per_row) for row in (at, at @ part.derivative))
+    e = np.array(part.layer.coupling)[:, STRESSES[what]]
+    along = (e[1] * basis.orders / radius + e[2] * basis.wavenumber)[:, None]
+    return np.asarray(e[0] * slope - along * phi)

@@ -123,11 +123,15 @@ class ElasticWall(ShellModel):
         """
         found, hair = [], 1e-8 * (self.layers[-1].outer - self.layers[0].inner)
         for layer in self.layers:
-            rule = lobatto(max(LEAST_SEARCHED, degree(layer, order, 0.0, self.frequency) - SPARED))
+            rule = lobatto(max(LEAST_SEARCHED, self.degree_of(layer, order) - SPARED))
             depths = layer.inner - self.radius + 0.5 * layer.thickness * (1.0 + rule.points)
             depths[-1] = layer.outer - self.radius - (0.0 if layer is self.layers[-1] else hair)
             found.append(depths)
         return tuple(found)
+
+    def degree_of(self, layer: SolidLayer, order: float) -> int:
+        """Return the degree that resolves the waves of a layer up to an order."""
+        return degree(layer, order, 0.0, self.frequency)
 
     def layer_at(self, depth: float) -> int:
         """Return the number of the layer at a depth; between two layers the outer one is meant, but for the core at its design depth."""
@@ -149,6 +153,10 @@ class ElasticWall(ShellModel):
                 'use inclination = 0, or theory = "thin"',
             )
         return elastic_basis(self.layers, modes, self.frequency)
+
+    def prepare(self, modes: Modes) -> None:
+        """Make what all blocks of nodes share, before all threads ask for it."""
+        self.basis(modes)
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
@@ -198,14 +206,19 @@ class ElasticWall(ShellModel):
             found.append(Port(part.squares, part.faces, np.concatenate([rows, *volts], axis=1)))
         return tuple(found)
 
+    @property
+    def asked_of_port(self) -> list[Asked]:
+        """What :meth:`two_port` shows."""
+        middles = [0.5 * (self.layers[i].inner + self.layers[i].outer) - self.radius for i in self.piezoelectric]
+        motion = [Asked("normal", 0.0), Asked("tangential", 0.0), Asked("hoop", self.design_depth)]
+        return [*motion, *(Asked("potential", middle) for middle in middles)]
+
     @kept_with_modes
     def _of_port(self, modes: Modes) -> list[FloatArray]:
         """Return the weights of all shapes in what :meth:`two_port` gives, (orders, rows, shapes) of each part of the basis."""
-        middles = [0.5 * (self.layers[i].inner + self.layers[i].outer) - self.radius for i in self.piezoelectric]
-        motion = [Asked("normal", 0.0), Asked("tangential", 0.0), Asked("hoop", self.design_depth)]
-        found = self._weights(modes, [*motion, *(Asked("potential", middle) for middle in middles)])
+        found = self._weights(modes, self.asked_of_port)
         for each in found:
-            each[:, 2 * len(motion) :] *= -1.0  # Phi = -cos(pi z'/t) phi: a half cosine has no sign of its own
+            each[:, 6:] *= -1.0  # Phi = -cos(pi z'/t) phi: a half cosine has no sign of its own
         return [np.concatenate([_of_faces(part), each], axis=1) for part, each in zip(self.basis(modes), found, strict=True)]
 
     def _weights(self, modes: Modes, asked: Sequence[Asked]) -> list[FloatArray]:

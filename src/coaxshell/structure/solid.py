@@ -10,15 +10,16 @@ are poled along the radius, with 3 the radius, 2 the hoop and 1 the axis of the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
-from coaxshell.model.materials import Elastic, Piezoelectric
+from coaxshell.model.materials import Elastic, Piezoelectric, Viscoelastic
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.structure.constituents import loses
+from coaxshell.structure.constituents import relaxation_of, shear_relaxation
+from coaxshell.structure.losses import USUAL_BAND, Band, Relaxation
 
 STRAINS = 6
 RADIAL, HOOP, AXIAL, HOOP_AXIAL, RADIAL_AXIAL, RADIAL_HOOP = range(STRAINS)
@@ -50,6 +51,10 @@ class SolidLayer:
     permittivity : tuple of float, or None
         mu of (r, theta, z) at constant strain.
     role : str
+    factor : Relaxation or None
+        g(s) on all of C but never on the potentials; None without losses.
+    shear_alone : bool
+        Whether it is on G alone, and the bulk modulus stays elastic: a rubber.
     """
 
     inner: float
@@ -59,6 +64,8 @@ class SolidLayer:
     coupling: tuple[tuple[float, ...], ...] | None = None
     permittivity: tuple[float, float, float] | None = None
     role: str = "core"
+    factor: Relaxation | None = None
+    shear_alone: bool = False
 
     @property
     def thickness(self) -> float:
@@ -83,6 +90,30 @@ class SolidLayer:
             stiff += self.coupling[0][RADIAL] ** 2 / self.permittivity[0]
         return float(np.sqrt(stiff / self.density))
 
+    @property
+    def isotropic(self) -> bool:
+        """Whether it has no poling."""
+        return self.coupling is None
+
+    @property
+    def shear(self) -> float:
+        """G of an isotropic layer, at rest or where its factor is 1."""
+        return self.stiffness[RADIAL_HOOP][RADIAL_HOOP]
+
+    @property
+    def bulk(self) -> float:
+        """Bulk modulus of an isotropic layer."""
+        return self.stiffness[RADIAL][HOOP] + 2.0 / 3.0 * self.shear
+
+    @property
+    def stiffest(self) -> SolidLayer:
+        """The layer without losses, as stiff as it ever is within the run."""
+        if self.factor is None:
+            return self
+        g = self.factor.stiffest
+        matrix = _of_moduli(self.bulk, g * self.shear) if self.shear_alone else g * self.matrix
+        return replace(self, stiffness=_rows(matrix), factor=None, shear_alone=False)
+
     def in_units(self, length: float, pressure: float, density: float) -> SolidLayer:
         """Return the layer of SI values in units of a length (m), a pressure (Pa), a density (kg/m^3), and volts."""
         charge, field = pressure * length, pressure * length**2
@@ -96,15 +127,24 @@ class SolidLayer:
             if self.permittivity is None
             else (self.permittivity[0] / field, self.permittivity[1] / field, self.permittivity[2] / field),
             self.role,
+            self.factor,
+            self.shear_alone,
         )
 
 
-def isotropic(material: Elastic) -> FloatArray:
-    """Return C of an isotropic material, Pa: lambda + 2 G and lambda of the stretches, G of the shears."""
+def isotropic(material: Elastic | Viscoelastic) -> FloatArray:
+    """Return C of an isotropic material, Pa: lambda + 2 G and lambda of the stretches, G of the shears; of a rubber that at rest."""
     shear = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio))
     lame = 2.0 * shear * material.poisson_ratio / (1.0 - 2.0 * material.poisson_ratio)
     matrix = np.diag([2.0 * shear] * 3 + [shear] * 3)
     matrix[:3, :3] += lame
+    return matrix
+
+
+def _of_moduli(bulk: float, shear: float) -> FloatArray:
+    """Return C of a bulk and a shear modulus."""
+    matrix = np.diag([2.0 * shear] * 3 + [shear] * 3)
+    matrix[:3, :3] += bulk - 2.0 / 3.0 * shear
     return matrix
 
 
@@ -141,8 +181,6 @@ def require_solid(shell: Shell, where: str) -> None:
         if layer.thickness < THINNEST * shell.radius:
             least = f"must be {THINNEST:g} of the radius, {THINNEST * shell.radius:g} m, or more"
             raise InputError(f"{path}.thickness", f"{layer.thickness:g} m is too thin for an elastic solid", least)
-        if loses(material):
-            raise InputError(f"{path}.material", f"{material.name} has losses, which solids do not know yet", 'use theory = "thin"')
         if not isinstance(material, Piezoelectric):
             continue
         missing = [name for name in SOLID_CONSTANTS if getattr(material, name) is None]
@@ -153,17 +191,31 @@ def require_solid(shell: Shell, where: str) -> None:
             raise InputError(f"{path}.material.c11", f"the constants of {material.name} make it unstable", "C must be positive definite")
 
 
-def solid_layers(shell: Shell) -> tuple[SolidLayer, ...]:
-    """Return the layers of a shell as solids, SI, from the inside out; they have passed :func:`require_solid`."""
+def solid_layers(shell: Shell, transit_time: float = 1.0, band: Band = USUAL_BAND) -> tuple[SolidLayer, ...]:
+    """Return the layers of a shell as solids, SI, from the inside out; they have passed :func:`require_solid`.
+
+    Parameters
+    ----------
+    shell : Shell
+    transit_time : float
+        Seconds in a transit, the unit of time of the factors of losses.
+    band : Band
+        Of the run, over which loss factors are fitted.
+    """
     inner, found = shell.inner_radius, []
     for layer in shell.layers:
         outer, material = inner + layer.thickness, layer.material
-        if isinstance(material, Elastic):
-            found.append(SolidLayer(inner, outer, material.density, _rows(isotropic(material)), role=layer.role))
-        elif isinstance(material, Piezoelectric):
+        if isinstance(material, Viscoelastic):
+            rubber = shear_relaxation(material, transit_time)
+            found.append(SolidLayer(inner, outer, material.density, _rows(isotropic(material)), None, None, layer.role, rubber, True))
+        elif isinstance(material, Elastic):
+            factor = relaxation_of(material, transit_time, band)
+            found.append(SolidLayer(inner, outer, material.density, _rows(isotropic(material)), role=layer.role, factor=factor))
+        else:
             stiffness, coupling = poled(material)
             mu = material.permittivity_33, material.permittivity_22, _known(material, "permittivity_11")
-            found.append(SolidLayer(inner, outer, material.density, _rows(stiffness), _rows(coupling), mu, layer.role))
+            factor = relaxation_of(material, transit_time, band)
+            found.append(SolidLayer(inner, outer, material.density, _rows(stiffness), _rows(coupling), mu, layer.role, factor))
         inner = outer
     return tuple(found)
 

@@ -11,7 +11,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.naming import lookup
 from coaxshell.model.system import System
 
-NAMES = ("bare", "absorbers", "active", "hybrid", "iakovlev-evacuated", "iakovlev-filled", "iakovlev-double", "steel-tube")
+NAMES = ("bare", "absorbers", "active", "hybrid", "iakovlev-evacuated", "iakovlev-filled", "iakovlev-double", "steel-tube", "coated")
 
 
 def names() -> tuple[str, ...]:

@@ -1,0 +1,221 @@
+"""Energy of walls of solids with losses, and what turns into heat in them, piece by piece (:mod:`coaxshell.structure.solid_pieces`).
+
+The forces on the faces of a piece give its motion at all nodes. Of layers under one factor these are amplitudes c of shapes, with energies
+as without losses; of a rubber, displacements and strains at points through its thickness, whose squares are integrated by Gauss's rule,
+
+    kinetic rho (u_r'^2 + u_theta'^2)/2,      K e^2/2 of the bulk,      G (eps_r^2 + eps_theta^2 - e^2/3 + gamma^2/2) of the shear,
+
+e = eps_r + eps_theta. An arm g_i of a factor holds g_i times the energy of s tau/(1 + s tau) of the motion, and turns 2/tau of it per time
+into heat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.numerics.late import integrate
+from coaxshell.response.energy.motion import Motion
+from coaxshell.solver.spectral import map_node_blocks, node_blocks
+from coaxshell.structure.elastic_basis import OrdersBasis
+from coaxshell.structure.elastic_mesh import degree
+from coaxshell.structure.losses import Relaxation
+from coaxshell.structure.lossy_solid import LossySolidWall
+from coaxshell.structure.shell_model import WallEnergy
+from coaxshell.structure.solid_pieces import FORCES, Piece, WallReading, electric_rows, lossless_rows, on_faces
+from coaxshell.structure.solid_potentials import Potentials
+
+MOST_POINTS = 32
+"""Points of a rubber's integrals, at most: above the frequencies that they resolve its shear holds next to nothing."""
+
+
+class _Tally(NamedTuple):
+    """Stores at the kept instants, and the power that turns into heat at all of them."""
+
+    kinetic: FloatArray
+    strain: FloatArray
+    electric: FloatArray
+    power: FloatArray
+
+    def plus(self, other: _Tally) -> _Tally:
+        """Return the sum."""
+        return _Tally(*(a + b for a, b in zip(self, other, strict=True)))
+
+    @classmethod
+    def none(cls, motion: Motion) -> Self:
+        """Return nothing."""
+        kept, all_instants = np.zeros(motion.grid.time[motion.kept].size), np.zeros(motion.grid.time.size)
+        return cls(kept, kept, kept, all_instants)
+
+
+def lossy_solid_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArray]:
+    """Return the energies of a wall of solids with losses and the heat in it, at the kept instants."""
+    wall = motion.problem.shells[shell]
+    assert isinstance(wall, LossySolidWall)
+    forces = _forces(motion, wall, shell)
+    total = _Tally.none(motion)
+    for piece, given in zip(wall.pieces, forces, strict=True):
+        total = total.plus((_of_potentials if piece.by_potentials else _of_shapes)(motion, piece, given))
+    heat = integrate.cumulative_simpson(total.power, dx=motion.grid.time_step, initial=0.0)[motion.kept]
+    return WallEnergy(total.kinetic, total.strain, total.electric), np.asarray(heat)
+
+
+def _forces(motion: Motion, wall: LossySolidWall, shell: int) -> ComplexArray:
+    """Return the transforms of the forces on the faces of all pieces, shape (pieces, 4, parities, M + 1, nodes)."""
+    solid, grid, modes = motion.solid, motion.grid, motion.modes
+    assert solid is not None
+    loads = solid.loads[:, shell]
+    found = np.zeros((len(wall.pieces), FORCES, *loads.shape[1:]), np.complex128)
+    reading = WallReading(wall.pieces)
+    reading.prepare(modes)
+
+    def work(block: slice) -> None:
+        chain, _ = reading.at(modes, grid.nodes[block])
+        for piece, both in enumerate(chain.forces):
+            for side, radius in enumerate(wall.wetted):
+                outward = -radius * loads[side, ..., block]
+                for number, per_load in enumerate(both[side]):
+                    found[piece, number, ..., block] += per_load * outward
+
+    with one_blas_thread():
+        map_node_blocks(node_blocks(grid, modes.max_order), work, None, "forces within walls")
+    return found
+
+
+Share = ComplexArray | float
+"""A share of the motion, a number or one for each node."""
+
+
+def _stores(motion: Motion, factor: Relaxation | None, whole: Callable[[Share], FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return the energy that springs under a factor hold, at the kept instants, and the power of its arms.
+
+    Parameters
+    ----------
+    motion : Motion
+    factor : Relaxation or None
+    whole : callable
+        From a share of the motion to what the springs would hold of it where the factor is 1, shape (T,).
+    """
+    if factor is None:
+        return whole(1.0)[motion.kept], np.zeros(motion.grid.time.size)
+    series, s = factor.series, motion.grid.nodes
+    strain, power = np.zeros(motion.grid.time.size), np.zeros(motion.grid.time.size)
+    if series.at_rest:
+        strain += series.at_rest * whole(1.0)
+    for strength, time in zip(series.strengths, series.times, strict=True):
+        held = strength * whole(s * time / (1.0 + s * time))
+        strain += held
+        power += 2.0 / time * held
+    return strain[motion.kept], power
+
+
+def _of_shapes(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally:
+    """Return what a piece holds by the amplitudes of its shapes."""
+
+    def fields(part: OrdersBasis) -> FloatArray:
+        return np.concatenate(electric_rows(part), axis=1) if piece.factor is None else lossless_rows(part)
+
+    tasks = [
+        (part, place, rows, parity)
+        for part in piece.basis(motion.modes)
+        for place, rows in enumerate(fields(part))
+        for parity in range(forces.shape[1])
+    ]
+
+    def of_order(task: tuple[OrdersBasis, int, FloatArray, int]) -> _Tally:
+        part, place, rows, parity = task
+        order = part.members.start + place
+        amplitude = _amplitudes(motion, piece, part, place, rows, forces[:, parity, order])
+        return _of_amplitudes(motion, piece, part.squares[place], rows, amplitude, 0.5 * motion.circle[order])
+
+    total = _Tally.none(motion)
+    with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
+        for one in pool.map(of_order, tasks):
+            total = total.plus(one)
+    return total
+
+
+def _amplitudes(motion: Motion, piece: Piece, part: OrdersBasis, place: int, rows: FloatArray, forces: ComplexArray) -> ComplexArray:
+    """Return the amplitudes of the shapes of one order, shape (shapes, nodes), potentials without losses."""
+    s = motion.grid.nodes
+    g = np.ones_like(s) if piece.factor is None else piece.factor.at(s)
+    per_force = 1.0 / (g * part.squares[place][:, None] + s * s)
+    amplitude = per_force * (on_faces(part)[place].T @ forces)
+    if piece.factor is None or not rows.size:
+        return np.asarray(amplitude)
+    lent = 1.0 - g
+    matrix = np.einsum("in,nk,jn->kij", rows, per_force, rows) * lent[:, None, None] + np.eye(rows.shape[0])
+    shown = np.linalg.solve(matrix, (rows @ amplitude).T[..., None])[..., 0].T
+    return np.asarray(amplitude - per_force * (rows.T @ (lent * shown)))
+
+
+def _of_amplitudes(motion: Motion, piece: Piece, squares: FloatArray, rows: FloatArray, amplitude: ComplexArray, weight: float) -> _Tally:
+    grid = motion.grid
+
+    def strained(share: Share) -> FloatArray:
+        history = grid.invert(amplitude * share)
+        return np.asarray(weight * (squares @ history**2 - np.sum((rows @ history) ** 2, axis=0)))
+
+    strain, power = _stores(motion, piece.factor, strained)
+    rate = grid.invert(amplitude * grid.nodes)[:, motion.kept]
+    potential = rows @ grid.invert(amplitude)[:, motion.kept]
+    return _Tally(weight * np.sum(rate**2, axis=0), strain, weight * np.sum(potential**2, axis=0), power)
+
+
+def _of_potentials(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally:
+    """Return what an isotropic layer holds by its fields at Gauss's points."""
+    (layer,) = piece.layers
+    count = min(MOST_POINTS, degree(layer.stiffest, motion.modes.max_order, 0.0, piece.frequency))
+    points, weights = np.polynomial.legendre.leggauss(count)
+    half, total = layer.thickness / 2.0, _Tally.none(motion)
+    radii = layer.inner + half * (1.0 + points)
+    waves = _waves(motion, piece, forces)
+    for radius, weight in zip(radii, half * weights * radii, strict=True):
+        total = total.plus(_at_radius(motion, piece, waves, float(radius), float(weight)))
+    return total
+
+
+def _waves(motion: Motion, piece: Piece, forces: ComplexArray) -> ComplexArray:
+    """Return the four waves of an isotropic layer under the forces on its faces, of their shape."""
+    found = np.empty_like(forces)
+
+    def work(block: slice) -> None:
+        per_force = Potentials(piece.layers[0], motion.modes, motion.grid.nodes[block]).per_force()
+        found[..., block] = np.einsum("mkwf,fhmk->whmk", per_force, forces[..., block])
+
+    map_node_blocks(node_blocks(motion.grid, motion.modes.max_order), work, None, "waves")
+    return found
+
+
+def _at_radius(motion: Motion, piece: Piece, waves: ComplexArray, radius: float, weight: float) -> _Tally:
+    grid, layer, circle = motion.grid, piece.layers[0], motion.circle
+    field = np.empty((5, *waves.shape[1:]), np.complex128)
+
+    def work(block: slice) -> None:
+        rows = Potentials(layer, motion.modes, grid.nodes[block]).motion(radius)
+        field[..., block] = np.einsum("qwmk,whmk->qhmk", rows, waves[..., block])
+
+    map_node_blocks(node_blocks(grid, motion.modes.max_order), work, None, "waves")
+
+    def squares(histories: FloatArray) -> FloatArray:
+        """Return the sum of squares over the circle, shape (T,)."""
+        return np.asarray(weight * np.einsum("m,hmt,hmt->t", circle, histories, histories))
+
+    def of_bulk(share: Share) -> FloatArray:
+        return 0.5 * layer.bulk * squares(grid.invert(field[2] * share))
+
+    def of_shear(share: Share) -> FloatArray:
+        spread, hoop, angle = (grid.invert(x * share) for x in field[2:])
+        return layer.shear * (squares(spread - hoop) + squares(hoop) - squares(spread) / 3.0 + 0.5 * squares(angle))
+
+    bulk, bulk_power = _stores(motion, None if layer.shear_alone else layer.factor, of_bulk)
+    shear, shear_power = _stores(motion, layer.factor, of_shear)
+    rates = squares(grid.invert(field[0] * grid.nodes)) + squares(grid.invert(field[1] * grid.nodes))
+    kinetic = 0.5 * layer.density * rates[motion.kept]
+    return _Tally(kinetic, bulk + shear, np.zeros_like(bulk), bulk_power + shear_power)

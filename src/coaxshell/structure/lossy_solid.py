@@ -1,0 +1,93 @@
+"""A wall of solid layers of which some have losses: pieces that each answer in closed form, joined face to face.
+
+No node costs a matrix of the wall's points: layers under one factor answer by sums over the shapes they have without losses, rubbers by
+their potentials (:mod:`coaxshell.structure.solid_pieces`), and joints are 2 x 2. A front meets a face with the impedance rho c_L sqrt(g).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.structure.elastic_basis import OrdersBasis
+from coaxshell.structure.elastic_wall import Asked, ElasticWall
+from coaxshell.structure.shell_model import FaceReceptance
+from coaxshell.structure.solid import SolidLayer
+from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, PieceChain, Place, WallReading, pieces
+
+
+@dataclass(frozen=True, kw_only=True)
+class LossySolidWall(ElasticWall):
+    """A wall of solid layers with losses in the plane."""
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Consecutive layers that answer together, from the inside out."""
+        return pieces(self.layers, self.frequency)
+
+    @cached_property
+    def stiffest(self) -> ElasticWall:
+        """The wall without losses, every layer as stiff as it ever is within the run."""
+        return ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
+
+    def degree_of(self, layer: SolidLayer, order: float) -> int:
+        """Return the degree for the waves of a layer that are worth a search: those of soft layers die within it as they become short."""
+        return min(super().degree_of(layer, order), MOST_DEGREE)
+
+    def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
+        """Refuse: its pieces have shapes, some of them."""
+        raise NotImplementedError("a wall with losses has no shapes of its own")
+
+    def prepare(self, modes: Modes) -> None:
+        """Make the shapes of its pieces."""
+        self._port.prepare(modes)
+
+    def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
+        """Return how its faces answer loads on them."""
+        return _receptance(WallReading(self.pieces).at(modes, s)[0])
+
+    def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
+        """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes)."""
+        chain, shown = self._port.at(modes, s)
+        shown[3:] *= -1.0  # potentials, as without losses
+        return _receptance(chain), self._per_load(shown)
+
+    def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
+        """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
+        return self._per_load(self._reading(asked).at(modes, s)[1])
+
+    @cached_property
+    def _port(self) -> WallReading:
+        return self._reading(self.asked_of_port)
+
+    def _reading(self, asked: Sequence[Asked]) -> WallReading:
+        places = (Place(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked)
+        return WallReading(self.pieces, tuple(places))
+
+    def _per_load(self, shown: ComplexArray) -> ComplexArray:
+        """Return what outward forces show as what inward loads do: q at r is a force -r q."""
+        for side, radius in enumerate(self.wetted):
+            shown[:, side] *= -radius
+        return shown
+
+    def highest_frequency(self, modes: Modes) -> FloatArray:
+        """Return that of the wall at its stiffest."""
+        return self.stiffest.highest_frequency(modes)
+
+    def fastest_wave(self, max_wavenumber: float) -> float:
+        """Return that of the wall at its stiffest."""
+        return self.stiffest.fastest_wave(max_wavenumber)
+
+    @property
+    def dissipates(self) -> bool:
+        """True."""
+        return True
+
+
+def _receptance(chain: PieceChain) -> FaceReceptance:
+    return FaceReceptance(*(np.asarray(x, dtype=np.complex128) for x in (chain.inner, chain.across, chain.outer)))
