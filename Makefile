@@ -10,6 +10,11 @@ STAMP_DOCS := $(VENV)/.installed-docs
 DEMO   := demo
 DOCS_CHECKS ?= not slow
 
+# Types are checked while the pages are built, which keeps one core busy.
+ifeq ($(filter types,$(MAKECMDGOALS))$(filter docs,$(MAKECMDGOALS)),typesdocs)
+MAKEFLAGS += -j2 --output-sync=target
+endif
+
 .DELETE_ON_ERROR:
 .PHONY: help demo chromium test test-all mutation lint types bench docs clean
 
@@ -94,7 +99,7 @@ lint: $(STAMP)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check --quiet . || { echo "error: some files are not formatted: $(BIN)/ruff format ." >&2; exit 1; }
 
-types: $(STAMP)
+types: $(STAMP) | $(if $(filter docs,$(MAKECMDGOALS)),$(STAMP_DOCS))
 	@$(BIN)/mypy
 
 bench: $(STAMP)
@@ -112,7 +117,7 @@ docs: $(STAMP_DOCS) chromium
 	@echo "building the pages and running every example: about two minutes where nothing else is done"
 	@$(BIN)/python -m sphinx -W --keep-going -q -b html -d docs/generated/doctrees docs docs/built
 	@echo "checking what came out, in a browser too: about a minute"
-	@$(BIN)/python -m pytest -q -m "$(DOCS_CHECKS)" docs/checks
+	@$(BIN)/python -m pytest -q -n 2 --dist loadfile -m "$(DOCS_CHECKS)" docs/checks
 	@echo "open docs/built/index.html"
 
 clean:

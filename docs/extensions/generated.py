@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future, ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 from cli_pages import command_reference
@@ -10,18 +12,34 @@ from limit_pages import limit_table
 from quantity_pages import quantity_table
 from sphere_pages import sphere_report
 from sphinx.application import Sphinx
+from sphinx.config import Config
 from verification_pages import newest_source, verification_report
+
+_BEGUN: list[Future[None]] = []
+
+
+def begin_reports(app: Sphinx, _config: Config) -> None:
+    """Begin the two reports that take a minute, in a process of their own: the examples are run beside."""
+    folder = _folder(app)
+    pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+    _BEGUN[:] = [pool.submit(verification_report, folder), pool.submit(sphere_report, folder, newest_source())]
+    pool.shutdown(wait=False)
 
 
 def write_pages(app: Sphinx) -> None:
     """Write the pages into docs/generated, where Sphinx finds them."""
-    folder = Path(app.srcdir) / "generated"
-    folder.mkdir(exist_ok=True)
+    folder = _folder(app)
     pages = {"commands": command_reference, "licences": licence_table, "limits": limit_table, "quantities": quantity_table}
     for name, page in pages.items():
         _replace_if_changed(folder / f"{name}.md", page())
-    verification_report(folder)
-    sphere_report(folder, newest_source())
+    for report in _BEGUN:
+        report.result()
+
+
+def _folder(app: Sphinx) -> Path:
+    folder = Path(app.srcdir) / "generated"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 def _replace_if_changed(path: Path, text: str) -> None:
@@ -31,5 +49,6 @@ def _replace_if_changed(path: Path, text: str) -> None:
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write before anything is read."""
+    app.connect("config-inited", begin_reports)
     app.connect("builder-inited", write_pages)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -88,6 +88,22 @@ def pages(app: Sphinx) -> Iterator[tuple[str, dict[str, Any], str]]:
         yield name, {"title": title, "body": f"<h1>{title}</h1>{told}{text}"}, "page.html"
 
 
+def _one_navigation(app: Sphinx, page: str, _template: str, context: dict[str, Any], _doctree: Any) -> None:
+    """Make the navigation once for all pages of source that lie equally deep, where its links are the same."""
+    if not page.startswith(f"{FOLDER}/"):
+        return
+    make = context["toctree"]
+    known = app.env.__dict__.setdefault("source_navigation", {})
+
+    def toctree(**options: Any) -> str:
+        key = (page.count("/"), *sorted(options.items()))
+        if key not in known:
+            known[key] = make(**options)
+        return str(known[key])
+
+    context["toctree"] = toctree
+
+
 def _merge(_: Sphinx, env: BuildEnvironment, __: list[str], other: BuildEnvironment) -> None:
     for page, documents in _mentions(other).items():
         _mentions(env).setdefault(page, set()).update(documents)
@@ -97,5 +113,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """Connect the transform and the pages."""
     app.add_transform(LinkSources)
     app.connect("html-collect-pages", pages)
+    app.connect("html-page-context", _one_navigation, priority=100)  # before the theme asks for it
     app.connect("env-merge-info", _merge)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -37,7 +37,22 @@ def test_snapshots_of_a_saved_run(run, saved):
 
 
 def test_snapshots_of_two_systems_by_name(run, small):
-    outcome = run("snapshots", "bare", "--compare", "hybrid", *small, "--pixels", "32", "--units", "relative", "-o", "two.svg", *FAST)
+    outcome = run(
+        "snapshots",
+        "bare",
+        "--compare",
+        "hybrid",
+        *small,
+        "--times",
+        "0.4,0.8",
+        "--pixels",
+        "32",
+        "--units",
+        "relative",
+        "-o",
+        "two.svg",
+        *FAST,
+    )
     assert outcome.code == 0, outcome.err
     assert outcome.files == ["two.svg"]
 

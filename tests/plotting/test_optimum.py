@@ -15,6 +15,7 @@ def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
         objectives="absorbers.mass",  # of the description alone: nothing is solved
         evaluations=12,
         seed=1,
+        workers=1,
     )
     figure, ax = plt.subplots()
     plot_parallel(found, ax)

@@ -27,10 +27,10 @@ SMALLER = {
     "animate": ["--frames", "2", "--size", "80", "--quiet"],
     "record": ["--force"],
     "export": ["--points", "11", "--quiet"],
-    "response-function": ["--duration", "1", "--time-step", "1e-2"],
+    "response-function": ["--duration", "1", "--time-step", "1e-2", "--modes", "0,1"],
     "verify": ["--quick", "--only", "disc-limit", "--quiet"],
     "verify --template": ["--modes", "8"],
-    "verify --against": ["--modes", "8", "--quiet"],
+    "verify --against": ["--modes", "8", "--time-step", "1e-2", "--quiet"],
 }
 # These wait for a browser or take minutes: that they take the options shown is all that is asked here.
 ONLY_PARSED = {"studio", "reproduce", "sweep", "optimise", "sensitivity"}

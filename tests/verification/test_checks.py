@@ -7,15 +7,24 @@ import pytest
 
 from coaxshell.apps.verification import checks, chosen, run
 from coaxshell.apps.verification.bench import Bench, bare_double_shell, tables
+from coaxshell.apps.verification.rows import Row
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.structure.thin_wall import ThinWall
 
 
+@pytest.fixture(scope="module")
+def bench():
+    """Return one bench for all checks, which share solutions as they do in the suite."""
+    return Bench(quick=True)
+
+
 @pytest.mark.parametrize("name", [one.name for one in checks()])
-def test_quick_check_passes(name):
-    (result,) = run(chosen([name], quick=True), quick=True).results
-    assert not [row.cells for row in result.rows if row.verdict != "pass"]
+def test_quick_check_passes(bench, name):
+    (one,) = chosen([name], quick=True)
+    rows = [found for found in one.work(bench) if isinstance(found, Row)]
+    assert rows
+    assert not [row.cells for row in rows if row.verdict != "pass"]
 
 
 @pytest.mark.slow
@@ -27,8 +36,13 @@ def test_full_suite_passes():
 
 
 def failing(*names):
-    results = run(chosen(list(names), quick=True), quick=True).results
-    return {result.name for result in results if any(row.verdict == "FAIL" for row in result.rows)}
+    """Return the names of those checks that fail, each carried out to its first row that does."""
+    bench = Bench(quick=True)
+
+    def fails(one):
+        return any(isinstance(found, Row) and found.verdict == "FAIL" for found in one.work(bench))
+
+    return {one.name for one in chosen(list(names), quick=True) if fails(one)}
 
 
 def test_a_wrong_fluid_is_seen(monkeypatch):

@@ -12,7 +12,7 @@ import threading
 from urllib.parse import urlsplit
 
 import pytest
-from page_reading import PATIENCE, until
+from page_reading import PATIENCE, until, without_drawing
 from playwright.sync_api import sync_playwright
 
 FLAGS = [
@@ -150,7 +150,7 @@ def open_page(browser, kept_page, server, watched):
     """Give what opens the page as one who comes for the first time and waits for its first answer; the second one has a window apart."""
     opened = []
 
-    def start(address: str | None = None, *, width=1280, height=720, theme="light", wait=True):
+    def start(address: str | None = None, *, width=1280, height=720, theme="light", wait=True, drawing=True):
         address = address or server.address
         if not opened and address.startswith(server.address):
             page = kept_page
@@ -162,6 +162,8 @@ def open_page(browser, kept_page, server, watched):
             page = context.new_page()
         opened.append(page)
         watched.watch(page)
+        if not drawing:
+            without_drawing(page)
         page.goto(address)
         if wait:
             until(page, "window.coaxshell?.state.runs.current && window.coaxshell.state.runs.bare")

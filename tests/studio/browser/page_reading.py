@@ -48,6 +48,11 @@ def open_preset(open_page, server, resolution, preset="absorbers", **options):
     return page
 
 
+def without_drawing(pages) -> None:
+    """Leave plotly out of a page or of a window's pages whose curves nobody looks at: compiling it takes seconds in a new window."""
+    pages.route("**/vendor/plotly.min.js", lambda route: route.fulfill(content_type="text/javascript", body=""))
+
+
 def until(page, expression, argument=None):
     """Wait until an expression of the page is true; asked from outside, because the page's own rules forbid it to evaluate text."""
     end = time.monotonic() + PATIENCE
@@ -94,7 +99,14 @@ def shown_curves(page):
     return [(name, axis, np.array(y, dtype=float), np.array(x, dtype=float)) for name, axis, y, x in found]
 
 
-def violations(page):
-    """Return what axe-core finds wrong with the page, in words."""
-    found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
+AXE = Axe().axe_script
+FOUND = """place => axe.run(place ?? document, {resultTypes: ['violations'], preload: false}).then(({violations}) => violations)"""
+"""Without loading style sheets and films once more, which only rules about films and about turned screens look at."""
+
+
+def violations(page, place=None):
+    """Return what axe-core finds wrong with the page or with a place on it (a selector), in words: half a second for a whole page."""
+    if not page.evaluate("() => Boolean(window.axe)"):
+        page.evaluate(AXE)
+    found = page.evaluate(FOUND, place)
     return [f"{one['id']}: {one['help']} ({', '.join(node['html'][:120] for node in one['nodes'][:3])})" for one in found]

@@ -66,7 +66,7 @@ def test_a_record_is_pasted_opened_cut_and_solved(server, open_page, tmp_path):
     # Its link is short, and holds it as long as the server runs.
     until(page, "location.hash.length > 0 && location.hash.length < 3000")
     page.wait_for_timeout(900)
-    again = open_page(f"{server.address}#{page.url.partition('#')[2]}")
+    again = open_page(f"{server.address}#{page.url.partition('#')[2]}", drawing=False)
     assert system_of(again) == system
 
 

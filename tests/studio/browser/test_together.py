@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from asking import SMALL
 from numpy.testing import assert_allclose
-from page_reading import PATIENCE, open_preset, rest, run_of, solved, system_of, until
+from page_reading import PATIENCE, open_preset, rest, run_of, solved, system_of, until, without_drawing
 
 import coaxshell as cx
 from coaxshell.apps.studio.links import fragment
 
 
 def test_two_tabs_do_not_disturb_each_other(server, open_page):
-    first, second = (open_preset(open_page, server, SMALL, preset="hybrid") for _ in range(2))
+    first, second = (open_preset(open_page, server, SMALL, preset="hybrid", drawing=drawing) for drawing in (True, False))
     second.locator("#preset").select_option(label="absorbers")
     first.locator("#preset").select_option(label="active")
     for page, name in ((first, "active"), (second, "absorbers")):
@@ -29,6 +29,7 @@ def test_two_tabs_do_not_disturb_each_other(server, open_page):
 
 def test_seven_tabs_of_one_browser_are_all_answered_and_share_one_stream(browser, server, watched):
     context = browser.new_context()
+    without_drawing(context)
     context.set_default_timeout(1e3 * PATIENCE)
     held = {"v": 1, "system": cx.presets.load("bare").model_dump(mode="json"), "resolution": {**SMALL, "modes": 6}}
     address = f"{server.address}#{fragment(held)}"
@@ -55,7 +56,7 @@ def test_seven_tabs_of_one_browser_are_all_answered_and_share_one_stream(browser
 def test_the_page_outlives_a_restart_of_the_server(own_server, open_page, watched, free_port):
     watched.forgiven += ["ERR_CONNECTION_REFUSED", "ERR_INCOMPLETE_CHUNKED_ENCODING", "ERR_CONNECTION_RESET", "ERR_EMPTY_RESPONSE"]
     server = own_server(free_port)
-    page = open_preset(open_page, server, SMALL, preset="hybrid")
+    page = open_preset(open_page, server, SMALL, preset="hybrid", drawing=False)
     server.stop()
     page.get_by_text("does not answer").first.wait_for()
     own_server(free_port)
@@ -71,7 +72,7 @@ def test_a_link_holds_the_whole_system(server, page, open_page):
     until(page, "window.coaxshell.state.system.control === null")
     until(page, "location.hash.startsWith('#s=')")
     page.wait_for_timeout(800)  # the address follows half a second behind
-    again = open_page(f"{server.address}#{page.url.partition('#')[2]}")
+    again = open_page(f"{server.address}#{page.url.partition('#')[2]}", drawing=False)
     assert system_of(again) == cx.presets.load("absorbers")
 
 
