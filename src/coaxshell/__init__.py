@@ -55,7 +55,7 @@ if TYPE_CHECKING:
         materials,
         presets,
     )
-    from coaxshell.response import PreparedSystem, Response, load_response, prepare, simulate
+    from coaxshell.response import PreparedSystem, Response, load_response, natural_frequencies, prepare, simulate
     from coaxshell.solver.settings import Settings
     from coaxshell.studies import (
         Choice,
@@ -125,6 +125,7 @@ __all__ = [
     "fluids",
     "load_response",
     "materials",
+    "natural_frequencies",
     "optimise",
     "plotting",
     "prepare",

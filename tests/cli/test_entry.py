@@ -18,7 +18,21 @@ from coaxshell.apps.cli.app import application
 from coaxshell.apps.cli.progress import progress
 
 COMMANDS = (
-    *("run", "presets", "init", "info", "record", "spectrum", "figure", "snapshots", "animate", "export", "verify", "response-function"),
+    *(
+        "run",
+        "presets",
+        "init",
+        "info",
+        "record",
+        "spectrum",
+        "modes",
+        "figure",
+        "snapshots",
+        "animate",
+        "export",
+        "verify",
+        "response-function",
+    ),
     *("sweep", "optimise", "sensitivity", "reproduce", "studio"),
 )
 
@@ -68,7 +82,7 @@ def test_version(run):
 def test_unknown_command(refused):
     message = refused("solve")
     assert "'solve'" in message
-    assert "allowed: run, presets, init, info, record, plot, spectrum, figure" in message
+    assert "allowed: run, presets, init, info, record, plot, spectrum, modes, figure" in message
 
 
 def test_unknown_option(refused):

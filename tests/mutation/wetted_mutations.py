@@ -6,6 +6,22 @@ from mutation import Mutation
 
 WETTED = (
     Mutation(
+        "continued-wavenumber",
+        "numerics/modes.py",
+        "np.sqrt(along - 1j * self.wavenumber) * np.sqrt(along + 1j * self.wavenumber)",
+        "np.sqrt(along**2 + self.wavenumber**2 + 0j)",
+        "kappa left of the imaginary axis: cuts leave its ends to the left",
+        "response/test_natural_frequencies.py",
+    ),
+    Mutation(
+        "continued-ratio",
+        "numerics/bessel_ratios.py",
+        "np.exp(np.abs(za.real) - np.abs(zb.real))",
+        "np.exp(za.real - zb.real)",
+        "I_m(za)/I_m(zb) left of the imaginary axis",
+        "response/test_natural_frequencies.py",
+    ),
+    Mutation(
         "face-leverage",
         "structure/shell_model.py",
         "return inner / self.radius, outer / self.radius",

@@ -22,6 +22,7 @@ SMALLER = {
     "info": [],
     "plot": COARSE,
     "spectrum": COARSE,
+    "modes": ["--order", "2"],
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
     "animate": ["--frames", "2", "--size", "80", "--quiet"],

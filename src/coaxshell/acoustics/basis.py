@@ -23,11 +23,14 @@ class RadialBasis:
     ----------
     modes : Modes
     s : ndarray, shape (nodes,)
-        Laplace variable, Re s > 0.
+        Laplace variable, Re s > 0 unless ``left``.
+    left : bool
+        Whether s may lie on the imaginary axis or, not far, to its left: where systems ring. kappa is continued from the right, past
+        the ends of its branch cuts at s = +-i k/alpha.
     """
 
-    def __init__(self, modes: Modes, s: ComplexArray) -> None:
-        self.modes, self.s = modes, s
+    def __init__(self, modes: Modes, s: ComplexArray, *, left: bool = False) -> None:
+        self.modes, self.s, self._left = modes, s, left
         self._known: dict[tuple[float, float], RadialFunctions] = {}
 
     def __call__(self, slowness: float, radius: float) -> RadialFunctions:
@@ -39,7 +42,7 @@ class RadialBasis:
 
     def passing(self, slowness: float, radius: float) -> RadialFunctions:
         """Return the ratios at a radius that is visited once: they are not kept."""
-        return RadialFunctions(self.modes.kappa(slowness, self.s), radius, self.modes.orders, self.modes.sparse)
+        return RadialFunctions(self.modes.kappa(slowness, self.s), radius, self.modes.orders, self.modes.sparse, self._left)
 
     @property
     def surface(self) -> RadialFunctions:

@@ -24,12 +24,12 @@ _ASYMPTOTIC_LIMIT = 0.75
 _FORGETTING_STEPS = 24
 
 
-def as_complex(z: npt.ArrayLike) -> ComplexArray:
-    """Return arguments as a complex array of one dimension; ValueError if any Re z <= 0."""
+def as_complex(z: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
+    """Return arguments as a complex array of one dimension; ValueError if any Re z <= 0, unless ``left`` allows that."""
     argument = np.atleast_1d(np.asarray(z, dtype=np.complex128))
     if argument.ndim != 1:
         raise ValueError(f"z: an array of shape {argument.shape}; a scalar or one-dimensional array is allowed")
-    if not np.all(argument.real > 0):
+    if not left and not np.all(argument.real > 0):
         raise ValueError("z: the recurrences are stable only for Re z > 0; shift the Laplace contour to the right")
     return argument
 
@@ -56,7 +56,7 @@ def starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
     return ratio
 
 
-def i_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
+def i_ratios(max_order: int, z: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
     """Return R_m = I_{m+1}/I_m for m = 0..max_order.
 
     Parameters
@@ -65,6 +65,8 @@ def i_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
         Highest order M.
     z : array_like, shape (n,)
         Complex arguments with Re z > 0.
+    left : bool
+        Whether they may lie to the left of the imaginary axis too, not far: an error of rounding grows there by exp(2 |Re z|).
 
     Returns
     -------
@@ -73,9 +75,9 @@ def i_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
     Raises
     ------
     ValueError
-        If any Re z <= 0.
+        If any Re z <= 0 and that is not allowed.
     """
-    z = as_complex(z)
+    z = as_complex(z, left=left)
     ratios = np.empty((max_order + 1, z.size), dtype=np.complex128)
     ratios[max_order] = starting_ratio(max_order, z)
     two_over_z = 2.0 / z
@@ -109,26 +111,9 @@ def kve(order: int, z: npt.ArrayLike) -> ComplexArray:
     return value
 
 
-def k_ratios(max_order: int, z: npt.ArrayLike) -> ComplexArray:
-    """Return S_m = K_{m+1}/K_m for m = 0..max_order.
-
-    Parameters
-    ----------
-    max_order : int
-        Highest order M.
-    z : array_like, shape (n,)
-        Complex arguments with Re z > 0.
-
-    Returns
-    -------
-    ndarray, shape (M + 1, n)
-
-    Raises
-    ------
-    ValueError
-        If any Re z <= 0.
-    """
-    z = as_complex(z)
+def k_ratios(max_order: int, z: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
+    """Return S_m = K_{m+1}/K_m for m = 0..max_order; parameters and errors are those of :func:`i_ratios`."""
+    z = as_complex(z, left=left)
     ratios = np.empty((max_order + 1, z.size), dtype=np.complex128)
     ratios[0] = kve(1, z) / kve(0, z)
     two_over_z = 2.0 / z
@@ -152,15 +137,15 @@ def running_product(first: Any, factors: ComplexArray) -> ComplexArray:
     return product
 
 
-def i_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike) -> ComplexArray:
+def i_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
     """Return I_m(za)/I_m(zb) for m = 0..M, with |za| < |zb| on one ray, from the ratios R_m at both arguments."""
-    za, zb = as_complex(za), as_complex(zb)
-    order_zero = ive(0, za) / ive(0, zb) * np.exp(za.real - zb.real)
+    za, zb = as_complex(za, left=left), as_complex(zb, left=left)
+    order_zero = ive(0, za) / ive(0, zb) * np.exp(np.abs(za.real) - np.abs(zb.real))
     return running_product(order_zero, ratios_a / ratios_b)
 
 
-def k_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike) -> ComplexArray:
+def k_across(ratios_a: ComplexArray, ratios_b: ComplexArray, za: npt.ArrayLike, zb: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
     """Return K_m(zb)/K_m(za) for m = 0..M, with |za| < |zb| on one ray, from the ratios S_m at both arguments."""
-    za, zb = as_complex(za), as_complex(zb)
+    za, zb = as_complex(za, left=left), as_complex(zb, left=left)
     order_zero = kve(0, zb) / kve(0, za) * np.exp(za - zb)
     return running_product(order_zero, ratios_b / ratios_a)

@@ -19,19 +19,22 @@ class RadialFunctions:
     Parameters
     ----------
     kappa : ndarray, shape (n,)
-        Radial wavenumbers, Re kappa > 0.
+        Radial wavenumbers, Re kappa > 0 unless ``left``.
     radius : float
         Radius in units of the reference radius.
     orders : ndarray, shape (M,)
         Ascending circumferential orders to be kept, all or a sample; the recurrences run through all of them.
     sparse : bool
         Whether they run by the functions themselves, of which the sample is kept, instead of by ratios of all orders.
+    left : bool
+        Whether arguments may lie to the left of the imaginary axis too, where a response rings (not of a sparse sample).
     """
 
     kappa: ComplexArray
     radius: float
     orders: FloatArray
     sparse: bool = False
+    left: bool = False
 
     @cached_property
     def argument(self) -> ComplexArray:
@@ -50,12 +53,12 @@ class RadialFunctions:
     @cached_property
     def i_ratios(self) -> ComplexArray:
         """I_{m+1}/I_m for all orders 0..max_order, shape (max_order + 1, n)."""
-        return br.i_ratios(self.max_order, self.argument)
+        return br.i_ratios(self.max_order, self.argument, left=self.left)
 
     @cached_property
     def k_ratios(self) -> ComplexArray:
         """K_{m+1}/K_m for all orders 0..max_order, shape (max_order + 1, n)."""
-        return br.k_ratios(self.max_order, self.argument)
+        return br.k_ratios(self.max_order, self.argument, left=self.left)
 
     @cached_property
     def i_sample(self) -> BesselSample:
@@ -93,7 +96,7 @@ def i_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
     za, zb = inner.argument, outer.argument
     if inner.sparse:
         return np.asarray(inner.i_sample.over(outer.i_sample) * np.exp(za.real - zb.real), dtype=np.complex128)
-    return inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, za, zb))
+    return inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, za, zb, left=inner.left))
 
 
 def k_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
@@ -101,4 +104,4 @@ def k_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
     za, zb = inner.argument, outer.argument
     if inner.sparse:
         return np.asarray(outer.k_sample.over(inner.k_sample) * np.exp(za - zb), dtype=np.complex128)
-    return inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, za, zb))
+    return inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, za, zb, left=inner.left))

@@ -14,6 +14,7 @@ from coaxshell.plotting.film_files import FILM_SUFFIXES
 from coaxshell.plotting.frames import FieldView
 from coaxshell.plotting.histories import QUANTITIES, PlottedQuantity, mark_peak, plot_history
 from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
+from coaxshell.plotting.natural_frequencies import figure_natural_frequencies, plot_mode_shape, plot_natural_frequencies
 from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_front, plot_parallel
 from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
@@ -45,6 +46,7 @@ __all__ = [
     "figure_cuts",
     "figure_energy",
     "figure_named_curves",
+    "figure_natural_frequencies",
     "figure_optimum",
     "figure_pressure_rms",
     "figure_sensitivity",
@@ -61,7 +63,9 @@ __all__ = [
     "plot_four_coordinates",
     "plot_front",
     "plot_history",
+    "plot_mode_shape",
     "plot_named_curves",
+    "plot_natural_frequencies",
     "plot_parallel",
     "plot_sensitivity",
     "plot_sweep",

@@ -126,7 +126,7 @@ def _power(exponent: int, unit: str) -> str:
 
 def _write(ax: Axes, factor: float, slope: float, text: str, colour: str) -> None:
     """Write along the line v = factor f^slope: below its end where a rising one leaves at the top, else after the line has entered."""
-    from matplotlib.patheffects import withStroke
+    from matplotlib.patheffects import AbstractPathEffect, withStroke
 
     (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     width, height = np.log(high / low), np.log(top / bottom)
@@ -139,7 +139,7 @@ def _write(ax: Axes, factor: float, slope: float, text: str, colour: str) -> Non
     window = ax.get_window_extent()
     turned = np.degrees(np.arctan2(slope * window.height / height, window.width / width))
     side = "right" if at_end else "left"
-    halo = [withStroke(linewidth=2.0, foreground=ax.get_facecolor())]  # curves pass behind it
+    halo: list[AbstractPathEffect] = [withStroke(linewidth=2.0, foreground=ax.get_facecolor())]  # curves pass behind it
     told = ax.text(f, factor * f**slope, text, color=colour, fontsize=6.5, rotation=turned, rotation_mode="anchor", ha=side, va="bottom")
     told.set_path_effects(halo)
 

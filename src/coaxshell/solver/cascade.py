@@ -67,8 +67,8 @@ class CascadeSystem:
     problem : Problem
     s : ndarray, shape (nodes,)
     modes : Modes
-    like : CascadeSystem, optional
-        One of the same fluids, radii, nodes and modes, whose Bessel ratios are shared.
+    radial : RadialBasis, optional
+        Bessel ratios at these nodes, if known.
     walls : sequence of FaceReceptance, optional
         Their receptances, if known.
 
@@ -84,11 +84,11 @@ class CascadeSystem:
         problem: Problem,
         s: ComplexArray,
         modes: Modes,
-        like: CascadeSystem | None = None,
+        radial: RadialBasis | None = None,
         walls: Sequence[FaceReceptance] | None = None,
     ) -> None:
         self.problem, self.s, self.modes = problem, s, modes
-        self.radial: RadialBasis = RadialBasis(modes, s) if like is None else like.radial
+        self.radial = RadialBasis(modes, s) if radial is None else radial
         self.walls = [wall.receptance(modes, s) for wall in problem.shells] if walls is None else list(walls)
         self._radii = [wall.wetted for wall in problem.shells]
         self._fluids = [self._fluid(i) for i in range(len(problem.fluids))]

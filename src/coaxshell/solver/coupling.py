@@ -76,8 +76,8 @@ class ModalSystem:
     problem : Problem
     s : ndarray, shape (nodes,)
     modes : Modes
-    like : ModalSystem, optional
-        One of the same fluids, radii, nodes and modes, whose Bessel ratios are shared.
+    radial : RadialBasis, optional
+        Bessel ratios at these nodes, if known.
     shared : SharedParts, optional
         Where the added mass of the fluids is found, or left for the next one.
 
@@ -89,10 +89,10 @@ class ModalSystem:
     """
 
     def __init__(
-        self, problem: Problem, s: ComplexArray, modes: Modes, like: ModalSystem | None = None, shared: SharedParts | None = None
+        self, problem: Problem, s: ComplexArray, modes: Modes, radial: RadialBasis | None = None, shared: SharedParts | None = None
     ) -> None:
         self.problem, self.s, self.modes, self._shared = problem, s, modes, shared
-        self.radial: RadialBasis = RadialBasis(modes, s) if like is None else like.radial
+        self.radial = RadialBasis(modes, s) if radial is None else radial
         self.shells = [wall.operator(modes, s) for wall in problem.shells]
         self._assemble()
         self._factor()

@@ -46,7 +46,7 @@ class Potentials:
     layer : SolidLayer
     modes : Modes
     s : ndarray, shape (nodes,)
-        Laplace variable, Re s > 0.
+        Laplace variable.
     """
 
     def __init__(self, layer: SolidLayer, modes: Modes, s: ComplexArray) -> None:
@@ -61,7 +61,7 @@ class Potentials:
         self._ends = [(self._functions(q, layer.inner), self._functions(q, layer.outer)) for q in self._wavenumbers]
 
     def _functions(self, wavenumber: ComplexArray, radius: float) -> RadialFunctions:
-        return RadialFunctions(wavenumber, radius, self.modes.orders, self.modes.sparse)
+        return RadialFunctions(wavenumber, radius, self.modes.orders, self.modes.sparse, left=True)  # natural modes lie there
 
     def _waves(self, radius: float) -> list[_Wave]:
         """Return phi of I and of K and psi of I and of K at a radius."""

@@ -81,11 +81,11 @@ def _root(problem: Problem, reference: Problem, order: float, shift: float) -> f
     def determinant(s: complex) -> complex:
         nodes = np.array([s], np.complex128)
         without = ModalSystem(reference, nodes, only)
-        return complex((ModalSystem(problem, nodes, only, like=without).determinant() / without.determinant())[0, 0])
+        return complex((ModalSystem(problem, nodes, only, radial=without.radial).determinant() / without.determinant())[0, 0])
 
     nodes = np.asarray(shift + 1j * frequencies, dtype=np.complex128)
     without = ModalSystem(reference, nodes, only)
-    size = np.abs(ModalSystem(problem, nodes, only, like=without).determinant() / without.determinant())[0]
+    size = np.abs(ModalSystem(problem, nodes, only, radial=without.radial).determinant() / without.determinant())[0]
     s = complex(nodes[int(size.argmin())])
     for _ in range(_ITERATIONS):
         step = 1e-6 * abs(s)
@@ -119,7 +119,7 @@ def _unstable(problem: Problem, reference: Problem, orders: FloatArray, shift: f
     for start in range(0, frequencies.size - 1, _BLOCK):
         nodes = np.asarray(shift + 1j * frequencies[start : start + _BLOCK + 1], dtype=np.complex128)  # shares a node with the next
         without = ModalSystem(reference, nodes, Modes(orders))
-        ratio = ModalSystem(problem, nodes, Modes(orders), like=without).determinant() / without.determinant()
+        ratio = ModalSystem(problem, nodes, Modes(orders), radial=without.radial).determinant() / without.determinant()
         turned += turning(ratio)
     turned += np.angle(1.0 / ratio[:, -1])
     unstable: np.ndarray = np.rint(-turned / np.pi) > 0
