@@ -12,11 +12,12 @@ from coaxshell.errors import InputError
 from coaxshell.model import presets
 from coaxshell.numerics.modes import Modes
 from coaxshell.response.voltages import demanded_voltage
+from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solve import prepare, solve_prepared
-from coaxshell.solver.stability import fastest_growth, unstable_poles
+from coaxshell.solver.stability import fastest_growth, poles_beyond, unstable_poles
 
 BARE = presets.load("bare")
 PLANE = BARE.replace(source=cx.PlaneShock(peak_pressure=BARE.source.peak_pressure, decay_time=BARE.source.decay_time))
@@ -28,6 +29,12 @@ def electrodes(proportional, derivative, sensor="passive", actuator="self-sensin
     roles = {f"shells[{i}].layers[{j}].role": role for i in (0, 1) for j, role in ((0, sensor), (2, actuator))}
     control = cx.PDControl(proportional=proportional, derivative=derivative, transducers="electrodes", **changes)
     return PLANE.with_overrides({**roles, "control": control})
+
+
+def dry(system: cx.System, radius: float) -> cx.System:
+    """Return the outer shell by itself, of another radius, beside a fluid too light to matter."""
+    light = cx.Fluid(density=1e-6, sound_speed=1400)
+    return system.replace(shells=[system.shells[1].replace(radius=radius)], fluids=["vacuum", light])
 
 
 def collocated(proportional: float, derivative: float, *, membrane: bool = False) -> Problem:
@@ -136,10 +143,7 @@ class TestStability:
     )
     def test_opposite_faces(self, radius, derivative, order, root):
         # A transit of a shell of half the radius is half as long: twice k_d is the same law, half the rate the same growth.
-        wall = electrodes(0.0, derivative, "sensor", "actuator").shells[1].replace(radius=radius)
-        control = cx.PDControl(proportional=0.0, derivative=derivative, transducers="electrodes")
-        system = cx.System(shells=[wall], fluids=["vacuum", cx.Fluid(density=1e-6, sound_speed=1400)], source=PLANE.source, control=control)
-        problem = dimensionless(system)
+        problem = dimensionless(dry(electrodes(0.0, derivative, "sensor", "actuator"), radius))
         found = unstable_poles(problem, order, 20.0)
         assert order in found.orders
         np.testing.assert_array_equal(found.counts[found.orders == order], 2.0)
@@ -164,6 +168,15 @@ class TestStability:
         left = np.linalg.inv(right).T
         assert np.all(values > 0)
         assert (left[1] * right[1])[values.argmax()] < 0
+
+    def test_the_least_feedback_counts_where_a_membrane_resonates(self):
+        # s^2 + omega^2 - c s = 0 grows by c/2 however small c is against omega: here 0.8 against 34.
+        problem = dimensionless(dry(electrodes(0.0, -0.02), 1.0))
+        wall, modes = problem.shells[0], Modes(np.array([12.0]))
+        damping = float((wall.drive(modes).v * wall.sensor_gain(modes).v)[0]) * -0.02 / wall.mass
+        growth = fastest_growth(problem, np.array([12.0]), 0.05)
+        assert growth.frequency == pytest.approx(float(wall.highest_frequency(modes)[0]), rel=0.02)
+        assert growth.rate == pytest.approx(damping / 2, rel=0.05)
 
     def test_one_layer_is_stable_at_any_positive_gain(self):
         assert unstable_poles(dimensionless(electrodes(1e3, 300.0)), 16, 4.0).orders.size == 0
@@ -200,3 +213,25 @@ def test_refused_in_words(changes, words):
         cx.simulate(system, duration=1, time_step=0.02, modes=4, **changes)
     for word in words:
         assert word in str(caught.value)
+
+
+class TestDelay:
+    def test_weak_feedback_stands_a_quarter_of_a_period(self):
+        # s^2 + c s e^{-s tau} + omega^2 = 0 grows where cos(omega tau) < 0, for small c: tau = pi/(2 omega) of the membrane.
+        problem = dimensionless(dry(electrodes(0.0, 0.02), 1.0))
+        omega = float(problem.shells[0].highest_frequency(Modes(np.array([12.0])))[0])
+        margin = delay_margin(problem, 12, 400.0)
+        assert margin.order == 12
+        assert margin.delay / problem.scales.time == pytest.approx(0.5 * np.pi / omega, rel=0.2)
+
+    def test_two_microseconds_make_nearly_all_orders_grow(self):
+        problem = dimensionless(electrodes(0.0, 10.0))
+        late = 2e-6 / problem.scales.time
+        walls = tuple(wall.with_gains(replace(wall.gains, delay=late)) for wall in problem.shells)
+        assert poles_beyond(replace(problem, shells=walls), Modes.up_to(100), 0.25).orders.size >= 92
+
+    def test_told_with_both_numbers(self):
+        (told,) = [text for text in cx.simulate(electrodes(0, 2), duration=1, time_step=0.02, modes=6).warnings if "ideal" in text]
+        assert told.startswith("control: the loop is ideal, without delay: ")
+        assert "order 6 grow, and electronics take about 10.00 µs; read the run as the limit" in told
+        assert delay_margin(dimensionless(electrodes(0, 0)), 6, 1.0) is None

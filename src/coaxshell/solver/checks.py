@@ -19,6 +19,7 @@ from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver import wetted_surfaces
+from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import InterfacePoints
 from coaxshell.solver.interface.saturation import voltage_limit
@@ -40,6 +41,8 @@ UNRESOLVED_LIMIT = 0.05
 """Share of a record's energy that may lie above what a run resolves; a sharp front with a decay of 0.13 ms has 0.02 at the defaults."""
 SLICE_LIMIT = 0.05
 """Estimated error of the stress from which a slice through a spherical front is told to be one."""
+USUAL_DELAY = 1e-5
+"""Delay of a fast digital loop, s: one period of sampling at 100 kHz."""
 RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
@@ -147,6 +150,21 @@ def actuators(solution: ModalSolution) -> list[str]:
             remedy = "set control.saturation = true to see what it can really do, or lower the gains" if paper else "lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
+
+
+def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
+    """Return the warning that feedback by electrodes is computed without any delay, with that which it would stand."""
+    control = problem.system.control
+    if control is None or control.transducers != "electrodes":
+        return []
+    assert isinstance(settings.modes, int)
+    margin = delay_margin(problem, settings.modes, settings.duration)
+    if margin is None or margin.delay > USUAL_DELAY:
+        return []
+    return [
+        f"control: the loop is ideal, without delay: {engineering(margin.delay, 's')} of it would make order {margin.order} grow, and "
+        f"electronics take about {engineering(USUAL_DELAY, 's')}; read the run as the limit of what feedback can do, or lower the gains"
+    ]
 
 
 def _stretch(force: float, linear: float, cubic: float) -> float:

@@ -47,4 +47,4 @@ def _judgement(solution: ModalSolution, solved: SolvedSpectra, asked_for: Settin
     warnings += tolerance_missed(asked_for, order, errors, saturating=control is not None and control.saturation)
     warnings += checks.after(problem, errors, settings) + checks.tension(problem, tensions(problem, solved.grid, *solved.face_motion))
     stopwatch.lap("pressure on the walls")
-    return Judgement(errors, (*warnings, *checks.actuators(solution)))
+    return Judgement(errors, (*warnings, *checks.actuators(solution), *checks.ideal_loop(problem, settings)))

@@ -125,6 +125,9 @@ def _contour(problem: Problem, modes: Modes, least: float) -> ComplexArray:
     shift = max(least, dense / (_SPACING * _MAX_NODES))
     even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)
     beyond = np.geomspace(even[-1], max(fades, 1.02 * even[-1]), 200)
+    delay = max((wall.gains.delay for wall in problem.shells if wall.gains is not None), default=0.0)
+    if delay > 0.0:  # it turns the feedback once in 2 pi/delay
+        beyond = np.union1d(beyond, np.arange(even[-1], beyond[-1], _SPACING / delay))
     return np.asarray(shift + 1j * np.concatenate([even, beyond[1:]]), dtype=np.complex128)
 
 
@@ -132,10 +135,10 @@ def unstable_poles(
     problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0
 ) -> UnstablePoles:
     """Return the orders whose response, at an axial wavenumber, would grow by more than a factor e within the duration."""
-    return _poles_beyond(problem, Modes.up_to(max_order, wavenumber), 1.0 / duration, shared)
+    return poles_beyond(problem, Modes.up_to(max_order, wavenumber), 1.0 / duration, shared)
 
 
-def _poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedParts | None = None) -> UnstablePoles:
+def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedParts | None = None) -> UnstablePoles:
     """Return the orders with poles that grow by more than a rate per transit."""
     contour = _contour(problem, modes, least)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
@@ -171,11 +174,11 @@ def fastest_growth(problem: Problem, orders: FloatArray, least: float, wavenumbe
     The rate is bisected roughly; Newton's method, from where on the contour beside it it has the shortest way, finds the pole itself.
     """
     low, high = least, 4.0 * least
-    while (beyond := _poles_beyond(problem, Modes(orders, wavenumber), high).orders).size:
+    while (beyond := poles_beyond(problem, Modes(orders, wavenumber), high).orders).size:
         low, high, orders = high, 4.0 * high, beyond
     while high > _ROUGHLY * low:
         middle = float(np.sqrt(low * high))
-        beyond = _poles_beyond(problem, Modes(orders, wavenumber), middle).orders
+        beyond = poles_beyond(problem, Modes(orders, wavenumber), middle).orders
         low, high = (middle, high) if beyond.size else (low, middle)
         orders = beyond if beyond.size else orders
     poles = {int(order): _pole(problem, Modes(np.array([order]), wavenumber), low) for order in orders}

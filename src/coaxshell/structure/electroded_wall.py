@@ -94,9 +94,13 @@ class ElectrodedWall(ThinWall):
         return abs(self.gains.derivative) * size, np.sqrt(abs(self.gains.proportional) * size)
 
     def feedback_frequency(self, modes: Modes) -> float:
-        """Return a frequency above which feedback is less than half of its inertia; 0 without feedback."""
+        """Return a frequency above which feedback is less than half of its inertia, and no order resonates; 0 without feedback.
+
+        Where an order resonates the least feedback counts: traction moves the membrane, which hardly radiates.
+        """
         damping, stiffening = self.feedback_rates(modes)
-        return float(2.0 * damping.max() + 2.0 * stiffening.max())
+        fades = float(2.0 * damping.max() + 2.0 * stiffening.max())
+        return max(fades, 1.2 * float(self.highest_frequency(modes).max())) if fades > 0.0 else 0.0
 
     def fastest_rate(self, modes: Modes) -> FloatArray:
         """Return the highest frequency of each order, or how fast derivative feedback damps it, if that is more."""

@@ -33,18 +33,20 @@ Ratio = TypeVar("Ratio", FloatArray, ComplexArray)
 
 @dataclass(frozen=True)
 class ControlGains:
-    """PD feedback of one wall: u = proportional * phi_s + derivative * dphi_s/dt, t dimensionless (Eq. 17)."""
+    """PD feedback of one wall: u = proportional * phi_s + derivative * dphi_s/dt, t dimensionless (Eq. 17); by a *delay* later."""
 
     proportional: float
     derivative: float
+    delay: float = 0.0
 
     def at(self, s: ComplexArray) -> ComplexArray:
         """Return u per phi_s, k_p + k_d s."""
-        return self.proportional + self.derivative * s
+        at_once = self.proportional + self.derivative * s
+        return at_once * np.exp(-self.delay * s) if self.delay else at_once
 
     def scaled(self, proportional: float, derivative: float) -> ControlGains:
         """Return the gains times a factor each."""
-        return ControlGains(proportional * self.proportional, derivative * self.derivative)
+        return ControlGains(proportional * self.proportional, derivative * self.derivative, self.delay)
 
 
 def _column(entry: FloatArray) -> FloatArray:

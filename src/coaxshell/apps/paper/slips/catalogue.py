@@ -57,6 +57,15 @@ _ALL = (
         "five transits of damped motion.",
     ),
     Slip(
+        "missing-traction",
+        "Eqs. 4, 13, 19",
+        "the actuator as a normal pressure -(e32/R) u on W alone",
+        "the traction (1/R) dN/dtheta and the moment N z_a of its hoop force N = -e32 u too",
+        "possible",
+        "No piezoelectric layer can exert the pressure alone, and all printed curves of control are drawn with it. With all of it "
+        "the paper's gains multiply the stress by five and more: its law is not one that its actuators can carry out.",
+    ),
+    Slip(
         "doubled-curvature",
         "Eqs. A.11, 5, 14, 20",
         "1/(R + z)^2 within the integral for zeta22, and 1/R^2 once more where zeta22 is used",
