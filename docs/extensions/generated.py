@@ -1,4 +1,4 @@
-"""Pages that the package writes itself at every build: conformance report, commands, licences, limits, quantities, slice or sphere."""
+"""Pages that the package writes itself at every build: conformance report, commands, licences, limits, quantities, two reports."""
 
 from __future__ import annotations
 
@@ -13,16 +13,20 @@ from quantity_pages import quantity_table
 from sphere_pages import sphere_report
 from sphinx.application import Sphinx
 from sphinx.config import Config
+from thickness_pages import thickness_report
 from verification_pages import newest_source, verification_report
 
 _BEGUN: list[Future[None]] = []
 
 
 def begin_reports(app: Sphinx, _config: Config) -> None:
-    """Begin the two reports that take a minute, in a process of their own: the examples are run beside."""
+    """Begin the three reports that take a minute, in a process of their own: the examples are run beside."""
     folder = _folder(app)
     pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
-    _BEGUN[:] = [pool.submit(verification_report, folder), pool.submit(sphere_report, folder, newest_source())]
+    _BEGUN[:] = [
+        pool.submit(verification_report, folder),
+        *(pool.submit(one, folder, newest_source()) for one in (sphere_report, thickness_report)),
+    ]
     pool.shutdown(wait=False)
 
 

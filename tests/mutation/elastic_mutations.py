@@ -78,6 +78,22 @@ ELASTIC = (
         "response/test_solid_wall_stress.py",
     ),
     Mutation(
+        "thin-walls-by-source",
+        "solver/thin_error.py",
+        "lasts = duration - source.delay",
+        "lasts = duration + source.delay",
+        "thin walls err as long as a source lasts within the run",
+        "solver/test_thin_error.py",
+    ),
+    Mutation(
+        "thin-walls-dry",
+        "solver/thin_error.py",
+        'return "dry" if dry else "outer"',
+        'return "outer" if dry else "dry"',
+        "which part of the map a wall is like",
+        "solver/test_thin_error.py",
+    ),
+    Mutation(
         "solid-reach",
         "response/depth_stress.py",
         "squares = solid_von_mises(**parts) ** 2",

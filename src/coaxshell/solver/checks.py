@@ -29,6 +29,7 @@ from coaxshell.solver.slice_error import slice_error
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.tension import AMBIENT, Tension
+from coaxshell.solver.thin_error import thin_errors
 
 TRUNCATION_LIMIT = 1e-2
 STEP_LIMIT = 1e-3
@@ -39,10 +40,14 @@ CUT_LIMIT = 0.1
 """Share of a pulse's peak that may come after the run."""
 UNRESOLVED_LIMIT = 0.05
 """Share of a record's energy that may lie above what a run resolves; a sharp front with a decay of 0.13 ms has 0.02 at the defaults."""
+THIN_LIMIT = 0.05
+"""Estimated error of the hoop stress from which thin walls are told to be thin."""
 SLICE_LIMIT = 0.05
 """Estimated error of the stress from which a slice through a spherical front is told to be one."""
 USUAL_DELAY = 1e-5
 """Delay of a fast digital loop, s: one period of sampling at 100 kHz."""
+FACES_HELP = 0.8
+"""Share of the error below which wetted faces are worth naming."""
 RESOLVED_ANGLE = 0.5
 """Radians a step up to which the trapezoidal rule is good to about 2 per cent of an oscillation's phase."""
 
@@ -57,6 +62,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         + _linear_acoustics(problem)
         + _similitude(problem)
         + slice_of_sphere(problem, float(grid.time[-1]))
+        + thin_walls(problem, float(grid.time[-1]))
         + _unresolved_records(problem, grid, max_order)
         + remarks(problem.system)
     )
@@ -230,6 +236,27 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"
     ]
+
+
+def thin_walls(problem: Problem, duration: float) -> list[str]:
+    """Return a warning for each thin wall that is far from an exact one in a run of *duration* transits."""
+    system, found = problem.system, []
+    for error in thin_errors(problem, duration):
+        if error.value <= THIN_LIMIT:
+            continue
+        about, low, high, faces, limit = (
+            f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, error.at_faces, THIN_LIMIT)
+        )
+        remedies = [f'wetted = "faces" (about {faces} %)'] if error.at_faces < FACES_HELP * error.value else []
+        plain = system.control is None and not system.absorber_list
+        remedies.append('theory = "elastic"' + ("" if plain else ", which knows neither absorbers nor feedback, to see by how much"))
+        where = "faces" if error.wetted == "faces" else "mid-surface"
+        found.append(
+            f"{shell_phrase(error.shell, len(problem.shells))}: thin-wall theory with fluids at its {where} leaves its hoop stress about "
+            f"{about} % from an exact wall's (relative RMS; {low} to {high} % as systems differ), more than {limit} %; "
+            f"use {' or '.join(remedies)}"
+        )
+    return found
 
 
 def _above(value: float) -> str:

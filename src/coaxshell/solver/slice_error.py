@@ -71,7 +71,7 @@ class SliceMap:
         """
         values = np.log(self.error)
         for axis, asked in zip((self.distance, self.decay, self.duration), (distance, decay, duration), strict=True):
-            values = _between(np.log(axis), values, float(np.log(np.clip(asked, axis[0], axis[-1]))))
+            values = between(np.log(axis), values, float(np.log(np.clip(asked, axis[0], axis[-1]))))
         beyond = min(1.0, self.distance[-1] / distance) * min(1.0, duration / self.duration[0])
         return float(np.exp(values) * beyond)
 
@@ -81,7 +81,7 @@ class SliceMap:
         return low, high
 
 
-def _between(axis: FloatArray, values: FloatArray, asked: float) -> FloatArray:
+def between(axis: FloatArray, values: FloatArray, asked: float) -> FloatArray:
     """Return what lies between the values at the nodes of their first axis, linearly."""
     after = int(np.clip(np.searchsorted(axis, asked), 1, axis.size - 1))
     share = (asked - axis[after - 1]) / (axis[after] - axis[after - 1])

@@ -1,0 +1,58 @@
+"""The report "thin or exact walls?": the paper's bare shells of three thicknesses, thin and as elastic solids."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coaxshell.apps.paper.thickness.report import power_law, report
+from coaxshell.solver.settings import Settings
+from coaxshell.solver.thin_error import thin_map
+
+KNOWN = {
+    "12 mm": ((11, 16), (6, 7), (11, 12)),
+    "24 mm": ((14, 24), (6, 8), (11, 14)),
+    "48 mm": ((18, 48), (8, 14), (12, 17)),
+}
+"""Differences of the hoop stress from exact walls' (%), by an independent program: of all points wetted at mid-surfaces; at faces, of the
+inner and of the outer shell."""
+
+
+@pytest.fixture(scope="module")
+def small():
+    return report(Settings(duration=3.0, time_step=5e-3, modes=40))
+
+
+def test_thin_walls_differ_as_an_independent_program_found(small):
+    assert tuple(small.found) == tuple(KNOWN)
+    for one, (middle, inner, outer) in zip(small.found.values(), KNOWN.values(), strict=True):
+        assert one.points == ("inner head", "inner tail", "outer head", "outer tail")
+        faces = 100 * one.difference("faces")
+        for found, (low, high) in ((100 * one.difference("mid-surface"), middle), (faces[:2], inner), (faces[2:], outer)):
+            assert low - 1.0 < found.min() < found.max() < high + 1.0
+    peaks = small.found["12 mm"].peak_ratio("mid-surface")
+    np.testing.assert_allclose(peaks, 1.0, atol=0.025)
+
+
+def test_the_report_holds_every_number_and_picture(small):
+    text = small.markdown()
+    for thickness, one in small.found.items():
+        shown = " | ".join(f"{value:.1%}" for value in one.difference("faces"))
+        assert f"| {thickness} | faces | {shown} |" in text
+    for name, figure in small.figures().items():
+        assert f"({name}.png)" in text
+        assert figure.axes
+
+
+def test_power_laws_hold_their_part_of_the_map():
+    law = power_law(thin_map(), "dry", "mid-surface")
+    at = law.scale * 0.096**law.thickness * 0.2**law.decay * 4.0**law.duration
+    assert thin_map().estimate("dry", "mid-surface", 0.096, 0.2, 4.0) == pytest.approx(at, rel=law.within - 1.0)
+    assert 1.0 < law.within < 2.5
+    assert 0.8 < law.thickness < 1.0
+
+
+def test_points_that_nothing_has_reached_have_no_difference(small):
+    early = small.found["12 mm"].up_to(0.3)
+    assert np.isnan(early.difference("faces")[1])
+    assert np.isfinite(early.difference("faces")[2])
