@@ -16,7 +16,9 @@ from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.line_march import block_steps
 from coaxshell.solver.axial.lines import LineLayout, line_layout
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
+from coaxshell.solver.orders_left_out import COUPLED_POINTS
 from coaxshell.solver.run_size import COMPLEX, REAL, Size
+from coaxshell.solver.sampled_orders import NODES
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solid_spectra import band
@@ -32,6 +34,10 @@ _SIDE_BY_SIDE = 1000
 _NANOSECONDS = 1e-9
 _PER_SHAPE, _PER_TERM = 40e-9, 10e-9
 """Seconds of the shapes of a wave, per their number to the power 2.5, and of what each adds at a node."""
+_WAVE = 5e-3
+"""Seconds that a wavenumber takes at a few orders and nodes, each time that it is solved."""
+_STEP = 2e-3
+"""Seconds of a step of the march of a single absorber along the axis, by Newton's method."""
 
 
 def sampling_of(system: System, settings: Settings, highest_order: int) -> AxialSampling:
@@ -60,7 +66,11 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
         + solids.memory
         + kept
         + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
-        lines.seconds + solids.seconds + 0.1 + turns * pairs * (0.3e-6 * size.shells + 2e-9 * fields * stations * amplitudes),
+        lines.seconds
+        + solids.seconds
+        + 0.1
+        + _WAVE * len(sampling.modes)
+        + turns * pairs * (0.3e-6 * size.shells + 2e-9 * fields * stations * amplitudes),
     )
 
 
@@ -83,11 +93,13 @@ def _lines_cost(layout: LineLayout, size: Size, pairs: float) -> Cost:
     along = waves * points * axial
     spectra, histories = COMPLEX * along * size.nodes, REAL * along * size.instants
     one_wave = WORKERS * size.shells**2 * 6.0 * size.plane
-    solving = pairs * 0.3e-6 * size.shells * 1.5
+    solving = pairs * 0.3e-6 * size.shells * 1.5 + _WAVE * waves
+    exact = waves * size.nodes * (4.0 * points**2 * (layout.classes.count + points)) * _NANOSECONDS
+    together = exact if points <= COUPLED_POINTS else 0.0
+    softness = 1.6 * _WAVE * waves + 2.0 * (solving + together) / NODES.step
     if not size.nonlinear:
         systems = WORKERS * 6.0 * COMPLEX * size.nodes * points**2
-        exact = waves * size.nodes * (4.0 * points**2 * (layout.classes.count + points)) * _NANOSECONDS
-        return Cost(3.0 * spectra + 2.5 * histories + one_wave + systems, solving + exact)
+        return Cost(3.0 * spectra + 2.5 * histories + one_wave + systems, solving + exact + softness)
     channels = waves * layout.classes.count
     kernels = REAL * size.shells**2 * channels * size.instants
     parities = layout.absorbers.parities * axial
@@ -95,5 +107,8 @@ def _lines_cost(layout: LineLayout, size: Size, pairs: float) -> Cost:
     steps = block_steps(layout.absorbers.count)
     matrices = 2.5 * REAL * waves * (steps * points) ** 2
     past_seconds = 25.0 * size.shells**2 * channels * parities * math.log2(size.instants + 2)
-    march = size.instants * (past_seconds + 60.0 * waves * axial * points**2) * _NANOSECONDS
-    return Cost(5.0 * kernels + past + matrices + 6.0 * histories + 2.5 * spectra + one_wave, solving + 1.4 * march)
+    products = waves * axial * (60.0 * points**2 + 150.0 * points)
+    march = size.instants * (_STEP + (past_seconds + products) * _NANOSECONDS)
+    planned = 1e-4 * waves * steps  # answers of a block at every wavenumber, for the run and for the error of its step
+    seconds = solving + 1.4 * march + 2.0 * planned + softness
+    return Cost(5.0 * kernels + past + matrices + 6.0 * histories + 2.5 * spectra + one_wave, seconds)

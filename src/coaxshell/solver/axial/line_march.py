@@ -131,9 +131,9 @@ def block_steps(count: int) -> int:
 
 
 def _plan(layout: LineLayout, motion: LineMotion) -> _Plan:
-    absorbers, waves = layout.absorbers, len(layout.sampling.modes)
+    absorbers = layout.absorbers
     length = min(block_steps(absorbers.count), motion.steps)
-    kernels = np.stack([[layout.points.immediate(motion.weights[:, :, j, :, lag]) for lag in range(length)] for j in range(waves)])
+    kernels = layout.points.immediate(np.moveaxis(motion.weights[..., :length], -1, 3))
     own = np.diagonal(kernels[:, 0], axis1=1, axis2=2).max(axis=0)
     links = LinkConstants.of(absorbers, own, motion.time_step)
     nothing = np.zeros((length, 2 * absorbers.count, 0))

@@ -210,15 +210,15 @@ class InterfacePoints:
         return found
 
     def immediate(self, present: FloatArray) -> FloatArray:
-        """Return the velocities at the points per force there within the same step, shape (points, points).
+        """Return the velocities at the points per force there within the same step, shape (..., points, points).
 
-        ``present`` holds the kernels' weights at lag 0, shape (shells, shells, M + 1).
+        ``present`` holds the kernels' weights at lag 0, shape (shells, shells, ..., M + 1): of one problem or of many.
         """
-        matrix = np.zeros((self.count, self.count))
+        matrix = np.zeros((*present.shape[2:-1], self.count, self.count))
         for i, rows in self._groups:
             for j, columns in self._groups:
                 shapes = zip(self._evaluate[i], self._project[j], strict=True)
-                matrix[np.ix_(rows, columns)] = sum((e * present[i, j]) @ p.T for e, p in shapes)
+                matrix[..., rows[:, None], columns] = sum((e * present[i, j][..., None, :]) @ p.T for e, p in shapes)
         return matrix
 
     def receptance(self, compliance: ComplexArray) -> ComplexArray:
