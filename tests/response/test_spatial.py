@@ -124,8 +124,17 @@ def test_auto_chooses_orders_and_wavenumbers() -> None:
     assert float(found.errors().sel(quantity="stress", cause="combined").max()) < 0.2
 
 
+def test_voltages_above_the_limit_are_told() -> None:
+    strong = cx.presets.load("active").with_overrides({"control.proportional": -2e10})
+    run = cx.simulate(strong, duration=1.0, time_step=2e-2, modes=6, dimensions=3, stations=[0.3, 0.0])
+    (told,) = run.warnings
+    asked = float(told.partition("asks for ")[2].partition(" kV")[0])
+    assert asked == pytest.approx(float(abs(run.actuator_voltage("outer", [0.0], segment=None)).max()) / 1e3, rel=1e-3)
+    assert "lower the gains; control.saturation = true shows in two dimensions" in told
+
+
 def test_saturation_is_refused() -> None:
-    with pytest.raises(InputError, match="saturation"):
+    with pytest.raises(InputError, match=r"control\.saturation: voltages are cut .* a warning tells"):
         cx.simulate(cx.presets.load("hybrid").replace_path("control.saturation", True), duration=1.0, time_step=2e-2, modes=8, dimensions=3)
 
 

@@ -217,7 +217,14 @@ def test_pressure_on_a_cut_knows_them():
 @pytest.mark.parametrize(
     ("make", "match"),
     [
-        (lambda: run([cx.Absorber(mass=1), cx.PointAbsorber(z=0, mass=1)]), "absorbers: line absorbers and point absorbers"),
+        (
+            lambda: run([cx.Absorber(mass=1), cx.PointAbsorber(z=0, mass=1)]),
+            "absorbers: line absorbers and point absorbers.*a row of them, at most 0.52 m apart",
+        ),
+        (
+            lambda: run([cx.Absorber(mass=1, linear_stiffness=1, cubic_stiffness=1), cx.PointAbsorber(z=0, mass=1)], modes="auto"),
+            "closer than half the shortest axial wave",
+        ),
         (
             lambda: run(
                 cx.absorber_ring(4, **LINKS), BARE.replace(source=cx.PlaneShock(peak_pressure=1e4, decay_time=1e-4, inclination=30))

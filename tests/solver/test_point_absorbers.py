@@ -9,6 +9,8 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial import solve as axial_solve
+from coaxshell.solver.axial.blocks import node_blocks, on_threads
+from coaxshell.solver.axial.linked import point_structure
 from coaxshell.solver.axial.points import pair_classes, point_layout, point_sums
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import dimensionless
@@ -74,6 +76,19 @@ def test_a_row_of_points_closer_than_any_wave_is_a_line(monkeypatch):
         errors.append(off(row.stress("inner", station=spacing / 2), line.stress("inner")))
     assert errors[-1] < 1e-12  # the first wavenumber but 0 lies above the highest
     assert errors[0] > errors[-1]
+
+
+def test_points_off_the_plane_answer_each_other():
+    # reciprocity: inner against outer wall, at other angles and stations, orders and wavenumbers added up
+    places = [cx.PointAbsorber(angle=angle, z=z, mass=1.0, footprint=0.1) for angle, z in ((0, 0.0), (80, 0.37), (200, -0.6))]
+    problem, grid = (
+        dimensionless(BARE.with_overrides({"source.angle": 30.0, "source.z": 0.2}).replace(absorbers=places), 3),
+        LaplaceGrid(0.05, 40),
+    )
+    structure = point_structure(problem, grid, AxialSampling(9.0, 8, 8.0), point_layout(problem), node_blocks(grid), on_threads)
+    assert structure.receptance.shape[:2] == (6, 6)
+    asymmetry = abs(structure.receptance - structure.receptance.swapaxes(0, 1))
+    assert asymmetry.max() < 1e-13 * abs(structure.receptance).max()
 
 
 def test_what_is_read_of_them():

@@ -128,21 +128,23 @@ def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
     ]
 
 
-def actuators(solution: ModalSolution) -> list[str]:
+def actuators(*motions: ModalSolution) -> list[str]:
     """Return the warnings about actuators asked for more than their field limit, with the factor.
 
-    The voltage is the mean over a segment (:mod:`coaxshell.solver.electrodes`), which converges with the orders.
+    The voltage is the mean over a segment (:mod:`coaxshell.solver.electrodes`), which converges with the orders; the largest of all
+    stations in three dimensions.
     """
-    warnings = []
-    for i, shell in enumerate(solution.problem.shells):
-        if shell.gains is None or solution.normal_rate is None or solution.tangential_rate is None:
+    warnings, problem = [], motions[0].problem
+    for i, shell in enumerate(problem.shells):
+        control = problem.system.control
+        if control is None or shell.gains is None:
             continue
-        limit = voltage_limit(solution.problem, i)
-        asked = largest_demand(solution, i, limit)
-        control = solution.problem.system.control
-        if control is None or asked is None:
+        limit = voltage_limit(problem, i)
+        found = [one for one in (largest_demand(motion, i, limit) for motion in motions) if one is not None]
+        if not found:
             continue
-        label = shell_phrase(i, len(solution.problem.shells))
+        asked = max(found, key=lambda one: one.value)
+        label = shell_phrase(i, len(problem.shells))
         fewer = abs(asked.lower_half / asked.value - 1.0) > VOLTAGE_LIMIT
         half = f"; {engineering(asked.lower_half, 'V')} with half the orders: use more" if fewer else ""
         voltage = f"{engineering(asked.value, 'V')} (mean over {engineering(asked.segment, 'm')} of the wall{half})"
@@ -154,6 +156,8 @@ def actuators(solution: ModalSolution) -> list[str]:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
             paper = control.transducers == "paper"  # electrodes are not marched yet
             remedy = "set control.saturation = true to see what it can really do, or lower the gains" if paper else "lower the gains"
+            if paper and motions[0].along is not None:
+                remedy = "lower the gains; control.saturation = true shows in two dimensions what it can really do"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
 

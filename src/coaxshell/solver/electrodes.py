@@ -80,22 +80,36 @@ class LargestVoltage:
 def largest_demand(solution: ModalSolution, index: int, above: float) -> LargestVoltage | None:
     """Return the largest voltage asked for on one shell, anywhere and at any time, as a mean over the default segment (Eq. 17).
 
-    None if it does not exceed *above* (V). Needs the engine's velocities.
+    None if it does not exceed *above* (V), or the run does not know it: it needs the engine's velocities, or the potentials of a station.
     """
     problem = solution.problem
-    gains = problem.shells[index].gains
-    assert gains is not None
-    assert solution.normal_rate is not None
-    assert solution.tangential_rate is not None
     length = segment_length(problem, index)
     orders = all_orders(solution.normal.shape[2] - 1)
-    share = segment_mean(orders, length / problem.system.shells[index].radius)
-    sensor = problem.shells[index].sensor_gain(Modes(orders))
+    voltage = _demand(solution, index, orders, segment_mean(orders, length / problem.system.shells[index].radius))
+    if voltage is None:
+        return None
+    highest = _largest(voltage, _NEAR * above)
+    return LargestVoltage(highest, _largest(voltage[:, : lower_half(len(orders))]), length) if highest > above else None
+
+
+def _demand(solution: ModalSolution, index: int, orders: FloatArray, share: FloatArray) -> FloatArray | None:
+    """Return the voltage asked for, (parities, M + 1, T), by how much each order counts."""
+    wall = solution.problem.shells[index]
+    gains, along = wall.gains, solution.along
+    assert gains is not None
+    if along is not None:
+        layer = wall.layer_number("sensor")
+        if layer is None or not along.potential_rates:
+            return None
+        potential, rate = along.potentials[layer][index], along.potential_rates[layer][index]
+        return np.asarray(share[:, None] * (gains.proportional * potential + gains.derivative * rate))
+    if solution.normal_rate is None or solution.tangential_rate is None:
+        return None
+    sensor = wall.sensor_gain(Modes(orders))
     sensor_v, sensor_w = share * sensor.v, share * sensor.w
     voltage = sensor_w[:, None] * (gains.proportional * solution.normal[index] + gains.derivative * solution.normal_rate[index])
     voltage += sensor_v[:, None] * (gains.proportional * solution.tangential[index] + gains.derivative * solution.tangential_rate[index])
-    highest = _largest(voltage, _NEAR * above)
-    return LargestVoltage(highest, _largest(voltage[:, : lower_half(len(orders))]), length) if highest > above else None
+    return np.asarray(voltage, dtype=np.float64)
 
 
 def _largest(modal: FloatArray, above: float = -1.0) -> float:

@@ -13,6 +13,7 @@ compliances are added up beforehand, and N/2 classes l take the place of the ord
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
@@ -29,6 +30,7 @@ from coaxshell.solver.axial.series import AxialSeries
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.settings import Settings
 
 Numbers = TypeVar("Numbers", FloatArray, ComplexArray)
 _SAME = 1e-7
@@ -123,18 +125,31 @@ def line_layout(problem: Problem, sampling: AxialSampling) -> LineLayout:
     return LineLayout(problem, sampling, absorbers, lattice, origin, 2 if planes else 1)
 
 
-def require_lines_alone(problem: Problem) -> None:
+def require_lines_alone(problem: Problem, settings: Settings) -> None:
     """Refuse what cannot be beside line absorbers in three dimensions."""
     system = problem.system
     if not system.absorber_list:
         return
     if system.point_absorbers:
-        raise InputError("absorbers", "line absorbers and point absorbers are not solved together", "use those with a z, or those without")
+        raise InputError("absorbers", "line absorbers and point absorbers are not solved together", _row(problem, settings))
     for number, geometry in enumerate(problem.sources):
         if isinstance(geometry, PlaneGeometry) and geometry.inclination:
             where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
             found = f"{geometry.inclination:g} degrees: a wave that runs along line absorbers is not solved"
             raise InputError(f"{where}.inclination", found, "use inclination = 0, a spherical source, or no absorbers")
+
+
+def _row(problem: Problem, settings: Settings) -> str:
+    """Return how point absorbers stand for a line: no further apart than half the shortest wave, a quarter where springs are cubic."""
+    waves, cubic = settings.axial_modes or settings.modes, any(one.cubic_stiffness for one in problem.system.absorber_list)
+    share = math.pi / (2.0 if cubic else 1.0)
+    apart = (
+        "closer than half the shortest axial wave"
+        if isinstance(waves, str)
+        else f"at most {share * problem.scales.length / waves:.2g} m apart"
+    )
+    each = "each with what the line has on that length"
+    return f"use those with a z alone: a row of them, {apart}, {each}, is a line (z=[...] of absorber_ring); or those without alone"
 
 
 def _lattice(angles: FloatArray, max_order: int) -> int:

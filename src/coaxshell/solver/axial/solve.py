@@ -91,6 +91,7 @@ def solve_spatial(
     stopwatch.lap("error estimates")
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
+    solution = replace(solution, warnings=(*warnings, *checks.actuators(*(solution.at(i) for i in range(len(settings.stations))))))
     if linked is not None:
         solution.forces.append(linked.forces)
     if isinstance(linked, PointSolution):
@@ -211,9 +212,12 @@ def _summed(
 def require_known(problem: Problem, settings: Settings) -> None:
     """Refuse what belongs to two dimensions, and stations that an inclined wave has passed before t = 0."""
     system = problem.system
-    require_lines_alone(problem)
+    require_lines_alone(problem, settings)
     if system.control is not None and system.control.saturation:
-        raise InputError("control.saturation", "is marched in two dimensions alone", "use saturation = false")
+        told = (
+            "use saturation = false: a warning tells if a voltage at a station exceeds its limit, and two dimensions how much that matters"
+        )
+        raise InputError("control.saturation", "voltages are cut at their limit in two dimensions alone", told)
     for source, geometry in zip(system.sources, problem.sources, strict=True):
         if not isinstance(geometry, PlaneGeometry):
             continue
