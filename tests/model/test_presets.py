@@ -22,6 +22,8 @@ def test_names() -> None:
         "absorbers",
         "active",
         "hybrid",
+        "electrodes",
+        "electrodes-hybrid",
         "iakovlev-evacuated",
         "iakovlev-filled",
         "iakovlev-double",
@@ -45,6 +47,15 @@ def test_table_1(name: str) -> None:
     assert (source.distance, source.peak_pressure, source.decay_time) == (5.0, 2.5e4, 1.314e-4)
     assert (len(system.absorber_list) == 25) is (name in ("absorbers", "hybrid"))
     assert (system.control is not None) is (name in ("active", "hybrid"))
+
+
+def test_control_by_electrodes_is_on_both_faces_of_the_same_shells() -> None:
+    for name, plain in (("electrodes", "bare"), ("electrodes-hybrid", "absorbers")):
+        system = presets.load(name)
+        assert system.control == cx.PDControl(proportional=0, derivative=2, transducers="electrodes")
+        roles = {f"shells[{i}].layers[{j}].role": role for i in (0, 1) for j, role in ((0, "sensor"), (2, "actuator"))}
+        other = system.with_overrides({**roles, "control": None})
+        assert other.canonical() == presets.load(plain).canonical()
 
 
 def test_coated_is_the_bare_shells_with_rubber_on_the_inner_one() -> None:

@@ -11,7 +11,19 @@ from coaxshell.errors import InputError
 from coaxshell.model.naming import lookup
 from coaxshell.model.system import System
 
-NAMES = ("bare", "absorbers", "active", "hybrid", "iakovlev-evacuated", "iakovlev-filled", "iakovlev-double", "steel-tube", "coated")
+NAMES = (
+    "bare",
+    "absorbers",
+    "active",
+    "hybrid",
+    "electrodes",
+    "electrodes-hybrid",
+    "iakovlev-evacuated",
+    "iakovlev-filled",
+    "iakovlev-double",
+    "steel-tube",
+    "coated",
+)
 
 
 def names() -> tuple[str, ...]:
