@@ -125,6 +125,20 @@ def test_the_film_the_slips_and_the_estimate(tmp_path, monkeypatch):
     assert all(f">{key}</td>" in page for key in SLIPS)
 
 
+def test_thin_and_exact_walls_are_a_section_with_pictures(tmp_path):
+    found = reproduce(tmp_path, TINY, only=frozenset({"walls"}), workers=1)
+    assert list(found.seconds) == ["walls thin or exact"]
+    pages = {path.suffix: path.read_text(encoding="utf-8") for path in write(found, tmp_path)}
+    assert pages[".html"].count("data:image/png") == len(found.walls.pictures) == 2
+    for page in pages.values():
+        assert "Thin or exact walls?" in page
+        assert "M = 6, time step 0.02, to t = 0.6" in page
+        assert "48 mm" in page
+    for name, picture in found.walls.pictures.items():
+        assert (tmp_path / "figures" / f"{name}.png").read_bytes() == picture
+        assert f"(figures/{name}.png)" in pages[".md"]
+
+
 def test_slice_and_sphere_are_a_section_with_pictures(tmp_path):
     found = reproduce(tmp_path, TINY, only=frozenset({"sphere"}), workers=1)
     assert list(found.seconds) == ["sphere beside the slice"]

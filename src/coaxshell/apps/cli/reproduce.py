@@ -28,7 +28,7 @@ def reproduce(
     ] = FOLDER,
     only: Annotated[
         list[str] | None,
-        typer.Option("--only", metavar="figures|claims|slips|sphere|film|estimate", help="This part only. May be repeated."),
+        typer.Option("--only", metavar="figures|claims|slips|sphere|walls|film|estimate", help="This part only. May be repeated."),
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="A coarse trial of everything: a minute instead of several.")] = False,
     film: Annotated[bool, typer.Option("--film/--no-film", help="Make a film of bare against hybrid.")] = True,

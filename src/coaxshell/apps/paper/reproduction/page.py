@@ -14,6 +14,7 @@ from coaxshell.apps.paper.reproduction.results import Results
 from coaxshell.apps.paper.sphere import texts as sphere
 from coaxshell.apps.paper.sphere.judged import Judgement
 from coaxshell.apps.paper.sphere.report import claims_markdown
+from coaxshell.apps.paper.thickness import texts as walls
 from coaxshell.apps.verification.markdown import table
 from coaxshell.apps.verification.page import document, inlined
 from coaxshell.apps.verification.suite import circumstances
@@ -46,6 +47,7 @@ def html(results: Results) -> str:
         "film": ("Film", _film(results)),
         "slips": ("The slips", _slips(results) if results.effects else ""),
         "sphere": (sphere.TITLE, _sphere(results)),
+        "walls": (walls.TITLE, _walls(results)),
         "times": ("Run times, and how to repeat", _times(results)),
     }
     shown = {name: entry for name, entry in sections.items() if entry[1]}
@@ -142,6 +144,19 @@ def _sphere(results: Results) -> str:
     )
 
 
+def _walls(results: Results) -> str:
+    found = results.walls
+    if found is None:
+        return ""
+    shown = [inlined(found.pictures[name], "png", walls.TITLE, escape(caption)) for name, caption in walls.CAPTIONS.items()]
+    tables = [f"<p>{escape(caption)}</p>{_table(headings, _escaped(rows))}" for caption, headings, rows in found.tables]
+    use = "".join(f"<li>{escape(line)}</li>" for line in walls.USE)
+    return (
+        f"<p>{escape(walls.ABOUT)}</p>{''.join(tables[:3])}<p>{escape(found.told)}</p><p>{escape(walls.WHY)}</p>{shown[0]}"
+        f"<p>{escape(found.map_told)}</p>{shown[1]}{tables[3]}<ul>{use}</ul>"
+    )
+
+
 def _in_both(judged: Judgement) -> str:
     """Return the claims under slice and sphere, their verdicts marked."""
     rows = [
@@ -183,6 +198,8 @@ def markdown(results: Results) -> str:
         parts += [f"## {sphere.TITLE}", results.sphere.markdown.replace("\n## ", "\n### ").strip()]
         if results.sphere.judged is not None:
             parts += [f"### {sphere.CLAIMS_TITLE}", *claims_markdown(results.sphere.judged)]
+    if results.walls:
+        parts += [f"## {walls.TITLE}", results.walls.markdown.replace("\n## ", "\n### ").strip()]
     parts.append("## Run times, and how to repeat")
     if results.estimate:
         parts.append(texts.estimate_text(results.estimate))
@@ -195,6 +212,8 @@ def write(results: Results, folder: Path) -> tuple[Path, ...]:
     pictures = folder / "figures"
     pictures.mkdir(parents=True, exist_ok=True)
     files = {pictures / f"figure-{figure.recipe.number}.png": figure.png for figure in results.figures}
+    if results.walls:
+        files |= {pictures / f"{name}.png": picture for name, picture in results.walls.pictures.items()}
     if results.sphere:
         files |= {pictures / f"{name}.png": picture for name, picture in results.sphere.pictures.items()}
     if results.film:

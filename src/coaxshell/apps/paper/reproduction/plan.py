@@ -16,6 +16,9 @@ from coaxshell.apps.paper.limiting_cases import limiting_systems
 from coaxshell.apps.paper.recipes import FigureRecipe
 from coaxshell.apps.paper.sphere.judged import LEAST, TOPICS, topic
 from coaxshell.apps.paper.sphere.report import RESOLUTION as SPHERE_RESOLUTION
+from coaxshell.apps.paper.thickness.compared import with_walls
+from coaxshell.apps.paper.thickness.report import FACTORS
+from coaxshell.apps.paper.thickness.report import RESOLUTION as WALLS_RESOLUTION
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.solver.cost import run_cost
@@ -56,7 +59,7 @@ class Part:
     Attributes
     ----------
     kind : str
-        "runs", "fields", "figure", "film", "slips", "sphere", "claims under the sphere" or "direct".
+        "runs", "fields", "figure", "film", "slips", "sphere", "claims under the sphere", "walls" or "direct".
     about : str
         Which one: a group of runs, a system, the number of a figure, a module of claims.
     variant : str
@@ -76,14 +79,23 @@ class Part:
 
 SPHERE = Part("sphere", "beside the slice")
 """The part in three dimensions."""
+WALLS = Part("walls", "thin or exact")
+"""The part with elastic walls."""
 
 
 def sphere_resolution(resolution: Settings) -> Settings:
     """Return a resolution that is no finer and no longer than that of the report on slice and sphere, which it would not change."""
-    modes = min(resolution.modes, SPHERE_RESOLUTION.modes) if isinstance(resolution.modes, int) else SPHERE_RESOLUTION.modes
-    return replace(
-        resolution.up_to(SPHERE_RESOLUTION.duration), modes=modes, time_step=max(resolution.time_step, SPHERE_RESOLUTION.time_step)
-    )
+    return _no_finer(resolution, SPHERE_RESOLUTION)
+
+
+def walls_resolution(resolution: Settings) -> Settings:
+    """Return the same for the report on thin and exact walls."""
+    return _no_finer(resolution, WALLS_RESOLUTION)
+
+
+def _no_finer(resolution: Settings, finest: Settings) -> Settings:
+    modes = min(resolution.modes, finest.modes) if isinstance(resolution.modes, int) else finest.modes
+    return replace(resolution.up_to(finest.duration), modes=modes, time_step=max(resolution.time_step, finest.time_step))
 
 
 def sphere_claims(resolution: Settings) -> Iterator[Part]:
@@ -143,7 +155,7 @@ def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: boo
     ----------
     resolution : Settings
     only : frozenset of str
-        Of "figures", "claims", "slips", "sphere", "film" and "estimate"; all if empty.
+        Of "figures", "claims", "slips", "sphere", "walls", "film" and "estimate"; all if empty.
     film : bool
         Whether a film is made.
     """
@@ -156,6 +168,8 @@ def parts(resolution: Settings, *, only: frozenset[str] = frozenset(), film: boo
     if wanted("sphere"):
         yield from sphere_claims(resolution)
         yield SPHERE
+    if wanted("walls"):
+        yield WALLS
     if film and wanted("film"):
         yield Part("film", "bare against hybrid")
     if wanted("figures"):
@@ -191,6 +205,9 @@ def part_cost(part: Part, resolution: Settings) -> Cost:
     if part.kind == "sphere":
         at = sphere_resolution(resolution)
         return _runs([systems.preset("bare")], replace(at, dimensions=3)).then(_runs([systems.preset("bare")] * 3, at))
+    if part.kind == "walls":
+        each = _runs([systems.preset("bare"), with_walls(systems.preset("bare"), theory="elastic")], walls_resolution(resolution))
+        return Cost(each.memory, 2.0 * len(FACTORS) * each.seconds)
     if part.kind == "claims under the sphere":
         about = topic(part.about)
         at, asked = about.resolution(resolution), [systems.preset("bare"), *about.asked().values()]

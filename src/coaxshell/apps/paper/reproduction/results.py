@@ -13,10 +13,11 @@ from coaxshell.apps.paper.claims.claim import Verdict
 from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.recipes import FigureRecipe
-from coaxshell.apps.paper.reproduction.plan import SPHERE, VARIANTS, Part, sphere_claims
+from coaxshell.apps.paper.reproduction.plan import SPHERE, VARIANTS, WALLS, Part, sphere_claims
 from coaxshell.apps.paper.reproduction.work import picture, runs_of
 from coaxshell.apps.paper.sphere.judged import Judgement, judged_in_both
 from coaxshell.apps.paper.sphere.texts import CAPTIONS
+from coaxshell.apps.paper.thickness.texts import CAPTIONS as WALL_CAPTIONS
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
 
@@ -57,17 +58,27 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class SphereSection:
-    """What slice and sphere differ by: Markdown, the tables with captions and headings, the resolution in words, pictures as PNG bytes.
-
-    ``judged`` are the paper's claims under both, None if the run is too short for them.
-    """
+class ReportSection:
+    """A report: Markdown, the tables with captions and headings, the resolution in words, pictures as PNG bytes."""
 
     markdown: str
     tables: list[tuple[str, list[str], list[list[str]]]]
     told: str
     pictures: Mapping[str, bytes]
+
+
+@dataclass(frozen=True)
+class SphereSection(ReportSection):
+    """What slice and sphere differ by; ``judged`` are the paper's claims under both, None if the run is too short for them."""
+
     judged: Judgement | None = None
+
+
+@dataclass(frozen=True)
+class WallsSection(ReportSection):
+    """What thin and exact walls differ by; ``map_told`` is what its map shows."""
+
+    map_told: str = ""
 
 
 @dataclass(frozen=True)
@@ -91,6 +102,7 @@ class Results:
         Parts that were there already.
     workers : int
     sphere : SphereSection or None
+    walls : WallsSection or None
     """
 
     resolution: Settings
@@ -105,6 +117,7 @@ class Results:
     resumed: int = 0
     workers: int = 1
     sphere: SphereSection | None = None
+    walls: WallsSection | None = None
 
     def tally(self, variant: str) -> Counter[Verdict]:
         """Return how many claims have each verdict in a variant."""
@@ -142,6 +155,16 @@ def sphere_of(resolution: Settings, store: Store, pieces: Mapping[Part, tuple[di
     pictures = {name: arrays[name].tobytes() for name in CAPTIONS}
     judged = judged_in_both(resolution, store=store) if any(sphere_claims(resolution)) else None
     return SphereSection(values["markdown"], values["tables"], values["told"], pictures, judged)
+
+
+def walls_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> WallsSection | None:
+    """Return what thin and exact walls differ by, if it was computed."""
+    piece = pieces.get(WALLS)
+    if piece is None:
+        return None
+    arrays, values = piece
+    pictures = {name: arrays[name].tobytes() for name in WALL_CAPTIONS}
+    return WallsSection(values["markdown"], values["tables"], values["told"], pictures, values["map_told"])
 
 
 def estimate_of(pieces: Mapping[Part, tuple[dict[str, Any], dict[str, Any]]]) -> Estimate | None:

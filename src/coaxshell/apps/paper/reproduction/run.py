@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from coaxshell.apps.paper.reproduction.plan import Part, parts, require_room
-from coaxshell.apps.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims, sphere_of
+from coaxshell.apps.paper.reproduction.results import Results, drawn_figures, estimate_of, judged_claims, sphere_of, walls_of
 from coaxshell.apps.paper.reproduction.work import Job, carry_out
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.progress import Progress
@@ -19,7 +19,7 @@ from coaxshell.studies.store import Store
 FINISHED = "parts"
 """Folder, within that of the report, of finished parts."""
 
-TOPICS = ("figures", "claims", "slips", "sphere", "film", "estimate")
+TOPICS = ("figures", "claims", "slips", "sphere", "walls", "film", "estimate")
 
 
 def reproduce(
@@ -96,6 +96,7 @@ def reproduce(
         resumed,
         worker_count(workers),
         sphere_of(resolution, store, pieces),
+        walls_of(pieces),
     )
 
 

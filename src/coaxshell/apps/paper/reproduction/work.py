@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,11 +17,15 @@ from coaxshell.apps.paper.claims import systems
 from coaxshell.apps.paper.figures import FIGURES
 from coaxshell.apps.paper.known_runs import Runs, key_of
 from coaxshell.apps.paper.recipes import FigureRecipe
-from coaxshell.apps.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups, sphere_resolution
+from coaxshell.apps.paper.reproduction.plan import DIRECT_SAMPLE, VARIANTS, WITH_FIELDS, Part, groups, sphere_resolution, walls_resolution
 from coaxshell.errors import PhysicsWarning
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.store import Store
+
+if TYPE_CHECKING:
+    from coaxshell.apps.paper.sphere.report import Report as SphereReport
+    from coaxshell.apps.paper.thickness.report import Report as WallsReport
 
 Piece = tuple[dict[str, Any], dict[str, Any]]
 FILM = {"frames": 200, "fps": 20.0, "pixels": 300}
@@ -123,7 +127,19 @@ def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
 def _sphere(job: Job, store: Store) -> Piece:
     from coaxshell.apps.paper.sphere.report import report
 
-    made = report(sphere_resolution(job.resolution))
+    return _report(report(sphere_resolution(job.resolution)))
+
+
+def _walls(job: Job, store: Store) -> Piece:
+    from coaxshell.apps.paper.thickness.report import report
+
+    made = report(walls_resolution(job.resolution))
+    pictures, told = _report(made)
+    return pictures, {**told, "map_told": made.map_told}
+
+
+def _report(made: SphereReport | WallsReport) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the pictures of a report, and what it tells."""
     pictures = {name: picture(figure) for name, figure in made.figures().items()}
     tables = [[caption, list(headings), [list(row) for row in rows]] for caption, headings, rows in made.tables]
     return pictures, {"markdown": made.markdown("figures/"), "tables": tables, "told": made.told}
@@ -158,6 +174,7 @@ _WORK: dict[str, Callable[[Job, Store], Piece]] = {
     "slips": _slips,
     "sphere": _sphere,
     "claims under the sphere": _sphere_claims,
+    "walls": _walls,
     "direct": _direct,
 }
 
