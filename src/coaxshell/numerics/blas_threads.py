@@ -24,6 +24,8 @@ def _controller() -> ThreadpoolController:
 def one_blas_thread() -> Iterator[None]:
     """Hold BLAS to one thread in this process inside a ``with`` block; nested blocks and other threads' share one limit.
 
+    Ask for it before threads are started: threadpoolctl from 3.8 on lets the first thread of a process that sets the limit set it alone.
+
     Workers that each use all cores would only stand in each other's way, and the last bits of BLAS depend on its number of threads.
     """
     global _inside, _limiter

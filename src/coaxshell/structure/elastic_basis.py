@@ -23,10 +23,10 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.modes import Modes
-from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, degree, strains, wall_mesh
+from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, degrees, strains, wall_mesh
 from coaxshell.structure.solid import AXIAL, HOOP, PLANE, RADIAL, RADIAL_AXIAL, RADIAL_HOOP, STRAINS, SolidLayer
 
-_LOW = 1e-3
+_LOW = 1e-2
 """Of the largest, below which eigenvalues are mended."""
 STEP = 4
 """Degrees that orders of one mesh may differ by."""
@@ -98,7 +98,7 @@ def elastic_basis(layers: Sequence[SolidLayer], modes: Modes, frequency: float) 
     """
     assert isinstance(modes.wavenumber, (int, float))
     wavenumber = float(modes.wavenumber)
-    needed = np.array([[degree(layer, m, wavenumber, frequency) for layer in layers] for m in modes.orders])
+    needed = np.stack([degrees(layer, modes.orders, wavenumber, frequency) for layer in layers], axis=1)
     steps = np.ceil(needed / STEP).astype(int)
     edges = [0, *(1 + np.flatnonzero(np.any(np.diff(steps, axis=0), axis=1))), modes.count]
     found = []
@@ -135,32 +135,34 @@ def _along_the_axis(mesh: WallMesh, members: slice, orders: FloatArray, wavenumb
     They, and the shapes beside, err by the rounding of the largest: shapes as a whole span what they should to 1e-12. The singular values
     of A on the low shapes alone give both to all digits.
     """
-    rows = _linear_rows(mesh)
+    rows, products = _linear_rows(mesh)
     stacked = rows[0] + orders[:, None, None] * rows[1] + wavenumber * rows[2]
-    root = np.sqrt(mesh.mass)
-    electric = [
-        _widened(PotentialOfLayer(part, orders, wavenumber).rows, part, mesh) / root
-        for part in mesh.layers
-        if part.layer.coupling is not None
-    ]
-    if electric:
-        stacked = np.concatenate([stacked, *(each.reshape(*each.shape[:2], -1) for each in electric)], axis=1)
+    root, ones = np.sqrt(mesh.mass), np.ones_like(orders)
+    powers = np.stack([ones, orders, orders**2, wavenumber * ones, wavenumber**2 * ones, wavenumber * orders], axis=1)
+    ceramics = {part: PotentialOfLayer(part, orders, wavenumber) for part in mesh.layers if part.layer.coupling is not None}
     with one_blas_thread():  # many small matrices
-        squares, vectors = np.linalg.eigh(np.swapaxes(stacked, 1, 2) @ stacked)
+        stiffness = (powers @ products.reshape(len(products), -1)).reshape(orders.size, *products.shape[1:])
+        for part, potential in ceramics.items():
+            electric = (_widened(potential.rows, part, mesh) / root).reshape(*potential.rows.shape[:2], -1)
+            stiffness += np.swapaxes(electric, 1, 2) @ electric
+            stacked = np.concatenate([stacked, electric], axis=1)
+        squares, vectors = np.linalg.eigh(stiffness)
         low = int(np.count_nonzero(squares < _LOW * squares[:, -1:], axis=1).max())
         if low:
             _, values, turned = np.linalg.svd(stacked @ vectors[..., :low], full_matrices=False)
             squares[:, :low] = values[:, ::-1] ** 2
             vectors[..., :low] = vectors[..., :low] @ np.swapaxes(turned[:, ::-1], 1, 2)
     shapes = np.swapaxes(vectors, 1, 2).reshape(orders.size, -1, displacements(wavenumber), mesh.radius.size) / root
-    return OrdersBasis(members, orders, wavenumber, mesh, squares, shapes)
+    found = OrdersBasis(members, orders, wavenumber, mesh, squares, shapes)
+    vars(found)["potentials"] = {part: potential.values for part, potential in ceramics.items()}  # which it would make again
+    return found
 
 
 @lru_cache(maxsize=64)
-def _linear_rows(mesh: WallMesh) -> FloatArray:
-    """Return the rows of a mesh at m = k = 0 and what they gain per m and per k, without potentials, (3, rows, displacements x points).
+def _linear_rows(mesh: WallMesh) -> tuple[FloatArray, FloatArray]:
+    """Return the rows A of a mesh without potentials, and A'A, by powers of m and k; per root of the mass as :func:`orders_basis` has them.
 
-    Strains are linear in m and k; per root of the mass as :func:`orders_basis` has them.
+    Strains are linear in both: (3, rows, n) of 1, m and k, and (6, n, n) of 1, m, m^2, k, k^2 and m k, n displacements at points.
     """
     found, root = [], np.sqrt(mesh.mass)
     for part in mesh.layers:
@@ -169,7 +171,9 @@ def _linear_rows(mesh: WallMesh) -> FloatArray:
         scaled = np.einsum("ij,mjqcp->miqcp", np.linalg.cholesky(part.layer.matrix).T, each) * np.sqrt(part.weights)[:, None, None]
         wide = _widened(scaled.reshape(3, -1, *scaled.shape[3:]), part, mesh) / root
         found.append(wide.reshape(*wide.shape[:2], -1))
-    return np.concatenate(found, axis=1)
+    fixed, around, along = rows = np.concatenate(found, axis=1)
+    pairs = ((fixed, fixed), (fixed, around), (around, around), (fixed, along), (along, along), (around, along))
+    return rows, np.stack([a.T @ b if a is b else a.T @ b + b.T @ a for a, b in pairs])
 
 
 def _widened(rows: FloatArray, part: LayerMesh, mesh: WallMesh) -> FloatArray:
@@ -232,9 +236,10 @@ class PotentialOfLayer:
         radial = np.einsum("j,mjqcp->mqcp", e[0, [RADIAL, HOOP, AXIAL]], local[:, [RADIAL, HOOP, AXIAL]])
         around = per_radius[:, :, None, None] * e[1, RADIAL_HOOP] * local[:, RADIAL_HOOP]
         around = around + wavenumber * e[2, RADIAL_AXIAL] * local[:, RADIAL_AXIAL]
-        charge = np.einsum("qi,q,mqcp->micp", slope, weights, radial) - (weights[:, None, None] * around)[:, inside]
-        self._root = np.linalg.cholesky(electric)
+        charge = -(weights[:, None, None] * around)[:, inside]
         flat = charge.reshape(*charge.shape[:2], -1)
+        flat += (slope * weights[:, None]).T @ radial.reshape(*radial.shape[:2], -1)
+        self._root = np.linalg.cholesky(electric)
         self.rows: FloatArray = np.linalg.solve(self._root, flat).reshape(charge.shape)
 
     @property
@@ -274,14 +279,16 @@ def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> Com
     y2, largest = y * y, float(np.abs(s).max()) ** 2
     far = squares > FAR**2 * largest
     found = _far_sums(weights, np.where(far, -largest / np.where(far, squares, 1.0), 0.0), largest, s)
-    parts = found.view(np.float64)
+    real, imaginary = np.empty((2, squares.shape[1], s.size))  # in the cache of a processor for all orders
     for m, near in enumerate(np.count_nonzero(~far, axis=1)):
-        above = squares[m, :near, None] + x
-        scale = np.reciprocal(above * above + y2)
-        terms = np.empty((near, s.size, 2))
-        np.multiply(above, scale, out=terms[..., 0])
-        np.multiply(-y, scale, out=terms[..., 1])
-        parts[:, m] += weights[m, :, :near] @ terms.reshape(near, 2 * s.size)
+        above, size = real[:near], imaginary[:near]
+        np.add(squares[m, :near, None], x, out=above)
+        np.multiply(above, above, out=size)
+        np.add(size, y2, out=size)
+        np.divide(above, size, out=above)
+        np.divide(-y, size, out=size)
+        found.real[:, m] += weights[m, :, :near] @ above
+        found.imag[:, m] += weights[m, :, :near] @ size
     return found
 
 

@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.lobatto import lobatto
@@ -29,6 +30,12 @@ def degree(layer: SolidLayer, order: float, wavenumber: float, frequency: float)
     """Return the degree of a layer up to an order, an axial wavenumber and a frequency (radians per unit of time)."""
     steepest = math.sqrt((frequency / layer.shear_speed) ** 2 + (order / layer.inner) ** 2 + wavenumber**2)
     return LEAST + math.ceil(PER_PHASE * layer.thickness * steepest)
+
+
+def degrees(layer: SolidLayer, orders: FloatArray, wavenumber: float, frequency: float) -> npt.NDArray[np.int64]:
+    """Return the degrees of a layer for some orders; see :func:`degree`."""
+    steepest = np.sqrt((frequency / layer.shear_speed) ** 2 + (orders / layer.inner) ** 2 + wavenumber**2)
+    return LEAST + np.ceil(PER_PHASE * layer.thickness * steepest).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)

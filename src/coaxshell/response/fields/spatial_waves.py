@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal, TypeVar
@@ -17,6 +18,7 @@ import numpy.typing as npt
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.response.fields.inversion import direct_matrix, window
 from coaxshell.response.fields.modal_field import Transfer, region_slopes
@@ -208,7 +210,8 @@ def each_block(waves: SpatialWaves, radii: int, work: Callable[[slice], Found], 
     count = waves.grid.nodes.size
     edges = np.linspace(0, count, max(1, -(-count // waves.block_size(radii))) + 1).astype(int)
     blocks = [slice(int(a), int(b)) for a, b in pairwise(edges)]
-    with ThreadPoolExecutor(WORKERS) as pool:
+    small = one_blas_thread() if waves.problem.two_faced else nullcontext()  # products of elastic walls' shapes
+    with small, ThreadPoolExecutor(WORKERS) as pool:
         for done, found in enumerate(pool.map(work, blocks), start=1):
             tell(done / len(blocks))
             yield found

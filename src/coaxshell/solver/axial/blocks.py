@@ -57,7 +57,7 @@ class Workplace(Protocol):
 def on_threads(work: partial[Found], blocks: list[slice], tell: ShareDone | None = None) -> Iterator[Found]:
     """Map blocks on all cores of this machine; nothing works on when the results are no longer wanted."""
     tally = _Tally(len(blocks))
-    with ThreadPoolExecutor(WORKERS) as pool:
+    with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:  # here: BLAS heeds one thread of a process alone, the first that tells it
         waiting = deque(pool.submit(tally.carried_out, work, number, block) for number, block in enumerate(blocks))
         try:
             while waiting:

@@ -64,9 +64,9 @@ class FacedWave:
             if isinstance(reading, WallOperator):
                 self._read_thin(found[:, i], self.problem.shells[i], reading, moving.outer)
             else:
-                rows = reading[:, 0] * moving.load_inner
-                rows += reading[:, 1] * moving.load_outer
-                found[: len(rows), i] = rows[: len(found)]
+                count = min(len(reading), len(found))
+                np.multiply(reading[:count, 0], moving.load_inner, out=found[:count, i])
+                found[:count, i] += reading[:count, 1] * moving.load_outer
         return found
 
     def _read_thin(self, found: ComplexArray, wall: ShellModel, operator: WallOperator, w: ComplexArray) -> None:

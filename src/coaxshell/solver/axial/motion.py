@@ -21,6 +21,7 @@ import numpy as np
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.faced import make_shapes, motions_and_faces
@@ -119,7 +120,7 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
             return _superposed(shares, [amplitude[: 7 if problem.two_faced else 3] for amplitude in found], around)
 
         make_shapes(problem, [modes])
-        with ThreadPoolExecutor(WORKERS) as pool:
+        with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
             motion = np.concatenate(list(pool.map(work, range(len(blocks)))), axis=-1)
         length = sampling.period * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
