@@ -40,8 +40,8 @@ ELASTIC = (
     Mutation(
         "solid-sums-imaginary",
         "structure/elastic_basis.py",
-        "np.multiply(-y, scale, out=terms[..., 1])",
-        "np.multiply(y, scale, out=terms[..., 1])",
+        "np.divide(-y, size, out=size)",
+        "np.divide(y, size, out=size)",
         "sum over the shapes of a solid wall, its phase",
         "structure/test_elastic_solids.py",
     ),
