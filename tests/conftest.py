@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,9 @@ from scipy.special import gamma
 
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
-from coaxshell.apps.verification import bench
+from coaxshell.apps.verification import bench, chosen
+from coaxshell.apps.verification.checks import independent_stations
+from coaxshell.apps.verification.rows import Row
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -29,6 +32,24 @@ STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=177.45e9, poisson_
 def tables() -> dict[str, Any]:
     """Return the tables of high-precision values."""
     return bench.tables()
+
+
+@pytest.fixture(scope="session")
+def quick_rows() -> Iterator[Callable[[str], tuple[Row, ...]]]:
+    """Give a function from the name of a check to the rows of its quick version, which is carried out once and shares solutions.
+
+    The waves of the independent method, the same whatever is wrong with ours, are solved once in a process.
+    """
+    place = bench.Bench(quick=True)
+
+    @cache
+    def rows(name: str) -> tuple[Row, ...]:
+        (one,) = chosen([name], quick=True)
+        return tuple(found for found in one.work(place) if isinstance(found, Row))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(independent_stations, "Waves", cache(independent_stations.Waves))
+        yield rows
 
 
 @pytest.fixture(scope="session")
@@ -111,9 +132,22 @@ LONG = (
 """Places and files that take longest, the longest first: begun first, none of them is left to one process at the end."""
 
 
+READERS_OF_CHECKS = (
+    "tests/analytic/test_axial_limits.py",
+    "tests/analytic/test_stations.py",
+    "tests/analytic/test_transparency.py",
+    "tests/independent/test_axial_waves.py",
+    "tests/reference/test_spherical_bare.py",
+)
+"""Files whose tests hold the rows of checks to closer limits: carried out where the checks are."""
+
+
 def unit_of(nodeid: str) -> str:
     """Return which tests are carried out together, in one process: those of a file, which share its fixtures, or of a place."""
-    return next((place for place in TOGETHER if nodeid.startswith(place)), nodeid.partition("::")[0])
+    file = nodeid.partition("::")[0]
+    if file in READERS_OF_CHECKS:
+        return "tests/verification/test_checks.py"
+    return next((place for place in TOGETHER if file.startswith(place)), file)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

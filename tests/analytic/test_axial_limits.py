@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from coaxshell.acoustics.sources import SphericalFrontGeometry
-from coaxshell.apps.verification import chosen, run
 from coaxshell.apps.verification.checks import axial_limits
+from coaxshell.apps.verification.rows import Row
 from coaxshell.apps.verification.systems import SMOOTH_SPHERE
 from coaxshell.model import presets
 from coaxshell.numerics.modes import Modes
 
 
 @pytest.fixture(scope="module")
-def errors() -> dict[str, float]:
+def errors(quick_rows: Callable[[str], tuple[Row, ...]]) -> dict[str, float]:
     """Return the errors of the check, by what is compared."""
-    (result,) = run(chosen(["axial-limits"], quick=True), quick=True).results
-    return {row.what: row.error for row in result.rows}
+    return {row.what: row.error for row in quick_rows("axial-limits")}
 
 
 @pytest.mark.parametrize(

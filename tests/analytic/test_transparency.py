@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
-from coaxshell.apps.verification import chosen, run
+from coaxshell.apps.verification.rows import Row
 
 SHELLS = ("inner", "outer")
 
 
 @pytest.fixture(scope="module")
-def errors() -> dict[str, float]:
+def errors(quick_rows: Callable[[str], tuple[Row, ...]]) -> dict[str, float]:
     """Return the errors of the check, by what is compared."""
-    (result,) = run(chosen(["transparency"], quick=True), quick=True).results
-    return {row.what: row.error for row in result.rows}
+    return {row.what: row.error for row in quick_rows("transparency")}
 
 
 @pytest.mark.parametrize("shell", SHELLS)

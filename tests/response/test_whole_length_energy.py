@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -51,12 +52,16 @@ SYSTEMS: dict[str, tuple[cx.System, float]] = {
 }
 
 
+@cache
+def balance_of(name: str) -> xr.Dataset:
+    return cx.simulate(SYSTEMS[name][0], **SMALL).energy()
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_it_closes_over_the_whole_length(name: str) -> None:
     # Measured 1e-6, 1.4e-5 around a vacuum, which is what two dimensions have at this step: the fluids' fields are cut off at a frequency
     # (with the whole band 4e-7; with half the step 2e-6).
-    system, limit = SYSTEMS[name]
-    balance = cx.simulate(system, **SMALL).energy()
+    balance, limit = balance_of(name), SYSTEMS[name][1]
     assert balance.attrs["extent"] == "over the whole length"
     assert balance["exterior_work"].attrs["units"] == "J"
     assert worst(balance) < limit
@@ -82,11 +87,16 @@ def broken(motion: Motion, name: str) -> Motion:
     return replace(motion, problem=replace(motion.problem, fluids=tuple(fluids), shells=tuple(shells)))
 
 
-@pytest.mark.parametrize("name", ["axial motion", "wavenumber", "fluid", "feedback"])
-def test_a_broken_factor_shows(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+def test_a_broken_factor_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Every wave closes by itself: the longest ones tell. Measured 5e-7 for what is right, 4e-5 or more for what is not.
     run = cx.simulate("active", **SMALL)
-    monkeypatch.setattr(whole_length, "parts_of", lambda motion, report: parts_of(broken(motion, name), report))
-    assert worst(run.energy(every=25)) > 5e-5
+    longest = replace(whole_length.whole_length_sampling(run.spatial.problem, run.spatial.settings), highest=2.0)
+    monkeypatch.setattr(whole_length, "whole_length_sampling", lambda *_: longest)
+    limit = SYSTEMS["controlled"][1]
+    assert worst(run.energy(every=25)) < limit
+    for name in ("axial motion", "wavenumber", "fluid", "feedback"):
+        monkeypatch.setattr(whole_length, "parts_of", lambda motion, report, name=name: parts_of(broken(motion, name), report))
+        assert worst(run.energy(every=25)) > 5 * limit, name
 
 
 def test_uniform_sources_have_the_energy_of_two_dimensions() -> None:
@@ -168,8 +178,7 @@ def test_images_stay_out_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_it_does_not_ask_where_the_source_or_the_stations_are() -> None:
-    source = cx.SphericalShock(distance=3.0, **SHOCK)
-    here = cx.simulate(VACUUM, **SMALL).energy()
+    source, here = cx.SphericalShock(distance=3.0, **SHOCK), balance_of("vacuum inside")
     there = cx.simulate(VACUUM.replace(source=source.replace(z=1.3)), stations=[0.0, 2.0], **SMALL).energy()
     halves = [source.replace(peak_pressure=1.25e4, z=1.3)] * 2
     both = cx.simulate(VACUUM.replace(source=halves), stations=[0.5], axial_period=30.0, **SMALL).energy()

@@ -7,18 +7,22 @@ import os
 import time
 
 import pytest
-from asking import carried_out, reporting
+from asking import reporting, shared_worker
 
 from coaxshell.apps.studio import limits, workers
 from coaxshell.errors import InputError
 
 
-@pytest.fixture(autouse=True)
-def attentive(monkeypatch):
-    monkeypatch.setattr(workers, "WATCHED_EVERY", 0.05)
+@pytest.fixture(scope="module")
+def carried_out():
+    """Tell stories with one worker, looked at often; one that was ended has been replaced for the next."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(workers, "WATCHED_EVERY", 0.05)
+        with shared_worker() as told:
+            yield told
 
 
-def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs():
+def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs(carried_out):
     async def story(crew):
         first = await crew.submit(os.getpid).future
         with pytest.raises(InputError, match=r"made no progress for 0\.5 s"):
@@ -30,7 +34,7 @@ def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs():
     assert first != second
 
 
-def test_a_task_that_reports_may_take_its_time():
+def test_a_task_that_reports_may_take_its_time(carried_out):
     async def story(crew):
         await crew.submit(reporting, 0.0).future  # has this file read there
         limits.SILENT_SECONDS = 2.0
@@ -39,7 +43,7 @@ def test_a_task_that_reports_may_take_its_time():
     assert carried_out(story, SILENT_SECONDS=60.0) == "done"
 
 
-def test_a_dropped_task_that_does_not_look_up_is_ended_soon():
+def test_a_dropped_task_that_does_not_look_up_is_ended_soon(carried_out):
     async def story(crew):
         stuck = crew.submit(time.sleep, 600, live=False)
         await asyncio.sleep(0.1)

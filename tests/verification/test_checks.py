@@ -13,18 +13,10 @@ from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.structure.thin_wall import ThinWall
 
 
-@pytest.fixture(scope="module")
-def bench():
-    """Return one bench for all checks, which share solutions as they do in the suite."""
-    return Bench(quick=True)
-
-
 @pytest.mark.parametrize("name", [one.name for one in checks()])
-def test_quick_check_passes(bench, name):
-    (one,) = chosen([name], quick=True)
-    rows = [found for found in one.work(bench) if isinstance(found, Row)]
-    assert rows
-    assert not [row.cells for row in rows if row.verdict != "pass"]
+def test_quick_check_passes(quick_rows, name):
+    assert quick_rows(name)
+    assert not [row.cells for row in quick_rows(name) if row.verdict != "pass"]
 
 
 @pytest.mark.slow
@@ -69,6 +61,7 @@ def test_a_wrong_wall_is_seen(monkeypatch):
     }
 
 
+@pytest.mark.usefixtures("quick_rows")
 def test_a_wrong_wavenumber_is_seen(monkeypatch):
     right = Modes.kappa
     monkeypatch.setattr(Modes, "kappa", lambda modes, slowness, s: right(Modes(modes.orders, 1.001 * modes.wavenumber), slowness, s))

@@ -49,16 +49,16 @@ def again(page):
 
 def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page):
     page = open_preset(open_page, server, {"duration": 4.0, "time_step": 0.01, "modes": 20}, preset="hybrid")  # it takes seconds
-    start(page, path="absorbers.mass", from_=2, to=90, count=60, scale="linear", metric="outer.peak_stress")
+    start(page, path="absorbers.mass", from_=2, to=90, count=30, scale="linear", metric="outer.peak_stress")
     mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
     mine.wait_for()
     again(page)
     mine.wait_for()
-    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
+    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 30")
     assert mine.get_attribute("data-state") == "done"
     again(page)
     mine.get_by_role("button", name="Show").click()
-    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 60")
+    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 30")
 
 
 def test_a_plot_drawn_while_another_tab_is_shown_fits(server, open_page):
