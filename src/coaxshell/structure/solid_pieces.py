@@ -171,18 +171,11 @@ class PieceReading:
     def _by_potentials(self, modes: Modes, s: ComplexArray) -> PieceAnswer:
         (layer,) = self.piece.layers
         fields = Potentials(layer, modes, s)
-        per_force = fields.per_force()
-
-        def read(rows: ComplexArray) -> ComplexArray:
-            """Return rows per wave as rows per force, shape (rows, 4, orders, nodes)."""
-            return np.asarray(np.moveaxis(np.moveaxis(rows, (0, 1), (2, 3)) @ per_force, (2, 3), (0, 1)))
-
-        ends = [-read(fields.rows(radius, ("normal", "tangential"))) for radius in (layer.inner, layer.outer)]
-        for end in ends:
-            end[1] *= -1.0  # u_r is outward, u_theta as V
-        faces: list[list[ComplexArray | float]] = [list(row) for end in ends for row in end]
-        shown = [read(fields.rows(place.radius, (place.what,)))[0] for place in self.places]
-        return PieceAnswer(faces, np.stack(shown) if shown else np.zeros((0, FORCES, modes.count, s.size), np.complex128))
+        moved = [fields.rows(radius, ("normal", "tangential")) for radius in (layer.inner, layer.outer)]
+        asked = [fields.rows(place.radius, (place.what,)) for place in self.places]
+        found = fields.per_force(np.concatenate([*moved, *asked]))
+        found[0:FORCES:2] *= -1.0  # u_r is outward
+        return PieceAnswer([list(row) for row in found[:FORCES]], found[FORCES:])
 
     # By shapes
 

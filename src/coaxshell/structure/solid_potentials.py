@@ -125,13 +125,24 @@ class Potentials:
             spread[number] = self._inertia / self._stiff * wave.value
         return np.stack([-normal, tangential, spread, (self.modes.column * tangential - normal) / radius, shear / self.shear])
 
-    def per_force(self) -> ComplexArray:
-        """Return the waves per force at the faces, shape (orders, nodes, 4 waves, 4 forces), on (u_r, u_theta) inside and outside.
+    def _tractions(self) -> ComplexArray:
+        """Return the forces on the faces per unit of each wave, shape (orders, nodes, 4 forces, 4 waves).
 
-        A force is r times the traction on the layer: -(sigma_r, tau) on the inner face, (sigma_r, tau) on the outer one.
+        On (u_r, u_theta) inside and outside: r times the traction on the layer, -(sigma_r, tau) on the inner face, (sigma_r, tau) on the
+        outer one.
         """
         matrix = np.empty((self.modes.count, self.s.size, 4, 4), np.complex128)
         for start, radius, sign in ((0, self.layer.inner, -1.0), (2, self.layer.outer, 1.0)):
             rows = self.rows(radius, ("radial", "radial_hoop"))
             matrix[..., start : start + 2, :] = np.moveaxis(sign * radius * rows, (0, 1), (2, 3))
-        return np.asarray(np.linalg.inv(matrix), dtype=np.complex128)
+        return matrix
+
+    def per_force(self, rows: ComplexArray) -> ComplexArray:
+        """Return rows per unit of each wave as rows per force on the faces, both of shape (rows, 4, orders, nodes)."""
+        found = np.linalg.solve(np.swapaxes(self._tractions(), 2, 3), np.moveaxis(rows, (0, 1), (3, 2)))
+        return np.ascontiguousarray(np.moveaxis(found, (3, 2), (0, 1)))
+
+    def waves(self, forces: ComplexArray) -> ComplexArray:
+        """Return the four waves under forces on the faces, both of shape (4, parities, orders, nodes)."""
+        found = np.linalg.solve(self._tractions(), np.moveaxis(forces, (0, 1), (2, 3)))
+        return np.ascontiguousarray(np.moveaxis(found, (2, 3), (0, 1)))

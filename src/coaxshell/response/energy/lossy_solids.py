@@ -186,8 +186,7 @@ def _waves(motion: Motion, piece: Piece, forces: ComplexArray) -> ComplexArray:
     found = np.empty_like(forces)
 
     def work(block: slice) -> None:
-        per_force = Potentials(piece.layers[0], motion.modes, motion.grid.nodes[block]).per_force()
-        found[..., block] = np.einsum("mkwf,fhmk->whmk", per_force, forces[..., block])
+        found[..., block] = Potentials(piece.layers[0], motion.modes, motion.grid.nodes[block]).waves(forces[..., block])
 
     map_node_blocks(node_blocks(motion.grid, motion.modes.max_order), work, None, "waves")
     return found
