@@ -31,8 +31,10 @@ from coaxshell.structure.shell_model import WallEnergy
 from coaxshell.structure.solid_pieces import FORCES, Piece, WallReading, electric_rows, lossless_rows, on_faces
 from coaxshell.structure.solid_potentials import Potentials
 
-MOST_POINTS = 32
+MOST_POINTS = 20
 """Points of a rubber's integrals, at most: above the frequencies that they resolve its shear holds next to nothing."""
+TOGETHER = 4
+"""Points whose fields are found together: the waves at the faces are then found once for all of them."""
 
 
 class _Tally(NamedTuple):
@@ -176,8 +178,10 @@ def _of_potentials(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally
     half, total = layer.thickness / 2.0, _Tally.none(motion)
     radii = layer.inner + half * (1.0 + points)
     waves = _waves(motion, piece, forces)
-    for radius, weight in zip(radii, half * weights * radii, strict=True):
-        total = total.plus(_at_radius(motion, piece, waves, float(radius), float(weight)))
+    for start in range(0, count, TOGETHER):
+        some = slice(start, start + TOGETHER)
+        for field, weight in zip(_fields(motion, piece, waves, radii[some]), (half * weights * radii)[some], strict=True):
+            total = total.plus(_of_field(motion, piece, field, float(weight)))
     return total
 
 
@@ -192,15 +196,22 @@ def _waves(motion: Motion, piece: Piece, forces: ComplexArray) -> ComplexArray:
     return found
 
 
-def _at_radius(motion: Motion, piece: Piece, waves: ComplexArray, radius: float, weight: float) -> _Tally:
-    grid, layer, circle = motion.grid, piece.layers[0], motion.circle
-    field = np.empty((5, *waves.shape[1:]), np.complex128)
+def _fields(motion: Motion, piece: Piece, waves: ComplexArray, radii: FloatArray) -> ComplexArray:
+    """Return displacements and strains (:meth:`Potentials.motion`) at some radii, shape (radii, 5, parities, orders, nodes)."""
+    found = np.empty((radii.size, 5, *waves.shape[1:]), np.complex128)
 
     def work(block: slice) -> None:
-        rows = Potentials(layer, motion.modes, grid.nodes[block]).motion(radius)
-        field[..., block] = np.einsum("qwmk,whmk->qhmk", rows, waves[..., block])
+        potentials = Potentials(piece.layers[0], motion.modes, motion.grid.nodes[block])
+        for field, radius in zip(found, radii, strict=True):
+            field[..., block] = np.einsum("qwmk,whmk->qhmk", potentials.motion(float(radius)), waves[..., block])
 
-    map_node_blocks(node_blocks(grid, motion.modes.max_order), work, None, "waves")
+    map_node_blocks(node_blocks(motion.grid, motion.modes.max_order), work, None, "waves")
+    return found
+
+
+def _of_field(motion: Motion, piece: Piece, field: ComplexArray, weight: float) -> _Tally:
+    """Return what an isotropic layer holds at a radius whose share of the integral over r dr is given."""
+    grid, layer, circle = motion.grid, piece.layers[0], motion.circle
 
     def squares(histories: FloatArray) -> FloatArray:
         """Return the sum of squares over the circle, shape (T,)."""
