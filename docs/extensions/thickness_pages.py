@@ -1,9 +1,10 @@
-"""The page "thin or exact walls?": nine runs in two dimensions, the map that the package holds, and pictures."""
+"""The page "thin or exact walls?": thirteen runs in two dimensions, the map that the package holds, and pictures."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from coaxshell.apps.paper.thickness.judged import judged_with_both
 from coaxshell.apps.paper.thickness.report import report
 from coaxshell.apps.paper.thickness.texts import TITLE
 from coaxshell.plotting import save_figure
@@ -13,13 +14,14 @@ TAIL = """
 
 ```sh
 python -m coaxshell.apps.paper.thickness map map.json     # the map, a quarter of a minute of one processor
-coaxshell reproduce --only walls                          # all but the map, in one report
+coaxshell reproduce --only walls                          # all but map and statements, in one report
 ```
 
 ```python
+from coaxshell.apps.paper.thickness.judged import judged_with_both
 from coaxshell.apps.paper.thickness.report import report
 
-found = report()  # of the paper's bare shells
+found = report(judged=judged_with_both())  # of the paper's bare shells
 print(found.markdown())
 found.figures()  # by name
 ```
@@ -31,7 +33,7 @@ def thickness_report(folder: Path, newest: float) -> None:
     page = folder / "thin-or-exact.md"
     if page.exists() and page.stat().st_mtime > newest:
         return
-    made = report()
+    made = report(judged=judged_with_both())
     for name, figure in made.figures().items():
         save_figure(figure, folder / f"{name}.png")
     page.write_text(f"# {TITLE}\n\n{made.markdown()}{TAIL}", encoding="utf-8")

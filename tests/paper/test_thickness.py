@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coaxshell.apps.paper.reproduction.results import VERDICTS
+from coaxshell.apps.paper.thickness.judged import judged_with_both, rows
 from coaxshell.apps.paper.thickness.report import power_law, report
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.thin_error import thin_map
@@ -42,6 +44,13 @@ def test_the_report_holds_every_number_and_picture(small):
     for name, figure in small.figures().items():
         assert f"({name}.png)" in text
         assert figure.axes
+
+
+def test_statements_about_histories_are_judged_with_both():
+    found = rows(judged_with_both(Settings(duration=4.0, time_step=2e-2, modes=12)))
+    assert [row[0] for row in found] == [str(number) for number in range(6, 15)]
+    assert all(row[2] in VERDICTS and row[3] in VERDICTS for row in found)
+    assert all(thin != exact for *_, thin, exact in found)  # other numbers, whatever they come to
 
 
 def test_power_laws_hold_their_part_of_the_map():

@@ -12,6 +12,7 @@ from coaxshell.apps.paper.claims.systems import preset
 from coaxshell.apps.paper.thickness import texts
 from coaxshell.apps.paper.thickness.compared import THIN, Compared, compare
 from coaxshell.apps.paper.thickness.error_map import scaled
+from coaxshell.apps.paper.thickness.judged import rows
 from coaxshell.apps.verification.markdown import table
 from coaxshell.model import PlaneShock
 from coaxshell.numerics.arrays import FloatArray
@@ -20,6 +21,8 @@ from coaxshell.solver.thin_error import WALLS, WETTED, ThinMap, thin_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from coaxshell.apps.paper.claims import Judged
 
 RESOLUTION = Settings(duration=3.0, time_step=4e-3, modes=60)
 """At which the report is made: a few seconds of one processor."""
@@ -68,11 +71,14 @@ class Report:
         The paper's bare shells under a plane wave, by the thickness of their walls in words.
     known : ThinMap
         The package's map of the thin walls' error.
+    judged : tuple of Judged
+        The paper's statements with both, if any.
     """
 
     resolution: Settings
     found: dict[str, Compared]
     known: ThinMap
+    judged: tuple[Judged, ...] = ()
 
     def _rows(self, of: Callable[[Compared, str], FloatArray], form: str) -> list[tuple[str, ...]]:
         return [
@@ -122,7 +128,18 @@ class Report:
         errors, peaks, motion, fit = (f"{caption}\n\n{table(headings, rows)}" for caption, headings, rows in self.tables)
         use = "\n".join(f"- {line}" for line in texts.USE)
         pieces = [texts.ABOUT, errors, peaks, motion, self.told, texts.WHY, shown[0], "## The map", self.map_told, shown[1], fit]
-        return "\n\n".join([*pieces, "## What to use when", use]) + "\n"
+        return "\n\n".join([*pieces, *self._claims, "## What to use when", use]) + "\n"
+
+    @property
+    def _claims(self) -> list[str]:
+        """What is said about the paper's statements, and their table."""
+        if not self.judged:
+            return []
+        found = rows(self.judged)
+        turned = [row[0] for row in found if row[2] != row[3]]
+        told = f"no. {', '.join(turned)} change their verdict" if turned else "none changes its verdict"
+        said = texts.CLAIMS.format(count=len(found), turned=told)
+        return [f"## {texts.CLAIMS_TITLE}", said, table(texts.CLAIM_HEADINGS, found)]
 
     def figures(self) -> dict[str, Figure]:
         """Return the pictures by the names of their files."""
@@ -132,11 +149,11 @@ class Report:
         return dict(zip(texts.CAPTIONS, (histories, figure_error_map(self.known)), strict=True))
 
 
-def report(resolution: Settings = RESOLUTION, factors: tuple[float, ...] = FACTORS) -> Report:
-    """Return the report, by three runs for each thickness."""
+def report(resolution: Settings = RESOLUTION, factors: tuple[float, ...] = FACTORS, judged: tuple[Judged, ...] = ()) -> Report:
+    """Return the report, by three runs for each thickness, with what has been found about the paper's statements, if anything."""
     bare = preset("bare")
     plane = PlaneShock(peak_pressure=25e3, decay_time=bare.sources[0].pulse.decay_time)  # type: ignore[union-attr]
     walls = bare.replace(source=plane)
     thickness = 1e3 * bare.shells[-1].thickness
     found = {f"{factor * thickness:g} mm": compare(scaled(walls, factor), resolution) for factor in factors}
-    return Report(resolution, found, thin_map())
+    return Report(resolution, found, thin_map(), judged)

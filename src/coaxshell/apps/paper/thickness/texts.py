@@ -39,6 +39,12 @@ USE = (
 ERROR_CAPTION = "Difference of the hoop stress from exact walls', in the middle of the core (L2 over time, of the exact walls'):"
 PEAK_CAPTION = "Largest hoop stress over that of exact walls:"
 MOTION_CAPTION = "Difference of the normal displacement from exact walls':"
+CLAIMS_TITLE = "The paper's statements with exact walls"
+CLAIMS = (
+    "Statements of the paper about the histories of its bare shells, under its own source, judged by the same criteria from runs that "
+    "differ in their walls alone. Of {count} {turned}."
+)
+CLAIM_HEADINGS = ("no.", "statement", "thin", "exact", "found with thin walls", "found with exact walls")
 FIT_HEADINGS = ("wall", "wetted at", "error of the hoop stress", "within a factor")
 WALL_NAMES = {"dry": "dry inside", "inner": "the paper's inner", "outer": "the paper's outer"}
 WETTED_NAMES = {"mid-surface": "mid-surfaces", "faces": "faces"}
