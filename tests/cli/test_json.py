@@ -75,6 +75,18 @@ def test_a_run_in_three_dimensions_tells_its_stations(run):
     assert all(warning in text.err for warning in summary.warnings)
 
 
+def test_elastic_walls_of_a_scenario_have_stations(run, tmp_path):
+    bare = cx.presets.load("bare")
+    solid = bare.replace(shells=[shell.replace(theory="elastic") for shell in bare.shells])
+    (tmp_path / "solid.toml").write_text(solid.to_toml_string(), encoding="utf-8")
+    options = ("--duration", "1", "--time-step", "0.05", "--modes", "4", "--dimensions", "3", "--stations", "0,70 cm")
+    found = document(run("run", str(tmp_path / "solid.toml"), *options, "--json"))["runs"][0]
+    thin = document(run("run", "bare", *options, "--json"))["runs"][0]
+    for one, other in zip(found["largest"], thin["largest"], strict=True):
+        for name in ("stress", "axial_stress", "von_mises_stress"):
+            assert one[name]["value"] == pytest.approx(other[name]["value"], rel=0.2)
+
+
 def test_both_runs_of_a_comparison(run, small):
     found = document(run("run", "absorbers", "--compare", "bare", *small, "--json", "-q"))
     assert [one["name"] for one in found["runs"]] == ["absorbers", "bare"]
