@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+from functools import partial
 
 import pytest
 import xarray as xr
 
 import coaxshell as cx
+from coaxshell.studies import execution
 
 STUDY = """
 scenario = "bare"
@@ -107,7 +109,8 @@ def test_bad_study_files(refused, study, old, new, message):
     assert message in refused("sweep", study(STUDY.replace(old, new)), left=["study.toml"])
 
 
-def test_bad_options(refused, study):
+def test_bad_options(refused, study, monkeypatch):
+    monkeypatch.setattr(execution, "dask_executor", partial(execution.dask_executor, timeout=0.5))
     name = study()
     assert "--workers" in refused("sweep", name, "--workers", "two", left=[name])
     assert "no scheduler answers" in refused("sweep", name, "--dask", "tcp://127.0.0.1:9", left=[name])
