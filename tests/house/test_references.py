@@ -39,3 +39,10 @@ def test_the_search_for_links_sees_those_that_lead_nowhere(tmp_path):
     page = tmp_path / "page.md"
     page.write_text("[a](../src/coaxshell/errors.py#InputError) [b](src/coaxshell/errors.py#Egg) [c](src/coaxshell/egg.py)")
     assert list(broken(page)) == ["errors.py#Egg", "egg.py#"]
+
+
+def test_formulas_are_written_in_environments_that_the_pages_know():
+    """The converter to MathML writes the ampersands of others, such as aligned, as letters, and the build of the pages refuses them."""
+    used = {page: set(re.findall(r"\\begin\{([^}]+)\}", page.read_text(encoding="utf-8"))) for page in PAGES}
+    assert {"array", "cases"} <= set().union(*used.values())
+    assert {named(page): names for page, found in used.items() if (names := found - {"array", "cases", "pmatrix"})} == {}
