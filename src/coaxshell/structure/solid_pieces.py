@@ -239,14 +239,22 @@ class _Weights:
         """Return displacements of the faces for pairs of forces on them and what is shown per force, shape (rows, orders, nodes)."""
         sums = modal_sums(self.weights, self.squares, s if g is None else s / np.sqrt(g))
         count = self.active + self.electric
-        pairs = count * (count + 1) // 2
-        shown = np.zeros((self.places, count, *sums.shape[1:]), np.complex128)
-        for part, (place, unweighted) in zip(sums[pairs:].reshape(-1, count, *sums.shape[1:]), self.parts, strict=True):
-            shown[place] += part if g is None or not unweighted else part / g
-        if g is None:
-            return np.concatenate([sums[:pairs], shown.reshape(-1, *sums.shape[1:])])
-        sums[:pairs] /= g
-        return _without_rows(sums[:pairs], shown, self.active, self.electric, 1.0 - g)
+        pairs, parts = np.split(sums, [count * (count + 1) // 2])
+        parts = parts.reshape(-1, count, *sums.shape[1:])
+        if g is not None:
+            inverse = 1.0 / g
+            pairs *= inverse
+            for part, (_, unweighted) in zip(parts, self.parts, strict=True):
+                if unweighted:
+                    part *= inverse
+        shown = parts
+        if len(self.parts) > self.places:
+            shown = np.zeros((self.places, *parts.shape[1:]), np.complex128)
+            for part, (place, _) in zip(parts, self.parts, strict=True):
+                shown[place] += part
+        elif g is None:
+            return sums
+        return _without_rows(pairs, shown, self.active, self.electric, np.zeros_like(s) if g is None else 1.0 - g)
 
 
 def _parts_of(place: Place, part: OrdersBasis, lossy: bool) -> list[tuple[FloatArray, bool]]:
@@ -263,13 +271,12 @@ def _parts_of(place: Place, part: OrdersBasis, lossy: bool) -> list[tuple[FloatA
 
 
 def _without_rows(pairs: ComplexArray, shown: ComplexArray, active: int, electric: int, lent: ComplexArray) -> ComplexArray:
-    """Return the sums of forces on the faces where -lent y acts on the rows: y = (1 + lent G_RR)^-1 G_Rf f, row by row.
+    """Return the sums of forces on the faces where -lent y acts on the rows: y = (1 + lent G_RR)^-1 G_Rf f, row by row, in place.
 
     A wall of which some rows lose and others do not is passive too, so that no divisor vanishes.
     """
     count = active + electric
     place = {pair: row for row, pair in enumerate((i, j) for i in range(count) for j in range(i, count))}
-    pairs, shown = pairs.copy(), shown.copy()
     for k in reversed(range(active, count)):
         scale = lent / (1.0 + lent * pairs[place[k, k]])
         taken = [scale * pairs[place[i, k]] for i in range(k)]
@@ -319,7 +326,7 @@ class PieceChain:
         both = [self._forces(1.0, 0.0), self._forces(0.0, 1.0)]
         self.forces = [[both[0][i], both[1][i]] for i in range(len(answers))]
         under_inner = both[0][0]
-        self.inner = sum((first[0][j] * under_inner[j] for j in range(1, FORCES)), first[0][0])
+        self.inner = _under(first[0], under_inner)
         self.across, self.outer = moved[0], seen[0][0]
 
     def _forces(self, on_inner: float, on_outer: float) -> list[list[Entry]]:
@@ -337,6 +344,17 @@ class PieceChain:
 
 
 Entry = ComplexArray | float
+
+
+def _under(answers: Sequence[Entry], forces: Sequence[Entry]) -> Entry:
+    """Return the sum of answers times forces, of which many are the numbers 0 and 1."""
+    total: Entry = 0.0
+    for answer, force in zip(answers, forces, strict=True):
+        if isinstance(force, float) and force in (0.0, 1.0):
+            total = total + answer if force else total
+        else:
+            total = total + answer * force
+    return total
 
 
 def _block(faces: list[list[Entry]], row: int, column: int) -> list[list[Entry]]:
@@ -401,5 +419,5 @@ class WallReading:
         for (reading, members), answer, forces in zip(self._parts, answers, chain.forces, strict=True):
             for row, place in zip(answer.shown, members, strict=True):
                 for side in range(2):
-                    shown[place, side] = sum(row[a] * forces[side][a] for a in reading.active)
+                    shown[place, side] = _under([row[a] for a in reading.active], [forces[side][a] for a in reading.active])
         return chain, shown
