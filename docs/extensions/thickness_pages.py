@@ -13,8 +13,8 @@ TAIL = """
 ## Again
 
 ```sh
-python -m coaxshell.apps.paper.thickness map map.json     # the map, a quarter of a minute of one processor
-coaxshell reproduce --only walls                          # all but map and statements, in one report
+python -m coaxshell.apps.paper.thickness map map.json  # the map, a quarter of a minute
+coaxshell reproduce --only walls                       # all but map and statements, in one report
 ```
 
 ```python
