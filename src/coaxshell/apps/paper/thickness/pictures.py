@@ -58,7 +58,8 @@ def figure_error_map(known: ThinMap) -> Figure:
     from coaxshell.apps.paper.thickness.texts import SHOWN_DURATION
 
     with style():
-        figure = new_figure(PAGE_WIDTH, 4.6)
+        figure = new_figure(PAGE_WIDTH, 4.8)
+        figure.suptitle(f"Error of the hoop stress (%), histories to t = {SHOWN_DURATION:g}", fontsize=10)
         axes = figure.subplots(len(WETTED), len(WALLS), sharex="col", sharey=True)
         for row, wetted in zip(axes, WETTED, strict=True):
             for ax, wall in zip(row, WALLS, strict=True):
