@@ -58,8 +58,8 @@ NAMES = """async count => {
 }"""
 
 
-def test_the_page_names_shells_and_fluids_as_the_library_does(open_page, server):
-    page = open_page(f"{server.address}/page/js/words.js", wait=False)
+def test_the_page_names_shells_and_fluids_as_the_library_does(open_page):
+    page = open_page(wait=False)
     for count in (1, 2, 3, 12):
         library = [[name(i, count) for i in range(count)] for name in (shell_name, shell_phrase)]
         assert page.evaluate(NAMES, count) == [*library, [region_side(i, count) for i in range(count + 1)]]
