@@ -19,7 +19,10 @@ from pathlib import Path
 from mutations import MUTATIONS, Mutation
 
 PROJECT = Path(__file__).parents[2]
-COPIED = ("src", "tests", "docs", "examples", "pyproject.toml", "README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile")
+COPIED = (
+    *("src", "tests", "docs", "examples", ".ci", "pyproject.toml", "Makefile"),
+    *("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE"),
+)
 LONGEST = 1800.0
 """Seconds after which a run of tests counts as never ending, which is noticed too."""
 

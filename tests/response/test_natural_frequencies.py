@@ -79,6 +79,15 @@ def test_axial_waves_slower_than_sound_do_not_radiate():
     assert float(single["frequency"][0, 0]) == pytest.approx(s.imag / (2 * np.pi), rel=1e-12)
 
 
+def test_long_waves_along_the_axis_ring_as_none():
+    """Modes that radiate tend to those of two dimensions, whose damping says that what leaves is an outgoing wave."""
+    none, long = (cx.natural_frequencies("bare", 1, length, up_to=1300.0) for length in (None, 100.0))
+    for frequency, ratio in zip(none["frequency"].values[0], none["damping_ratio"].values[0], strict=True):
+        near = np.nanargmin(np.abs(long["frequency"].values[0] - frequency))  # others move along the axis, or bend as a beam
+        assert float(long["frequency"][0, near]) == pytest.approx(frequency, rel=2e-3)
+        assert float(long["damping_ratio"][0, near]) == pytest.approx(ratio, rel=2e-2)
+
+
 def test_a_cavity_rings_as_between_rigid_walls():
     """A wall a thousand times as stiff as steel gives way by some thousandths."""
     stiff = cx.Elastic(name="stiff", density=7800, youngs_modulus=210e13, poisson_ratio=0.3)
