@@ -66,11 +66,12 @@ def _late(block: slice) -> Found:
 
 
 def test_an_interrupted_run_goes_on(threaded: SpatialResponse, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "run.store"
+
     def cut(fraction: float, stage: str) -> None:
-        if fraction > 0.4:
+        if len(list(folder.glob("*.npz"))) >= 3:  # threads run ahead of what is kept, however little that is
             raise KeyboardInterrupt
 
-    folder = tmp_path / "run.store"
     with pytest.raises(KeyboardInterrupt):
         run(cx.Execution(store=folder, progress=cut))
     kept = sorted(folder.glob("*.npz"))
