@@ -133,8 +133,7 @@ def field_stress(basis: OrdersBasis, number: int, radius: float, what: Shown) ->
     what : str
         A stress.
     """
-    part = basis.mesh.layers[number]
-    at = interpolation(part.degree, min(max(2.0 * (radius - part.layer.inner) / part.layer.thickness - 1.0, -1.0), 1.0))
+    part, at = _place(basis, number, radius)
     per_row = PotentialOfLayer(part, basis.orders, basis.wavenumber).per_row
     phi, slope = (np.einsum("q,mqi->mi", row, per_row) for row in (at, at @ part.derivative))
     e = np.array(part.layer.coupling)[:, STRESSES[what]]

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coaxshell.apps.paper.point_histories import figure_points
 from coaxshell.apps.paper.thickness.compared import EXACT, Compared
-from coaxshell.plotting.histories import TIME_LABEL
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, new_figure, style
 from coaxshell.solver.thin_error import WALLS, WETTED
 
@@ -28,18 +28,7 @@ _LEVELS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 
 def figure_histories(found: Compared) -> Figure:
     """Draw the hoop stress at head and tail of each wall under every theory, a panel a point."""
-    with style():
-        rows = -(-len(found.points) // 2)
-        figure = new_figure(PAGE_WIDTH, 0.5 + 2.1 * rows)
-        axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
-        for index, (ax, point) in enumerate(zip(axes.flat, found.points, strict=False)):
-            plot_histories(found, index, ax).set_title(point)
-        for ax in axes[-1]:
-            ax.set_xlabel(TIME_LABEL)
-        for ax in axes[:, 0]:
-            ax.set_ylabel("hoop stress (MPa)")
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    return figure
+    return figure_points(found.points, lambda point, ax: plot_histories(found, point, ax), len(_DRAWN))
 
 
 def plot_histories(found: Compared, point: int, ax: Axes) -> Axes:
