@@ -33,7 +33,7 @@ function along(current) {
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), ...stations.map((z) => el("th", { scope: "col", class: "number" }, placeText(z))))), ...rows));
 }
 
-// Warnings above the table and the accuracy below it. They come a moment after the rest; until then those of the run before stand there, dimmed.
+// Warnings above the table and the accuracy below it. They come a moment after the rest; until then those of the run before stand there, muted.
 export function drawJudgement(current) {
   const panel = by("peaks"), note = panel.querySelector(".accuracy");
   if (!current || !note) return;
