@@ -8,7 +8,13 @@ import pytest
 import xarray as xr
 
 import coaxshell as cx
+from coaxshell.apps.cli.documents import claims_document
 from coaxshell.apps.cli.output import print_document
+from coaxshell.apps.paper.claims.claim import Claim, Finding, Judged
+from coaxshell.apps.paper.reproduction import VARIANTS, Results
+from coaxshell.solver.settings import Settings
+from coaxshell.studies.metrics import metrics_of
+from coaxshell.studies.reading import MetricSource
 
 RESOLUTION = "[resolution]\nduration = 1\ntime_step = 0.02\nmodes = 6\n"
 STUDY = f"""
@@ -65,10 +71,11 @@ def test_a_run_in_three_dimensions_tells_its_stations(run):
     options = ("--duration", "1", "--time-step", "0.02", "--modes", "6", "--dimensions", "3", "--stations", "0,70 cm")
     found = document(run("run", "bare", *options, "--json"))
     summary = cx.simulate("bare", duration=1, time_step=0.02, modes=6, dimensions=3, stations=["0 m", 0.7]).summary()
-    told = {key: value for key, value in found["runs"][0].items() if key != "name"}
+    told = {key: value for key, value in found["runs"][0].items() if key not in ("name", "metrics")}
     assert told == json.loads(json.dumps(summary.to_dict()))
     assert [one["station"] for one in told["stations"]] == [0.0, 0.7]
     assert set(told["largest"][0]) - {"name"} <= set(found["units"])
+    assert found["runs"][0]["metrics"]["inner.peak_von_mises_stress"] == told["largest"][0]["von_mises_stress"]["value"]
     assert (found["units"]["station"], found["units"]["von_mises_stress"]) == ("m", "Pa")
     text = run("run", "bare", *options)
     assert text.out.strip() == str(summary.without_warnings()).strip()
@@ -92,6 +99,60 @@ def test_both_runs_of_a_comparison(run, small):
     assert [one["name"] for one in found["runs"]] == ["absorbers", "bare"]
     assert found["runs"][0]["absorber_force"] > 0
     assert found["runs"][1]["absorber_force"] is None
+
+
+def test_runs_have_the_metrics_of_studies_by_their_names(run, small):
+    found = document(run("run", "hybrid", "--compare", "bare", *small, "--json", "-q", "--energy", "energy.png"))
+    response = cx.simulate("hybrid", modes=6, time_step=0.02, duration=1)
+    told = found["runs"][0]["metrics"]
+    assert {"inner.peak_stress", "outer.segment_actuator_voltage", "outer.rms_stress", "absorbers.peak_force"} <= set(told)
+    source = MetricSource(response)
+    for metric in metrics_of(list(told), response.system):
+        assert told[metric.name] == pytest.approx(metric(source), rel=1e-12), metric.name
+        assert found["units"][metric.name] == metric.units
+    other = found["runs"][1]["metrics"]
+    ratios = found["first_over_second"]
+    assert ratios["inner.peak_stress"] == pytest.approx(told["inner.peak_stress"] / other["inner.peak_stress"])
+    assert "absorbers.peak_force" not in ratios
+    energy = found["energy"]
+    assert len(energy["exterior_work"]) == len(energy["time"]) == 6
+    assert (energy["units"]["exterior_work"], energy["dimensions"]["exterior_work"]) == ("J/m", ["time"])
+
+
+def test_natural_frequencies(run):
+    found = document(run("modes", "bare", "--order", "2", "--up-to", "400 Hz", "--json"))
+    assert all(mode["order"] == 2 and mode["frequency (Hz)"] < 400.0 for mode in found["modes"])
+    assert found["modes"]
+
+
+def test_spectra(run, small):
+    asked = ("--shell", "inner", "--angle", "0,90", "--frequency", "200,800", "--json", "-q")
+    outcome = run("spectrum", "bare", *small, *asked)
+    found = document(outcome)
+    expected = cx.simulate("bare", modes=6, time_step=0.02, duration=1).shock_spectrum("inner", [0, 90], [200.0, 800.0])
+    assert [one["pseudo_velocity"] for one in found["spectra"]] == expected.values.T.tolist()
+    assert (found["spectra"][1]["angle"], found["units"]["absolute_acceleration"], outcome.files) == (90.0, "m/s^2", [])
+    assert run("spectrum", "bare", *small, *asked, "-o", "a.csv").files == ["a.csv"]
+
+
+def test_conformance_report(run):
+    outcome = run("verify", "--quick", "--only", "statics", "--quiet", "--json")
+    found = document(outcome)
+    (check,) = found["checks"]
+    assert (check["name"], found["failed"], len(check["rows"])) == ("statics", 0, 13)
+    assert all(row["verdict"] == "pass" and row["error"] <= row["tolerance"] for row in check["rows"])
+    assert "wrote verification-report" in outcome.err
+    assert {"name", "title"} == set(document(run("verify", "--list", "--json"))["checks"][0])
+
+
+def test_claims_of_the_paper():
+    claim = Claim(1, "a-claim", "Figure 3", "It falls.", "by half", lambda runs: None)
+    name = next(iter(VARIANTS))
+    judged = Judged(claim, {name: Finding({"stress (Pa)": 2.0}, "holds", "It does.") for name in VARIANTS})
+    told = claims_document(Results(Settings(), judged=(judged,), seconds={"claims": 1.5}))
+    assert told["tally"][name] == {"holds": 1}
+    assert told["claims"][0]["findings"][name] == {"verdict": "holds", "why": "It does.", "measured": {"stress (Pa)": 2.0}}
+    assert json.loads(json.dumps(told)) == told
 
 
 def test_presets(run):

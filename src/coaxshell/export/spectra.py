@@ -15,6 +15,8 @@ from coaxshell.model.places import shell_name
 from coaxshell.numerics.oscillators import KINDS
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from coaxshell.response import Response
 
 
@@ -42,22 +44,39 @@ def export_spectra_csv(
     InputError
         The file is not a .csv or cannot be written, no shell is elastic, or an argument that the spectrum refuses.
     """
-    runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
-    angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
     table: dict[str, npt.NDArray[np.float64]] = {}
-    for name, response in runs.items():
-        for index in response.system.shell_indices(shells):
-            for kind in KINDS:
-                found = response.shock_spectrum(index, angles, frequency, station=station, kind=kind, quality_factor=quality_factor)
-                if not table:
-                    table["natural frequency (Hz)"] = found["frequency"].to_numpy()
-                    frequency = found["frequency"].to_numpy().tolist()
+    for name, of_shells in spectra_of(responses, shells, angle, station, frequency, quality_factor).items():
+        for shell, kinds in of_shells.items():
+            for kind, found in kinds.items():
+                table.setdefault("natural frequency (Hz)", found["frequency"].to_numpy())
                 words = f"{kind.replace('-', ' ')} ({found.attrs['units']})"
                 for place, values in _places(found):
-                    table[" ".join(filter(None, [name, shell_name(index, response.shells), place, words]))] = values
-    if not table:
-        raise InputError("shells", "no run has an elastic one of these", "choose others")
+                    table[" ".join(filter(None, [name, shell, place, words]))] = values
     return write_csv(table, path)
+
+
+def spectra_of(
+    responses: Mapping[str, Response] | Response,
+    shells: Sequence[int | str] | int | str | None = None,
+    angle: Sequence[float] | float = (0.0, 180.0),
+    station: Any = None,
+    frequency: Sequence[float] | None = None,
+    quality_factor: float = 10.0,
+) -> dict[str, dict[str, dict[str, xr.DataArray]]]:
+    """Return the spectra that the file holds, by run, shell and kind, all at the natural frequencies of the first; errors are the same."""
+    runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
+    angles = [float(each) for each in np.atleast_1d(np.asarray(angle, dtype=np.float64))]
+    spectra: dict[str, dict[str, dict[str, xr.DataArray]]] = {}
+    for name, response in runs.items():
+        of_shells = spectra[name] = {}
+        for index in response.system.shell_indices(shells):
+            kinds = of_shells[shell_name(index, response.shells)] = {}
+            for kind in KINDS:
+                found = response.shock_spectrum(index, angles, frequency, station=station, kind=kind, quality_factor=quality_factor)
+                kinds[kind], frequency = found, found["frequency"].to_numpy().tolist()
+    if not any(spectra.values()):
+        raise InputError("shells", "no run has an elastic one of these", "choose others")
+    return spectra
 
 
 def _places(found: Any) -> list[tuple[str, npt.NDArray[np.float64]]]:

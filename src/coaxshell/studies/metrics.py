@@ -19,10 +19,12 @@ from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell
 from coaxshell.model.naming import suggestion
 from coaxshell.model.paths import parts
-from coaxshell.model.places import region_name, region_number, region_place, shell_phrase, shell_place, shell_words
+from coaxshell.model.places import region_name, region_number, region_place, shell_number, shell_phrase, shell_place, shell_words
 from coaxshell.model.system import System
 from coaxshell.response import Response
 from coaxshell.response.quantities import Where, shell_metrics
+from coaxshell.response.spatial_summary import SpatialSummary
+from coaxshell.response.summary import Summary
 from coaxshell.studies.reading import DesignReading, MetricSource
 from coaxshell.studies.user_functions import UserCode, UserFunction, from_callable, from_text
 
@@ -211,6 +213,34 @@ def metric_names(system: System, dimensions: int = 2) -> list[str]:
         names += [f"{region_place(i, count)}.rms_pressure" for i, fluid in enumerate(system.fluids) if not isinstance(fluid, Vacuum)]
     more = [(place, name) for place, names_there in without_shell(system).items() for name in names_there]
     return names + [f"{place}.{name}" for place, name in more if dimensions == 2 or WITHOUT_SHELL[place][name] not in _PLANE_ALONE]
+
+
+_OF_SUMMARY = {
+    "sensor_voltage": "segment_sensor_voltage",
+    "actuator_voltage": "segment_actuator_voltage",
+    "stress_truncation": "stress_truncation",
+}
+"""What a summary of a shell shows, by its key, that is a metric of another name."""
+
+
+def summary_metrics(summary: Summary | SpatialSummary, system: System) -> dict[str, float]:
+    """Return the metrics that a summary of a whole run holds, by their names, as :class:`MetricSource` would read them; SI."""
+    count = len(system.shells)
+    plain = summary.to_dict()
+    shells = plain["largest"] if "largest" in plain else plain["shells"]
+    keys = {
+        name: quantity.key(where) for name, (quantity, where) in shell_metrics().items() if quantity.gain is None or not quantity.largest
+    }
+    found: dict[str, float] = {}
+    for shell in shells:
+        number = shell_number(shell["name"], count)
+        assert number is not None  # the summary has it from the same words
+        values = {name: shell.get(key) for name, key in keys.items()} | {name: shell.get(key) for key, name in _OF_SUMMARY.items()}
+        values["strength_margin"] = (shell.get("wall_stress") or {}).get("margin")
+        numbers = {name: value["value"] if isinstance(value, Mapping) else value for name, value in values.items()}
+        found |= {f"{shell_place(number, count)}.{name}": value for name, value in numbers.items() if value is not None}
+    absorbers = {"absorbers.peak_displacement": plain["absorber_displacement"], "absorbers.peak_force": plain["absorber_force"]}
+    return found | {name: value for name, value in absorbers.items() if value is not None}
 
 
 def _metric(asked: Any, name: str | None, system: System, where: str, code: UserCode) -> Metric:

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
+from coaxshell.apps.cli.documents import runs_document
 from coaxshell.apps.cli.options import JsonOption
-from coaxshell.apps.cli.output import echo, print_document, runs_document
+from coaxshell.apps.cli.output import echo, print_document
 
 
 def info(
@@ -20,7 +21,7 @@ def info(
 
     if as_json:
         found = response.load_response(file)
-        print_document({"file": str(file), **runs_document({found.system.name or file.stem: found.summary()})})
+        print_document({"file": str(file), **runs_document({found.system.name or file.stem: found}, [found.summary()])})
         return
     echo(response.info(file).rstrip())
     echo()

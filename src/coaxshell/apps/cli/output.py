@@ -27,7 +27,6 @@ from coaxshell.numerics.files import free_file, free_folder
 from coaxshell.numerics.texts import visible
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.figure import Figure
     from rich.table import Table
 
@@ -248,53 +247,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def runs_document(named: Mapping[str, Summary]) -> dict[str, Any]:
-    """Return the summaries of named runs, with the units of their fields."""
-    from coaxshell.response.quantities import summary_rows
-
-    runs = [{"name": name, **summary.to_dict()} for name, summary in named.items()]
-    dimensions = max((run["settings"].get("dimensions", 2) for run in runs), default=2)
-    units = {key: unit for key, _, unit in summary_rows(dimensions)} | {"segment": "m", "actuator_limit": "V"}
-    units |= {
-        "absorber_displacement": "m",
-        "absorber_force": "N/m",
-        "window": "a/c_e",
-        "time": "a/c_e",
-        "angle": "deg",
-        "transit_time": "s",
-    }
-    if dimensions == 3:
-        forces = {run.get("absorber_force_unit", "N" if run["settings"].get("dimensions", 2) == 3 else "N/m") for run in runs}
-        units |= {"station": "m", "absorber_force": "N/m of lines, N of points" if len(forces) > 1 else forces.pop()}
-    return {"runs": runs, "units": units}
-
-
-def cases_document(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return a sweep case by case: fields, metrics, why it failed, its warnings; with the units of fields and metrics."""
-    frame = dataset.to_dataframe().reset_index()
-    names = [str(name) for name in frame.columns]
-    columns = [frame[name].tolist() for name in names]
-    units = {name: str(dataset[name].attrs["units"]) for name in names if "units" in dataset[name].attrs}
-    return {"cases": [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)], "units": units}
-
-
-def statistics_document(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the statistics of uncertain metrics and their indices, each as (value, low, high) of its interval."""
-    from coaxshell.studies.labelled import FAILURE
-    from coaxshell.studies.uncertainty.table import told
-
-    metrics: Sequence[str] = json.loads(dataset.attrs["metrics"])
-    found: dict[str, Any] = {"runs": int(dataset[FAILURE].size), "failed": int((dataset[FAILURE] != "").sum())}
-    found |= {"confidence": float(dataset.attrs["confidence"]), "statistics": {}, "units": {}}
-    if not told(dataset):
-        return found
-    for name in metrics:
-        found["units"][name] = str(dataset[name].attrs.get("units", ""))
-        found["statistics"][name] = {str(one): dataset[name].sel(statistic=one).values.tolist() for one in dataset["statistic"].values}
-    for order in ("first_order", "total_order"):
-        if order in dataset:
-            fields = dataset["field"].values
-            found[order] = {n: {str(f): dataset[order].sel(metric=n, field=f).values.tolist() for f in fields} for n in metrics}
-    return found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.apps.cli import options
-from coaxshell.apps.cli.output import echo
+from coaxshell.apps.cli.output import echo, print_document
 from coaxshell.apps.cli.progress import Interrupted, progress, tell_time
 from coaxshell.apps.cli.running import settings_of
 from coaxshell.errors import InputError
@@ -36,6 +36,7 @@ def reproduce(
     time_step: options.TimeStepOption = options.TIME_STEP,
     modes: Annotated[str, typer.Option("--modes", metavar="N", help="Highest circumferential order.")] = options.MODES,
     workers: options.WorkersOption = None,
+    as_json: options.JsonOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
     """Compute the whole paper and write one report.
@@ -60,8 +61,13 @@ def reproduce(
     except KeyboardInterrupt:
         raise Interrupted(f"interrupted; finished parts are kept in {str(output)!r}: the same command goes on") from None
     paths = write(found, output)
-    _tell(found)
-    echo("wrote " + ", ".join(str(path) for path in paths))
+    if as_json:
+        from coaxshell.apps.cli.documents import claims_document
+
+        print_document(claims_document(found))
+    else:
+        _tell(found)
+    echo("wrote " + ", ".join(str(path) for path in paths), aside=as_json)
 
 
 def _resolution(quick: bool, duration: str, time_step: str, modes: str) -> Settings:

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.apps.cli import options
+from coaxshell.apps.cli.documents import arrays_document, runs_document
 from coaxshell.apps.cli.options import named_as_options
-from coaxshell.apps.cli.output import Outputs, echo, print_document, runs_document, write_figure
+from coaxshell.apps.cli.output import Outputs, echo, print_document, write_figure
 from coaxshell.apps.cli.running import Request, WorkRequest, with_options
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from coaxshell.response import Response
 
 
@@ -85,12 +88,12 @@ def run(
     if output is not None:
         with named_as_options(path="output"):
             responses[0].save(output)
-    _draw(shown, figure, energy, quiet=quiet)
+    balance = _draw(shown, figure, energy, quiet=quiet)
     if as_json:
-        found = {name: response.summary() for name, response in named.items()}
-        print_document(runs_document(found))
-        for summary in found.values():
-            tell_warnings(summary.warnings)
+        document = runs_document(named, [response.summary() for response in responses])
+        print_document(document | ({} if balance is None else {"energy": arrays_document(balance)}))
+        for response in responses:
+            tell_warnings(response.warnings)
     elif compare is not None:
         print_comparison(shown)
     else:
@@ -100,17 +103,19 @@ def run(
             echo(f"{word} {path}", aside=as_json)
 
 
-def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> None:
-    """Draw the runs, and where the energy of the first goes."""
+def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> xr.Dataset | None:
+    """Draw the runs, and where the energy of the first goes, which is returned."""
     if figure is not None:
         from coaxshell.plotting import figure_comparison, figure_curves
 
         alone = len(named) == 1 and next(iter(named.values())).stations is not None
         write_figure(figure_curves(named) if alone else figure_comparison(named), figure)
-    if energy is not None:
-        from coaxshell.apps.cli.progress import progress
-        from coaxshell.plotting import figure_energy
+    if energy is None:
+        return None
+    from coaxshell.apps.cli.progress import progress
+    from coaxshell.plotting import figure_energy
 
-        with progress(quiet) as report:
-            balance = next(iter(named.values())).energy(progress=report)
-        write_figure(figure_energy(balance), energy, "--energy")
+    with progress(quiet) as report:
+        balance = next(iter(named.values())).energy(progress=report)
+    write_figure(figure_energy(balance), energy, "--energy")
+    return balance

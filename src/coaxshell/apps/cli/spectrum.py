@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from coaxshell.apps.cli import options
-from coaxshell.apps.cli.output import Outputs, echo, write_figure
+from coaxshell.apps.cli.output import Outputs, echo, print_document, write_figure
 from coaxshell.apps.cli.running import Request, answers, tell_all_warnings, with_resolution
 
 
@@ -35,6 +35,7 @@ def spectrum(
     ] = None,
     *,
     request: Request,
+    as_json: options.JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -42,14 +43,18 @@ def spectrum(
 
     What small equipment on the shells feels: the largest pseudo-velocity of oscillators by their natural frequency, at some angles and the
     largest all around, on four-coordinate paper. The run is a saved one, or a preset or a .toml file that is solved; with --compare,
-    two of them. A .csv holds displacement, pseudo-velocity and acceleration.
+    two of them. A .csv and --json hold displacement, pseudo-velocity and acceleration; --json writes a file only where --output names one.
     """
     from coaxshell.apps.cli.comparison import run_labels
+    from coaxshell.apps.cli.documents import spectra_document
     from coaxshell.export import export_spectra_csv
+    from coaxshell.export.spectra import spectra_of
     from coaxshell.plotting import FIGURE_SUFFIXES, figure_shock_spectra
     from coaxshell.response.shock_spectrum import frequencies_of, quality_of
 
-    target = Outputs(force).file(output or Path("spectrum.png"), "--output", (*FIGURE_SUFFIXES, ".csv"))
+    target = None if as_json and output is None else output or Path("spectrum.png")
+    if target is not None:
+        Outputs(force).file(target, "--output", (*FIGURE_SUFFIXES, ".csv"))
     angles = [options.number("--angle", each) for each in angle.split(",")]
     frequencies = None if frequency is None else [options.number("--frequency", each) for each in frequency.split(",")]
     as_options = partial(
@@ -62,9 +67,12 @@ def spectrum(
     responses = answers(context, [source, *([compare] if compare else [])], request, quiet=quiet, dimensions=3)
     named = dict(zip(run_labels(*responses) if compare else ("",), responses, strict=True))
     with as_options():
-        if target.suffix == ".csv":
+        if as_json:
+            print_document(spectra_document(spectra_of(named, shell, angles, None, frequencies, factor), factor))
+        if target is not None and target.suffix.lower() == ".csv":
             export_spectra_csv(named, target, shell, angles, None, frequencies, factor)
-        else:
+        elif target is not None:
             write_figure(figure_shock_spectra(named, shell, angles, None, frequencies, factor), target, "--output")
     tell_all_warnings(responses)
-    echo(f"wrote {target}")
+    if target is not None:
+        echo(f"wrote {target}", aside=as_json)

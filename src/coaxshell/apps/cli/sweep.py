@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.apps.cli import options
+from coaxshell.apps.cli.documents import cases_document
 from coaxshell.apps.cli.options import named_as_options
-from coaxshell.apps.cli.output import cases_document, write_figure
+from coaxshell.apps.cli.output import write_figure
 from coaxshell.apps.cli.progress import kept
 from coaxshell.apps.cli.running import StudyRequest, tell_code, tell_study_time, with_options
 from coaxshell.errors import InputError

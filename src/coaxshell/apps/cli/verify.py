@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from coaxshell.apps.cli import options
-from coaxshell.apps.cli.output import echo
+from coaxshell.apps.cli.output import echo, print_document
 from coaxshell.apps.cli.running import settings_of
 from coaxshell.errors import InputError
 
@@ -42,6 +42,7 @@ def verify(
     ] = "0.05",
     time_step: options.TimeStepOption = options.TIME_STEP,
     modes: Annotated[str, typer.Option("--modes", metavar="N", help="With --against, --template: highest order.")] = options.MODES,
+    as_json: options.JsonOption = False,
     force: options.ForceOption = False,
     quiet: options.QuietOption = False,
 ) -> None:
@@ -52,11 +53,11 @@ def verify(
     (sign, unit, a lag in time, head and tail exchanged). Exits with 1 if anything fails.
     """
     if show_list:
-        return _list()
+        return _list(as_json)
     if against is None and template is None:
         if case is not None:
             raise InputError("--case", "is for --against or --template", "give one of them, or leave --case out")
-        return _suite(only, quick, output, force, quiet)
+        return _tell(_suite(only, quick, output, force, quiet), output, as_json)
 
     from coaxshell.apps.cli.running import load_system
 
@@ -67,23 +68,27 @@ def verify(
     if resolution.modes == "auto":
         raise InputError("--modes", "'auto' is not allowed here", "give a whole number of 1 or more")
     if template is not None:
-        _template(system, template, resolution.modes, force)
+        _template(system, template, resolution.modes, force, as_json)
     if against is not None:
         limit = options.number("--tolerance", tolerance)
-        _against(against, system, _folder(output, force), limit, (resolution.time_step, resolution.modes), quiet)
+        _folder(output, force)
+        _tell(_against(against, system, limit, (resolution.time_step, resolution.modes), quiet), output, as_json)
     return None
 
 
-def _list() -> None:
+def _list(as_json: bool) -> None:
     from coaxshell.apps.verification import checks
 
     known = checks()
+    if as_json:
+        return print_document({"checks": [{"name": one.name, "title": one.title} for one in known]})
     width = max(len(one.name) for one in known)
     for one in known:
         echo(f"{one.name:{width}}  {one.title}")
+    return None
 
 
-def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet: bool) -> None:
+def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet: bool) -> Report:
     from coaxshell.apps.cli.progress import progress
     from coaxshell.apps.verification import chosen, run
     from coaxshell.apps.verification.files import prepare
@@ -91,26 +96,24 @@ def _suite(only: list[str] | None, quick: bool, output: Path, force: bool, quiet
     wanted = chosen(only, quick)
     prepare(_folder(output, force))
     with progress(quiet) as report:
-        found = run(wanted, quick=quick, progress=report)
-    _tell(found, output)
+        return run(wanted, quick=quick, progress=report)
 
 
-def _against(path: Path, system: System, output: Path, limit: float, resolution: tuple[float, int], quiet: bool) -> None:
+def _against(path: Path, system: System, limit: float, resolution: tuple[float, int], quiet: bool) -> Report:
     from coaxshell.apps.cli.progress import progress
     from coaxshell.apps.verification.against import against
 
     with options.named_as_options(), progress(quiet) as report:
-        found = against(path, system, time_step=resolution[0], modes=resolution[1], tolerance=limit, progress=report)
-    _tell(found, output)
+        return against(path, system, time_step=resolution[0], modes=resolution[1], tolerance=limit, progress=report)
 
 
-def _template(system: System, path: Path, modes: int, force: bool) -> None:
+def _template(system: System, path: Path, modes: int, force: bool, as_json: bool) -> None:
     from coaxshell.apps.cli.output import Outputs
     from coaxshell.apps.verification.against import template
 
     Outputs(force).file(path, "--template", (".csv",))
     template(system, path, modes=modes)
-    echo(f"wrote {path}")
+    echo(f"wrote {path}", aside=as_json)
 
 
 def _folder(output: Path, force: bool) -> Path:
@@ -124,18 +127,22 @@ def _folder(output: Path, force: bool) -> Path:
     return output
 
 
-def _tell(found: Report, output: Path) -> None:
+def _tell(found: Report, output: Path, as_json: bool) -> None:
     """Print the report, write its files, and leave with 1 if anything fails."""
     from coaxshell.apps.verification import write_report
     from coaxshell.apps.verification.terminal import drawn, plain
 
     paths = write_report(found, output)
-    if sys.stdout.isatty():
+    if as_json:
+        from coaxshell.apps.cli.documents import report_document
+
+        print_document(report_document(found))
+    elif sys.stdout.isatty():
         from rich.console import Console
 
         Console().print(*drawn(found), sep="\n")
     else:
         echo(plain(found))
-    echo("wrote " + ", ".join(str(path) for path in paths))
+    echo("wrote " + ", ".join(str(path) for path in paths), aside=as_json)
     if found.failed:
         raise typer.Exit(1)
