@@ -9,6 +9,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.response import Response
+from coaxshell.response.spatial import SpatialResponse
 
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=210e9, poisson_ratio=0.3)
 WATER = cx.Fluid(density=1000, sound_speed=1400)
@@ -96,13 +97,62 @@ def test_nearly_incompressible_is_asked_for_in_words():
         RUBBER.replace(poisson_ratio=0.5)
 
 
-def test_three_dimensions_are_refused_by_the_layer():
-    with pytest.raises(cx.InputError, match=r"shells\[1\]\.layers\[0\]\.material: PZT-4-standard has losses.*two dimensions only"):
-        cx.simulate(system(), dimensions=3, **RUN)
-
-
 def test_the_largest_stress_anywhere_is_no_less_than_at_its_depths():
     response = run(coat=True)
     peak = response.peak_stress("inner")
     for depth in ("inner", "outer", 0.0):
         assert peak.value > 0.999 * float(np.abs(response.stress("inner", depth=depth, component="von_mises")).max())
+
+
+# Three dimensions
+
+SPACE = {**RUN, "duration": 1.0, "time_step": 2e-2, "modes": 4, "dimensions": 3, "stations": [0.0, 0.5]}
+
+
+def test_a_wave_across_the_axis_is_that_of_two_dimensions():
+    smooth = system(coat=True).replace(source=cx.PlaneWave(pulse=cx.Gaussian(peak_pressure=2.5e4, width=3e-4, centre=1.8e-3)))
+    plane, space = (cx.simulate(smooth, duration=3.0, time_step=3e-2, modes=4, **more) for more in ({}, {"dimensions": 3}))
+    for read in (
+        lambda found: found.stress("inner", [20, 90], component="von_mises"),
+        lambda found: found.stress("outer", [20, 90], depth="outer", component="hoop"),
+        lambda found: found.sensor_voltage("outer", [20, 90]),
+    ):
+        flat = np.asarray(read(plane))
+        np.testing.assert_allclose(np.asarray(read(space)).reshape(flat.shape), flat, rtol=0, atol=1e-12 * np.abs(flat).max())
+
+
+@lru_cache(maxsize=2)
+def sphere(coat: bool = True, model: str = "prony") -> SpatialResponse:
+    source = cx.SphericalShock(distance=3.0, peak_pressure=2.5e4, decay_time=1.3e-4)
+    found = cx.simulate(system(coat=coat, loss_model=model).replace(source=source), **SPACE)
+    assert isinstance(found, SpatialResponse)
+    return found
+
+
+@pytest.mark.parametrize(("coat", "model"), [(True, "prony"), (False, "constant-q")])
+def test_energy_over_the_whole_length_closes_with_what_the_walls_dissipate(coat, model):
+    energy = sphere(coat, model).energy(every=10)
+    assert float(np.abs(energy["closure_relative"]).max()) < 5e-6
+    for name in ("inner", "outer") if coat else ("outer",):
+        lost = energy[f"{name}_dissipation"]
+        assert lost.attrs["role"] == "loss"
+        assert float(lost[-1]) > 1e-3 * float(np.abs(energy["exterior_work"]).max())
+        assert np.all(np.diff(lost) > 0.0)
+
+
+def test_stations_keep_the_stress_of_its_depth_and_faces_are_free_of_shear():
+    found = sphere()
+    for shell, number in (("inner", 0), ("outer", 1)):
+        depth = found.spatial.problem.shells[number].design_depth
+        kept, read = (np.asarray(found.stress(shell, [20, 90], station=0.5, **at)) for at in ({}, {"depth": depth}))
+        np.testing.assert_allclose(read, kept, rtol=0, atol=1e-9 * np.abs(kept).max())
+    joint = found.system.shells[0].thickness / 2 - 3e-2
+    components = ("radial", "radial_hoop", "radial_axial")
+    metal, rubber, face = (
+        [np.asarray(found.stress("inner", [20, 90], depth, component=name, station=0.5)) for name in components]
+        for depth in (joint - 1e-7, joint + 1e-7, "outer")
+    )
+    for inside, outside in zip(metal, rubber, strict=True):
+        np.testing.assert_allclose(inside, outside, rtol=0, atol=1e-3 * np.abs(outside).max())
+    for free, held in zip(face[1:], rubber[1:], strict=True):
+        assert np.abs(free).max() < 1e-6 * np.abs(held).max()

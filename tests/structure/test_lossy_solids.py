@@ -12,12 +12,12 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.structure import solid_pieces
-from coaxshell.structure.elastic_basis import PotentialOfLayer
-from coaxshell.structure.elastic_mesh import strains, wall_mesh
+from coaxshell.structure.elastic_basis import PotentialOfLayer, displacements, layer_strains
+from coaxshell.structure.elastic_mesh import wall_mesh
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
 from coaxshell.structure.losses import Band, constant_q, prony_fit
 from coaxshell.structure.lossy_solid import LossySolidWall
-from coaxshell.structure.solid import AXIAL, HOOP, PLANE, RADIAL, RADIAL_HOOP, require_solid, solid_layers
+from coaxshell.structure.solid import AXIAL, HOOP, HOOP_AXIAL, RADIAL, RADIAL_AXIAL, RADIAL_HOOP, require_solid, solid_layers
 from coaxshell.structure.solid_potentials import Potentials, moduli
 
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=210e9, poisson_ratio=0.3)
@@ -40,31 +40,33 @@ def wall_of(*layers: tuple[object, float], radius: float = 1.0, frequency: float
 
 
 def matrix_of(layer, s: complex) -> np.ndarray:
-    """Return C(s) of a layer in the plane, at constant field."""
+    """Return C(s) of a layer, at constant field."""
     if not layer.shear_alone:
-        return layer.matrix[np.ix_(PLANE, PLANE)] * (1.0 if layer.factor is None else layer.factor.at(np.array([s]))[0])
+        return layer.matrix * (1.0 if layer.factor is None else layer.factor.at(np.array([s]))[0])
     bulk, shear = (x[0] for x in moduli(layer, np.array([s])))
-    return np.array([[bulk + 4 / 3 * shear, bulk - 2 / 3 * shear, 0], [bulk - 2 / 3 * shear, bulk + 4 / 3 * shear, 0], [0, 0, shear]])
+    found = np.diag([2.0 * shear] * 3 + [shear] * 3)
+    found[:3, :3] += bulk - 2.0 / 3.0 * shear
+    return found
 
 
 class Dense:
-    """A wall at one order and node: the complex stiffness of all points, solved."""
+    """A wall at one order, wavenumber and node: the complex stiffness of all points, solved."""
 
-    def __init__(self, wall: ElasticWall, order: int, s: complex, degree: int = 12) -> None:
-        self.wall, self.s, self.order = wall, s, np.array([float(order)])
+    def __init__(self, wall: ElasticWall, order: int, s: complex, degree: int = 12, wavenumber: float = 0.0) -> None:
+        self.wall, self.s, self.order, self.k = wall, s, np.array([float(order)]), wavenumber
         self.mesh = wall_mesh(wall.layers, [degree] * len(wall.layers))
-        count = self.mesh.radius.size
-        stiffness = np.zeros((2, count, 2, count), complex)
+        count, moves = self.mesh.radius.size, displacements(wavenumber)
+        stiffness = np.zeros((moves, count, moves, count), complex)
         for part in self.mesh.layers:
-            b = strains(self.order, 0.0, part.radius, part.derivative, np.eye(part.radius.size))[0][list(PLANE)][:, :, :2]
+            b = layer_strains(part, self.order, wavenumber)[0]
             stiffness[:, part.nodes, :, part.nodes] += np.einsum("q,iqap,ij,jqbs->apbs", part.weights, b, matrix_of(part.layer, s), b)
             if part.layer.coupling is not None:
-                rows = PotentialOfLayer(part, self.order, 0.0).rows[0]
+                rows = PotentialOfLayer(part, self.order, wavenumber).rows[0]
                 stiffness[:, part.nodes, :, part.nodes] += np.einsum("iap,ibs->apbs", rows, rows)
-        dynamic = stiffness.reshape(2 * count, -1) + s * s * np.diag(np.tile(self.mesh.mass, 2))
-        loads = np.zeros((2 * count, 2))
+        dynamic = stiffness.reshape(moves * count, -1) + s * s * np.diag(np.tile(self.mesh.mass, moves))
+        loads = np.zeros((moves * count, 2))
         loads[0, 0], loads[count - 1, 1] = -wall.wetted[0], -wall.wetted[1]
-        self.x = np.linalg.solve(dynamic, loads).reshape(2, count, 2)
+        self.x = np.linalg.solve(dynamic, loads).reshape(moves, count, 2)
 
     @property
     def faces(self) -> np.ndarray:
@@ -75,17 +77,14 @@ class Dense:
     def stress(self, number: int, point: int, component: int) -> np.ndarray:
         """Return a stress at a point of a layer per load on either face."""
         part = self.mesh.layers[number]
-        b = strains(self.order, 0.0, part.radius, part.derivative, np.eye(part.radius.size))[0][:, point, :2]
+        b = layer_strains(part, self.order, self.k)[0][:, point]
         moved = self.x[:, part.nodes]
-        strain = np.einsum("iap,apl->il", b, moved)
-        plane = matrix_of(part.layer, self.s)
-        if component == AXIAL:
-            return plane[0, 1] * (strain[RADIAL] + strain[HOOP])
-        found = plane[PLANE.index(component)] @ strain[list(PLANE)]
+        found = matrix_of(part.layer, self.s)[component] @ np.einsum("iap,apl->il", b, moved)
         if part.layer.coupling is not None:
-            phi = np.einsum("qap,apl->ql", PotentialOfLayer(part, self.order, 0.0).values[0], moved)
+            phi = np.einsum("qap,apl->ql", PotentialOfLayer(part, self.order, self.k).values[0], moved)
             e = np.array(part.layer.coupling)[:, component]
-            found = found + e[0] * (part.derivative @ phi)[point] - e[1] * self.order / part.radius[point] * phi[point]
+            along = e[1] * self.order / part.radius[point] + e[2] * self.k
+            found = found + e[0] * (part.derivative @ phi)[point] - along * phi[point]
         return np.asarray(found)
 
 
@@ -106,20 +105,21 @@ WALLS = {
 
 
 @pytest.mark.parametrize("name", WALLS)
-@pytest.mark.parametrize("order", [0, 1, 2, 9, 60])
-def test_receptances_and_stresses_agree_with_a_dense_solve(name, order, monkeypatch):
-    monkeypatch.setattr(
-        solid_pieces, "kept_rows", lambda part, rows: np.eye(rows.shape[1])[None]
-    )  # all of them: what is left out has a test of its own
+@pytest.mark.parametrize(("order", "wavenumber"), [*((m, 0.0) for m in (0, 1, 2, 9, 60)), (0, 0.2), (9, 30.0)])
+def test_receptances_and_stresses_agree_with_a_dense_solve(name, order, wavenumber, monkeypatch):
+    monkeypatch.setattr(solid_pieces, "kept_rows", every_row)  # what is left out has a test of its own
     # Degrees are those for 1e-6 of receptances; stresses are compared where they are resolved as well.
-    wall, modes = wall_of(*WALLS[name], frequency=2000.0 if order > 9 else 100.0), Modes(np.array([float(order)]))
+    wall = wall_of(*WALLS[name], frequency=2000.0 if order > 9 or wavenumber > 9.0 else 100.0)
+    modes = Modes(np.array([float(order)]), wavenumber)
     found = wall.receptance(modes, NODES)
-    shown = {"hoop": HOOP, "radial": RADIAL}
+    shown = {"hoop": HOOP, "radial": RADIAL, "axial": AXIAL}
     if order:
         shown |= {"radial_hoop": RADIAL_HOOP}
+    if wavenumber:
+        shown |= {"radial_axial": RADIAL_AXIAL} | ({"shear": HOOP_AXIAL} if order else {})
     degree = 26 if "rubber outside" in name else 12
     for k, s in enumerate(NODES):
-        dense = Dense(wall, order, s, degree)
+        dense = Dense(wall, order, s, degree, wavenumber)
         faces = np.array([x[0, k] for x in (found.inner, found.across, found.outer)])
         np.testing.assert_allclose(faces, dense.faces, rtol=1e-6, atol=1e-7 * np.abs(dense.faces).max())
         for number, part in enumerate(dense.mesh.layers):
@@ -253,12 +253,13 @@ def test_the_loss_factor_comes_back_from_the_decay_of_a_free_ring(order, model):
 # Rubber
 
 
-def test_a_rubber_by_potentials_is_symmetric_and_passive():
+@pytest.mark.parametrize("wavenumber", [0.0, 4.0])
+def test_a_rubber_by_potentials_is_symmetric_and_passive(wavenumber):
     layer = wall_of((RUBBER.replace(poisson_ratio=0.4999), 0.03)).layers[0]
-    modes = Modes.up_to(40)
+    modes, names = Modes.up_to(40, wavenumber), ("normal", "tangential", "along_axis")[: displacements(wavenumber)]
     fields = Potentials(layer, modes, NODES)
-    moved = np.concatenate([fields.rows(radius, ("normal", "tangential")) for radius in (layer.inner, layer.outer)])
-    outward = np.array([-1.0, 1.0, -1.0, 1.0])[:, None, None, None]
+    moved = np.concatenate([fields.rows(radius, names) for radius in (layer.inner, layer.outer)])
+    outward = np.tile([-1.0, 1.0, 1.0][: len(names)], 2)[:, None, None, None]
     matrix = np.moveaxis(fields.per_force(outward * moved), (0, 1), (2, 3))
     np.testing.assert_allclose(matrix, np.swapaxes(matrix, 2, 3), rtol=0, atol=1e-9 * np.abs(matrix).max())
     power = (matrix * NODES[:, None, None] + np.conj(np.swapaxes(matrix * NODES[:, None, None], 2, 3))) / 2.0

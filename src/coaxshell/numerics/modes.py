@@ -73,7 +73,10 @@ class Modes:
 
     def kappa(self, slowness: float, s: ComplexArray) -> ComplexArray:
         """Return sqrt(alpha^2 s^2 + k^2), the root with a positive real part for Re s > 0."""
-        along = slowness * s
+        return self.radial(slowness * s)
+
+    def radial(self, along: ComplexArray) -> ComplexArray:
+        """Return sqrt(q^2 + k^2), of q with a positive real part the root that has one too."""
         if self.two_dimensional:
             return along
         return np.asarray(np.sqrt(along - 1j * self.wavenumber) * np.sqrt(along + 1j * self.wavenumber))

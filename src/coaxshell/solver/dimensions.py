@@ -7,7 +7,6 @@ from coaxshell.model.layers import Shell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
-from coaxshell.structure.constituents import loses
 
 _WORDS = {"z": "{:g} m is off the plane", "inclination": "{:g} degrees lead out of the plane"}
 
@@ -34,8 +33,6 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     if solid is None:
         return
     thin = f'or shells[{solid}].theory = "thin"'
-    if dimensions == 3:
-        _require_no_losses(system)
     for number, source in enumerate(system.sources if dimensions == 3 else ()):
         if getattr(source, "inclination", 0.0):
             where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
@@ -61,16 +58,6 @@ def _require_plane_electrodes(system: System, dimensions: int) -> None:
     if system.control.saturation:
         problem = "electrodes push along the wall too, where no limit of the voltage is marched yet"
         raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {paper}")
-
-
-def _require_no_losses(system: System) -> None:
-    """Raise InputError if an elastic wall has losses, which solids know in the plane alone."""
-    for number, shell in enumerate(system.shells):
-        for i, layer in enumerate(shell.layers if isinstance(shell, Shell) and shell.theory == "elastic" else ()):
-            if loses(layer.material):
-                problem = f"{layer.material.name} has losses, which elastic walls know in two dimensions only"
-                remedy = f'use dimensions=2, or shells[{number}].theory = "thin"'
-                raise InputError(f"shells[{number}].layers[{i}].material", problem, remedy)
 
 
 def require_mid_surfaces(system: System) -> None:

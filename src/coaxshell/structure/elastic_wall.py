@@ -23,7 +23,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
-from coaxshell.structure.elastic_depth import DISPLACEMENTS, Shown, all_by_shapes, shown_by_shapes
+from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
@@ -206,12 +206,26 @@ class ElasticWall(ShellModel):
             found.append(Port(part.squares, part.faces, np.concatenate([rows, *volts], axis=1)))
         return tuple(found)
 
+    def prepare_stations(self, modes: Modes) -> None:
+        """Make what all blocks of nodes share in three dimensions, before all threads ask for it."""
+        self.ports(modes)
+
     @property
     def asked_of_port(self) -> list[Asked]:
         """What :meth:`two_port` shows."""
-        middles = [0.5 * (self.layers[i].inner + self.layers[i].outer) - self.radius for i in self.piezoelectric]
         motion = [Asked("normal", 0.0), Asked("tangential", 0.0), Asked("hoop", self.design_depth)]
-        return [*motion, *(Asked("potential", middle) for middle in middles)]
+        return [*motion, *self._asked_potentials]
+
+    @property
+    def asked_of_stations(self) -> list[Asked]:
+        """What :meth:`station_port` shows."""
+        moved = [Asked(name, self.depth_read or 0.0) for name in DISPLACEMENTS]  # type: ignore[arg-type]
+        stressed = self.design_depth if self.depth_read is None else self.depth_read
+        return [*moved, *(Asked(name, stressed) for name in STRESSES), *self._asked_potentials]  # type: ignore[arg-type]
+
+    @property
+    def _asked_potentials(self) -> list[Asked]:
+        return [Asked("potential", 0.5 * (self.layers[i].inner + self.layers[i].outer) - self.radius) for i in self.piezoelectric]
 
     @kept_with_modes
     def _of_port(self, modes: Modes) -> list[FloatArray]:

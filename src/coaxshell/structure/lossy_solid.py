@@ -1,7 +1,8 @@
 """A wall of solid layers of which some have losses: pieces that each answer in closed form, joined face to face.
 
 No node costs a matrix of the wall's points: layers under one factor answer by sums over the shapes they have without losses, rubbers by
-their potentials (:mod:`coaxshell.structure.solid_pieces`), and joints are 2 x 2. A front meets a face with the impedance rho c_L sqrt(g).
+their potentials (:mod:`coaxshell.structure.solid_pieces`), and joints are 2 x 2, or 3 x 3 in waves along the axis. A front meets a face
+with the impedance rho c_L sqrt(g).
 """
 
 from __future__ import annotations
@@ -15,15 +16,17 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.elastic_basis import OrdersBasis
+from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
 from coaxshell.structure.shell_model import FaceReceptance
 from coaxshell.structure.solid import SolidLayer
-from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, PieceChain, Place, WallReading, pieces
+from coaxshell.structure.solid_chain import PieceChain, WallReading
+from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, Place, pieces
 
 
 @dataclass(frozen=True, kw_only=True)
 class LossySolidWall(ElasticWall):
-    """A wall of solid layers with losses in the plane."""
+    """A wall of solid layers with losses."""
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
@@ -49,13 +52,24 @@ class LossySolidWall(ElasticWall):
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
-        return _receptance(WallReading(self.pieces).at(modes, s)[0])
+        return _receptance(self._faces.at(modes, s)[0])
 
     def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes)."""
         chain, shown = self._port.at(modes, s)
         shown[3:] *= -1.0  # potentials, as without losses
         return _receptance(chain), self._per_load(shown)
+
+    def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
+        """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it."""
+        chain, shown = (self._stations if reads else self._faces).at(modes, s)
+        shown[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
+        return _receptance(chain), self._per_load(shown)
+
+    def prepare_stations(self, modes: Modes) -> None:
+        """Make the shapes of its pieces."""
+        self._stations.prepare(modes)
+        self._faces.prepare(modes)
 
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
@@ -64,6 +78,14 @@ class LossySolidWall(ElasticWall):
     @cached_property
     def _port(self) -> WallReading:
         return self._reading(self.asked_of_port)
+
+    @cached_property
+    def _stations(self) -> WallReading:
+        return self._reading(self.asked_of_stations)
+
+    @cached_property
+    def _faces(self) -> WallReading:
+        return WallReading(self.pieces)
 
     def _reading(self, asked: Sequence[Asked]) -> WallReading:
         places = (Place(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked)

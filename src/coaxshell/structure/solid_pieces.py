@@ -9,15 +9,14 @@ forces on the faces, forces -(1 - g) y on y = R x, of which one for each ceramic
 relaxes while its bulk modulus does not, is a piece by its potentials (:mod:`coaxshell.structure.solid_potentials`), and so is any soft
 layer with losses that would need a high degree.
 
-Forces and displacements at the faces stand in the order (u_r, u_theta) inside, (u_r, u_theta) outside; a force is r times the traction on
-the piece.
+Forces and displacements at the faces stand in the order (u_r, u_theta) inside, (u_r, u_theta) outside, with u_z beside them in waves along
+the axis; a force is r times the traction on the piece.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
@@ -25,14 +24,13 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
-from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, elastic_basis, modal_sums
+from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, displacements, elastic_basis, modal_sums
 from coaxshell.structure.elastic_depth import STRESSES, Shown, field_stress, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_potentials import Potentials
 
-FORCES = 4
 MOST_DEGREE = 24
 """A layer with losses that needs a higher degree at the top of the band answers by its potentials."""
 
@@ -45,18 +43,22 @@ class Place(NamedTuple):
     layer: int
 
 
+Entry = ComplexArray | float
+"""A number for each order and node, or one for all."""
+
+
 class PieceAnswer(NamedTuple):
     """How a piece answers.
 
     Attributes
     ----------
     faces : list of list of ndarray (orders, nodes)
-        Displacements per force, 4 x 4; 0 where a force was not asked for.
-    shown : ndarray, shape (places, 4, orders, nodes)
+        Displacements per force, 4 x 4 or, with u_z, 6 x 6; 0 where a force was not asked for.
+    shown : ndarray, shape (places, 4 or 6, orders, nodes)
         What was asked for per force.
     """
 
-    faces: list[list[ComplexArray | float]]
+    faces: list[list[Entry]]
     shown: ComplexArray
 
 
@@ -120,6 +122,12 @@ def electric_rows(part: OrdersBasis) -> list[FloatArray]:
     return found
 
 
+def wavenumber_of(modes: Modes) -> float:
+    """Return the one wavenumber of some modes."""
+    assert isinstance(modes.wavenumber, (int, float))
+    return float(modes.wavenumber)
+
+
 def kept_rows(part: OrdersBasis, rows: FloatArray) -> FloatArray:
     """Return the combination of a ceramic's rows that counts, shape (orders, rows, 1): the largest in slow motion, shapes by 1/omega^2.
 
@@ -137,8 +145,8 @@ def lossless_rows(part: OrdersBasis) -> FloatArray:
 
 
 def on_faces(part: OrdersBasis) -> FloatArray:
-    """Return u_r and u_theta of both faces per unit of each shape, shape (orders, 4, shapes)."""
-    return np.stack([part.shapes[:, :, c, end] for end in (0, -1) for c in (0, 1)], axis=1)
+    """Return u_r, u_theta and, if there is one, u_z of both faces per unit of each shape, shape (orders, 4 or 6, shapes)."""
+    return np.stack([part.shapes[:, :, c, end] for end in (0, -1) for c in range(part.shapes.shape[2])], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +156,19 @@ class PieceReading:
     Attributes
     ----------
     piece : Piece
-    active : tuple of int
-        Forces that act.
+    joined : tuple of bool
+        Whether other pieces are bonded to its inner and its outer face: all forces then act there, else that along r alone.
     places : tuple of Place
     """
 
     piece: Piece
-    active: tuple[int, ...]
+    joined: tuple[bool, bool]
     places: tuple[Place, ...] = ()
+
+    def active(self, wavenumber: float) -> tuple[int, ...]:
+        """Return the numbers of the forces that act."""
+        count = displacements(wavenumber)
+        return tuple(side * count + i for side, all_act in enumerate(self.joined) for i in range(count if all_act else 1))
 
     def at(self, modes: Modes, s: ComplexArray) -> PieceAnswer:
         """Return the answer at some modes and nodes."""
@@ -171,11 +184,13 @@ class PieceReading:
     def _by_potentials(self, modes: Modes, s: ComplexArray) -> PieceAnswer:
         (layer,) = self.piece.layers
         fields = Potentials(layer, modes, s)
-        moved = [fields.rows(radius, ("normal", "tangential")) for radius in (layer.inner, layer.outer)]
+        names: tuple[Shown, ...] = ("normal", "tangential", "along_axis")
+        count = displacements(fields.wavenumber)
+        moved = [fields.rows(radius, names[:count]) for radius in (layer.inner, layer.outer)]
         asked = [fields.rows(place.radius, (place.what,)) for place in self.places]
         found = fields.per_force(np.concatenate([*moved, *asked]))
-        found[0:FORCES:2] *= -1.0  # u_r is outward
-        return PieceAnswer([list(row) for row in found[:FORCES]], found[FORCES:])
+        found[0 : 2 * count : count] *= -1.0  # u_r is outward
+        return PieceAnswer([list(row) for row in found[: 2 * count]], found[2 * count :])
 
     # By shapes
 
@@ -188,22 +203,25 @@ class PieceReading:
         g = None if factor is None else factor.at(s)
         found = [weights.answer(s, g) for weights in self._weights(modes)]
         whole = found[0] if len(found) == 1 else np.concatenate(found, axis=1)
-        count, still = len(self.active), 0.0
-        faces: list[list[ComplexArray | float]] = [[still] * FORCES for _ in range(FORCES)]
+        wavenumber = wavenumber_of(modes)
+        active, forces, still = self.active(wavenumber), 2 * displacements(wavenumber), 0.0
+        count = len(active)
+        faces: list[list[Entry]] = [[still] * forces for _ in range(forces)]
         pairs = [(i, j) for i in range(count) for j in range(i, count)]
         for row, (i, j) in zip(whole, pairs, strict=False):
-            a, b = self.active[i], self.active[j]
+            a, b = active[i], active[j]
             faces[a][b] = faces[b][a] = row
-        shown = np.zeros((len(self.places), FORCES, *whole.shape[1:]), np.complex128)
-        shown[:, self.active] = whole[len(pairs) :].reshape(len(self.places), count, *whole.shape[1:])
+        shown = np.zeros((len(self.places), forces, *whole.shape[1:]), np.complex128)
+        shown[:, active] = whole[len(pairs) :].reshape(len(self.places), count, *whole.shape[1:])
         return PieceAnswer(faces, shown)
 
 
 @dataclass(frozen=True, eq=False)
 class _Weights:
-    """Weights of the shapes of some orders in all sums of a reading: of pairs of forces, then of parts of the places per force.
+    """What the weights of the shapes of some orders in all sums of a reading are made of: pairs of forces, then parts of places per force.
 
-    Forces are those on the faces and, last, those on the rows of potentials.
+    Forces are those on the faces and, last, those on the rows of potentials. The products are made anew for each block of nodes: kept, they
+    would be five times as much for every wave.
 
     Attributes
     ----------
@@ -212,7 +230,8 @@ class _Weights:
     parts : tuple of (int, bool)
         Place of each part, and whether g weighs it not: a displacement or the field of a ceramic; stresses of strains are g times that.
     squares : ndarray, shape (orders, shapes)
-    weights : ndarray, shape (orders, rows, shapes)
+    forces : ndarray, shape (orders, forces, shapes)
+    shown : ndarray, shape (orders, parts, shapes)
     """
 
     active: int
@@ -220,20 +239,29 @@ class _Weights:
     places: int
     parts: tuple[tuple[int, bool], ...]
     squares: FloatArray
-    weights: FloatArray
+    forces: FloatArray
+    shown: FloatArray
 
     @classmethod
     def of(cls, reading: PieceReading, part: OrdersBasis) -> _Weights:
         """Return those of a reading on the shapes of some orders."""
-        rows = lossless_rows(part)[:, : None if reading.piece.factor is not None else 0]
-        forces = np.concatenate([on_faces(part)[:, reading.active], rows], axis=1)
-        count = forces.shape[1]
-        found, parts = [forces[:, i] * forces[:, j] for i in range(count) for j in range(i, count)], []
+        lossy, active = reading.piece.factor is not None, reading.active(part.wavenumber)
+        rows = lossless_rows(part)[:, : None if lossy else 0]
+        forces = np.concatenate([on_faces(part)[:, active], rows], axis=1)
+        shown, parts = [np.zeros((part.orders.size, 0, part.squares.shape[1]))], []
         for number, place in enumerate(reading.places):
-            for shown, unweighted in _parts_of(place, part, reading.piece.factor is not None):
+            for one, unweighted in _parts_of(place, part, lossy):
                 parts.append((number, unweighted))
-                found += [shown * forces[:, i] for i in range(count)]
-        return cls(len(reading.active), rows.shape[1], len(reading.places), tuple(parts), part.squares, np.stack(found, axis=1))
+                shown.append(one[:, None])
+        return cls(len(active), rows.shape[1], len(reading.places), tuple(parts), part.squares, forces, np.concatenate(shown, axis=1))
+
+    @property
+    def weights(self) -> FloatArray:
+        """Return those of all sums, shape (orders, rows, shapes)."""
+        orders, count, shapes = self.forces.shape
+        pairs = np.triu_indices(count)
+        places = (self.shown[:, :, None] * self.forces[:, None]).reshape(orders, -1, shapes)
+        return np.concatenate([self.forces[:, pairs[0]] * self.forces[:, pairs[1]], places], axis=1)
 
     def answer(self, s: ComplexArray, g: ComplexArray | None) -> ComplexArray:
         """Return displacements of the faces for pairs of forces on them and what is shown per force, shape (rows, orders, nodes)."""
@@ -286,138 +314,3 @@ def _without_rows(pairs: ComplexArray, shown: ComplexArray, active: int, electri
             shown[:, i] -= taken[i] * shown[:, k]
     kept = [place[i, j] for i in range(active) for j in range(i, active)]
     return np.concatenate([pairs[kept], shown[:, :active].reshape(-1, *pairs.shape[1:])])
-
-
-class PieceChain:
-    """Pieces of one wall joined face to face: displacements are shared, the forces at a joint opposite.
-
-    From the inside out each stack is seen from its outer face as a receptance Y (2 x 2) beside e, what a force on the wall's inner face
-    moves it by. A piece with receptances G makes of them, at the joint f = (Y + G_ii)^-1 (G_io F - e),
-
-        Y -> G_oo - G_oi (Y + G_ii)^-1 G_io,      e -> G_oi (Y + G_ii)^-1 e.
-
-    Parameters
-    ----------
-    answers : sequence of PieceAnswer
-        From the inside out.
-
-    Attributes
-    ----------
-    inner, across, outer : ndarray, shape (orders, nodes)
-        u_r of the wall's faces per force on them.
-    forces : list
-        For each piece its four forces under a unit force on the wall's inner and outer face: two lists of four.
-    """
-
-    def __init__(self, answers: Sequence[PieceAnswer]) -> None:
-        self._faces = [answer.faces for answer in answers]
-        first = self._faces[0]
-        seen, moved = _block(first, 2, 2), [first[2][0], first[3][0]]
-        self._joints: list[tuple[_Symmetric, list[Entry]]] = []
-        for faces in self._faces[1:]:
-            inside = _block(faces, 0, 0)
-            joint = _Symmetric.of([[seen[i][j] + inside[i][j] for j in range(2)] for i in range(2)])
-            self._joints.append((joint, moved))
-            through = _block(faces, 0, 2)
-            columns = [joint.solve([through[0][j], through[1][j]]) for j in range(2)]
-            outside = _block(faces, 2, 2)
-            seen = [[outside[i][j] - through[0][i] * columns[j][0] - through[1][i] * columns[j][1] for j in range(2)] for i in range(2)]
-            moved = [columns[j][0] * moved[0] + columns[j][1] * moved[1] for j in range(2)]
-        both = [self._forces(1.0, 0.0), self._forces(0.0, 1.0)]
-        self.forces = [[both[0][i], both[1][i]] for i in range(len(answers))]
-        under_inner = both[0][0]
-        self.inner = _under(first[0], under_inner)
-        self.across, self.outer = moved[0], seen[0][0]
-
-    def _forces(self, on_inner: float, on_outer: float) -> list[list[Entry]]:
-        """Return the four forces on each piece under forces along r on the wall's faces."""
-        beyond: list[Entry] = [on_outer, 0.0]
-        found: list[list[Entry]] = []
-        for faces, (joint, moved) in zip(self._faces[:0:-1], self._joints[::-1], strict=True):
-            through = _block(faces, 0, 2)
-            given = [through[i][0] * beyond[0] + through[i][1] * beyond[1] - on_inner * moved[i] for i in range(2)]
-            held = joint.solve(given)
-            found.append([-held[0], -held[1], *beyond])
-            beyond = held
-        found.append([on_inner, 0.0, *beyond])
-        return found[::-1]
-
-
-Entry = ComplexArray | float
-
-
-def _under(answers: Sequence[Entry], forces: Sequence[Entry]) -> Entry:
-    """Return the sum of answers times forces, of which many are the numbers 0 and 1."""
-    total: Entry = 0.0
-    for answer, force in zip(answers, forces, strict=True):
-        if isinstance(force, float) and force in (0.0, 1.0):
-            total = total + answer if force else total
-        else:
-            total = total + answer * force
-    return total
-
-
-def _block(faces: list[list[Entry]], row: int, column: int) -> list[list[Entry]]:
-    return [[faces[row + i][column + j] for j in range(2)] for i in range(2)]
-
-
-class _Symmetric(NamedTuple):
-    """Inverse of a symmetric 2 x 2 matrix."""
-
-    a: Entry
-    b: Entry
-    c: Entry
-
-    @classmethod
-    def of(cls, matrix: list[list[Entry]]) -> _Symmetric:
-        a, b, c = matrix[0][0], matrix[0][1], matrix[1][1]
-        scale = 1.0 / (a * c - b * b)
-        return cls(c * scale, -b * scale, a * scale)
-
-    def solve(self, given: Sequence[Entry]) -> list[Entry]:
-        """Return the inverse times two numbers."""
-        return [self.a * given[0] + self.b * given[1], self.b * given[0] + self.c * given[1]]
-
-
-@dataclass(frozen=True, eq=False)
-class WallReading:
-    """What is read of a wall of pieces: its faces, and quantities at places within it.
-
-    Attributes
-    ----------
-    pieces : tuple of Piece
-    places : tuple of Place
-        With the layers' numbers in the wall.
-    """
-
-    pieces: tuple[Piece, ...]
-    places: tuple[Place, ...] = ()
-
-    @cached_property
-    def _parts(self) -> list[tuple[PieceReading, list[int]]]:
-        """Each piece's reading, and which of the wall's places lie in it."""
-        found, last = [], len(self.pieces) - 1
-        for number, piece in enumerate(self.pieces):
-            inside = (0,) if number == 0 else (0, 1)
-            outside = (2,) if number == last else (2, 3)
-            own = range(piece.first, piece.first + len(piece.layers))
-            members = [i for i, place in enumerate(self.places) if place.layer in own]
-            places = tuple(self.places[i]._replace(layer=self.places[i].layer - piece.first) for i in members)
-            found.append((PieceReading(piece, inside + outside, places), members))
-        return found
-
-    def prepare(self, modes: Modes) -> None:
-        """Make what all blocks of nodes share, before all threads ask for it."""
-        for reading, _ in self._parts:
-            reading.prepare(modes)
-
-    def at(self, modes: Modes, s: ComplexArray) -> tuple[PieceChain, ComplexArray]:
-        """Return the joined pieces, and the places per outward force on the inner and the outer face, (places, 2, orders, nodes)."""
-        answers = [reading.at(modes, s) for reading, _ in self._parts]
-        chain = PieceChain(answers)
-        shown = np.zeros((len(self.places), 2, modes.count, s.size), np.complex128)
-        for (reading, members), answer, forces in zip(self._parts, answers, chain.forces, strict=True):
-            for row, place in zip(answer.shown, members, strict=True):
-                for side in range(2):
-                    shown[place, side] = _under([row[a] for a in reading.active], [forces[side][a] for a in reading.active])
-        return chain, shown

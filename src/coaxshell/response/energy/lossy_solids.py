@@ -5,8 +5,8 @@ as without losses; of a rubber, displacements and strains at points through its 
 
     kinetic rho (u_r'^2 + u_theta'^2)/2,      K e^2/2 of the bulk,      G (eps_r^2 + eps_theta^2 - e^2/3 + gamma^2/2) of the shear,
 
-e = eps_r + eps_theta. An arm g_i of a factor holds g_i times the energy of s tau/(1 + s tau) of the motion, and turns 2/tau of it per time
-into heat.
+e = eps_r + eps_theta; in waves along the axis with u_z'^2, eps_z and two more shears beside. An arm g_i of a factor holds g_i times the
+energy of s tau/(1 + s tau) of the motion, and turns 2/tau of it per time into heat.
 """
 
 from __future__ import annotations
@@ -23,12 +23,13 @@ from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
-from coaxshell.structure.elastic_basis import OrdersBasis
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.shell_model import WallEnergy
-from coaxshell.structure.solid_pieces import FORCES, Piece, WallReading, electric_rows, lossless_rows, on_faces
+from coaxshell.structure.solid_chain import WallReading
+from coaxshell.structure.solid_pieces import Piece, electric_rows, lossless_rows, on_faces
 from coaxshell.structure.solid_potentials import Potentials
 
 MOST_POINTS = 20
@@ -69,11 +70,11 @@ def lossy_solid_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArr
 
 
 def _forces(motion: Motion, wall: LossySolidWall, shell: int) -> ComplexArray:
-    """Return the transforms of the forces on the faces of all pieces, shape (pieces, 4, parities, M + 1, nodes)."""
+    """Return the transforms of the forces on the faces of all pieces, shape (pieces, 4 or 6, parities, M + 1, nodes)."""
     solid, grid, modes = motion.solid, motion.grid, motion.modes
     assert solid is not None
     loads = solid.loads[:, shell]
-    found = np.zeros((len(wall.pieces), FORCES, *loads.shape[1:]), np.complex128)
+    found = np.zeros((len(wall.pieces), 2 * displacements(motion.wavenumber), *loads.shape[1:]), np.complex128)
     reading = WallReading(wall.pieces)
     reading.prepare(modes)
 
@@ -186,7 +187,7 @@ def _of_potentials(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally
 
 
 def _waves(motion: Motion, piece: Piece, forces: ComplexArray) -> ComplexArray:
-    """Return the four waves of an isotropic layer under the forces on its faces, of their shape."""
+    """Return the waves of an isotropic layer under the forces on its faces, of their shape."""
     found = np.empty_like(forces)
 
     def work(block: slice) -> None:
@@ -197,8 +198,8 @@ def _waves(motion: Motion, piece: Piece, forces: ComplexArray) -> ComplexArray:
 
 
 def _fields(motion: Motion, piece: Piece, waves: ComplexArray, radii: FloatArray) -> ComplexArray:
-    """Return displacements and strains (:meth:`Potentials.motion`) at some radii, shape (radii, 5, parities, orders, nodes)."""
-    found = np.empty((radii.size, 5, *waves.shape[1:]), np.complex128)
+    """Return displacements and strains (:meth:`Potentials.motion`) at some radii, shape (radii, 5 or 9, parities, orders, nodes)."""
+    found = np.empty((radii.size, 9 if motion.wavenumber else 5, *waves.shape[1:]), np.complex128)
 
     def work(block: slice) -> None:
         potentials = Potentials(piece.layers[0], motion.modes, motion.grid.nodes[block])
@@ -212,6 +213,8 @@ def _fields(motion: Motion, piece: Piece, waves: ComplexArray, radii: FloatArray
 def _of_field(motion: Motion, piece: Piece, field: ComplexArray, weight: float) -> _Tally:
     """Return what an isotropic layer holds at a radius whose share of the integral over r dr is given."""
     grid, layer, circle = motion.grid, piece.layers[0], motion.circle
+    moved = field[[0, 1, 5]] if motion.wavenumber else field[:2]
+    strained = field[[2, 3, 4, 6, 7, 8]] if motion.wavenumber else field[2:]
 
     def squares(histories: FloatArray) -> FloatArray:
         """Return the sum of squares over the circle, shape (T,)."""
@@ -221,11 +224,15 @@ def _of_field(motion: Motion, piece: Piece, field: ComplexArray, weight: float) 
         return 0.5 * layer.bulk * squares(grid.invert(field[2] * share))
 
     def of_shear(share: Share) -> FloatArray:
-        spread, hoop, angle = (grid.invert(x * share) for x in field[2:])
-        return layer.shear * (squares(spread - hoop) + squares(hoop) - squares(spread) / 3.0 + 0.5 * squares(angle))
+        spread, hoop, angle, *along = (grid.invert(x * share) for x in strained)
+        if not along:
+            return layer.shear * (squares(spread - hoop) + squares(hoop) - squares(spread) / 3.0 + 0.5 * squares(angle))
+        axial, *angles = along
+        stretched = squares(spread - hoop - axial) + squares(hoop) + squares(axial) - squares(spread) / 3.0
+        return layer.shear * (stretched + 0.5 * (squares(angle) + squares(angles[0]) + squares(angles[1])))
 
     bulk, bulk_power = _stores(motion, None if layer.shear_alone else layer.factor, of_bulk)
     shear, shear_power = _stores(motion, layer.factor, of_shear)
-    rates = squares(grid.invert(field[0] * grid.nodes)) + squares(grid.invert(field[1] * grid.nodes))
+    rates = np.sum([squares(grid.invert(x * grid.nodes)) for x in moved], axis=0)
     kinetic = 0.5 * layer.density * rates[motion.kept]
     return _Tally(kinetic, bulk + shear, np.zeros_like(bulk), bulk_power + shear_power)

@@ -120,4 +120,4 @@ def make_shapes(problem: Problem, modes: Sequence[Modes]) -> None:
     pairs = [(wall, one) for one in modes for wall in solids]
     if pairs:
         with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:  # many small matrices
-            list(pool.map(lambda pair: pair[0].ports(pair[1]), pairs))
+            list(pool.map(lambda pair: pair[0].prepare_stations(pair[1]), pairs))
