@@ -1,0 +1,65 @@
+"""What a force law tells the march of the links; dimensionless throughout.
+
+A step of length dt takes the stretch of a link from D_0 to D_1. A law exerts one force h over the step, such that
+
+    h (D_1 - D_0) = E_1 - E_0 + Q,        Q >= 0,
+
+E what it stores and Q what it turns into heat: a discrete gradient (Gonzalez 1996, J. Nonlinear Sci. 6, 449-467). Walls and masses are
+stepped by the midpoint rule, for which h is the force and (D_1 - D_0)/dt the rate: the energy of the whole is kept at any step.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+
+Links = npt.NDArray[np.int64]
+Truths = npt.NDArray[np.bool_]
+
+
+class StepForce(NamedTuple):
+    """Force h of every link over a step, and its slope dh/dD_1; both of shape (n,)."""
+
+    value: FloatArray
+    slope: FloatArray
+
+
+class LinkLaw(Protocol):
+    """One kind of law of n links; constants only, what it remembers is handed to it."""
+
+    links: Links
+    """Numbers of the links that have it, shape (n,)."""
+    variables: int
+    """How many internal variables it remembers of each link."""
+
+    def force(self, after: FloatArray, before: FloatArray, state: FloatArray) -> StepForce:
+        """Return h over a step.
+
+        Parameters
+        ----------
+        after, before : ndarray, shape (n,)
+            D_1 and D_0.
+        state : ndarray, shape (variables, n)
+            Internal variables before the step; 0 at rest.
+        """
+        ...
+
+    def advance(self, after: FloatArray, before: FloatArray, state: FloatArray) -> FloatArray:
+        """Return the internal variables after a step, of the shape of ``state``."""
+        ...
+
+    def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
+        """Return the energy E of every link, shape (n,), of a stretch (n,) and internal variables."""
+        ...
+
+
+class LinearLaw(LinkLaw, Protocol):
+    """A law that is linear, and so known at every Laplace node."""
+
+    def impedance(self, s: ComplexArray) -> ComplexArray:
+        """Return force per stretch, shape (nodes, n), at nodes s (nodes,)."""
+        ...
