@@ -13,8 +13,8 @@ from coaxshell.response import Response
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
+from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.section import Section, section
-from coaxshell.structure.shell_model import ControlGains
 
 M, STEPS, STEP = 12, 80, 0.025
 

@@ -10,9 +10,9 @@ import pytest
 import coaxshell as cx
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure import electrodes
+from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.electroded_wall import ElectrodedWall
 from coaxshell.structure.section import Section, section
-from coaxshell.structure.shell_model import ControlGains
 from coaxshell.structure.thin import potential_gain
 
 INNER = electrodes.with_plane_stress(cx.presets.load("bare").shells[0])

@@ -8,6 +8,7 @@ from coaxshell.model.base import Described
 from coaxshell.model.control import PDControl
 from coaxshell.model.elastic import Elastic
 from coaxshell.model.explosives import EXPLOSIVES, Explosive
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import VACUUM, Fluid, Vacuum
 from coaxshell.model.layers import Layer
 from coaxshell.model.piezoelectric import Piezoelectric
@@ -36,6 +37,7 @@ __all__ = [
     "Elastic",
     "Explosive",
     "Exponential",
+    "Feedback",
     "Fluid",
     "Gaussian",
     "Layer",

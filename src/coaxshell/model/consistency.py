@@ -106,7 +106,7 @@ def _control(system: SystemParts) -> None:
             raise InputError("control.shells", error.problem, error.remedy) from None
     numbers = system.controlled_shells
     for name in ("proportional", "derivative"):
-        gains = getattr(system.control, name)
+        gains = getattr(system.control, name, None)
         if isinstance(gains, tuple) and len(gains) != len(numbers):
             raise InputError(
                 f"control.{name}",

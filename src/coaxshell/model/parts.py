@@ -11,6 +11,7 @@ from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.base import UNSTATED, Described, shown, stated
 from coaxshell.model.control import PDControl
+from coaxshell.model.feedback import LAW, Feedback
 from coaxshell.model.fluids import AnyFluid, Fluid, Vacuum
 from coaxshell.model.paths import within
 from coaxshell.model.places import shell_number, shell_words
@@ -64,7 +65,14 @@ def _as_absorbers(value: Any) -> Any:
 
 
 def _as_control(value: Any) -> Any:
-    return None if value == "none" else value
+    if value is None or (isinstance(value, str) and value == "none"):
+        return None
+    if isinstance(value, PDControl | Feedback):
+        return value
+    if isinstance(value, Mapping):
+        other = not LAW.isdisjoint(value) and {"proportional", "derivative"}.isdisjoint(value)
+        return (Feedback if other else PDControl).model_validate(dict(value))
+    raise InputError("", f"{shown(value)} is not a control law", "give a PDControl, a Feedback or a table of the entries of one")
 
 
 class SystemParts(Described):
@@ -80,7 +88,7 @@ class SystemParts(Described):
     """The source, or several."""
     absorbers: Annotated[AbsorberRing | tuple[Absorber | PointAbsorber, ...], BeforeValidator(_as_absorbers)] = ()
     """A ring of equal absorbers, or single ones; point absorbers in three dimensions."""
-    control: Annotated[PDControl | None, BeforeValidator(_as_control)] = None
+    control: Annotated[PDControl | Feedback | None, BeforeValidator(_as_control)] = None
     """The controller, if there is one."""
 
     def __init__(
@@ -90,7 +98,7 @@ class SystemParts(Described):
         fluids: Sequence[Fluid | Vacuum | str | Mapping[str, Any]] = UNSTATED,
         source: Source | Sequence[Source] | Mapping[str, Any] = UNSTATED,
         absorbers: AbsorberRing | Absorber | PointAbsorber | Sequence[Absorber | PointAbsorber] | Mapping[str, Any] | None = (),
-        control: PDControl | Mapping[str, Any] | None = None,
+        control: PDControl | Feedback | Mapping[str, Any] | None = None,
         name: str = "",
         **unknown: Any,
     ) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
+from coaxshell.model.control import PDControl
 from coaxshell.model.gains import gains_of
 from coaxshell.model.materials import Material, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
@@ -101,9 +102,10 @@ def canonical(system: SystemParts) -> dict[str, Any]:
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
     data["absorbers"] = [_plain(absorber) for absorber in (*system.absorber_list, *system.point_absorbers)]
     if system.control is not None:
-        gains = [gains_of(system, number) for number in system.controlled_shells]
-        each = zip(("proportional", "derivative"), zip(*gains, strict=True), strict=True)
-        data["control"] |= {name: x[0] if len(set(x)) == 1 else list(x) for name, x in each}
+        if isinstance(system.control, PDControl):
+            gains = [gains_of(system, number) for number in system.controlled_shells]
+            each = zip(("proportional", "derivative"), zip(*gains, strict=True), strict=True)
+            data["control"] |= {name: x[0] if len(set(x)) == 1 else list(x) for name, x in each}
         data["control"]["shells"] = list(system.controlled_shells)
     return _nameless(data)  # type: ignore[no-any-return]
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.errors import InputError
+from coaxshell.model.control import PDControl
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
@@ -78,7 +79,7 @@ def _kept(time: FloatArray, every: int, window: Sequence[float] | None) -> slice
 def _rates(solution: ModalSolution) -> dict[str, Any]:
     """Return the rates of change that derivative control reads, where the engine kept none."""
     control = solution.problem.system.control
-    if control is None or not control.derivative or solution.normal_rate is not None or not solution.whole:
+    if not isinstance(control, PDControl) or not control.derivative or solution.normal_rate is not None or not solution.whole:
         return {}
     step = solution.settings.time_step
     return {"normal_rate": time_derivative(solution.normal, step), "tangential_rate": time_derivative(solution.tangential, step)}

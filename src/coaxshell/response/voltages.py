@@ -18,7 +18,8 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import lower_half, segment_mean
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import ControlGains, FieldGain, Gain
+from coaxshell.structure.control_law import ControlGains, ControlLaw
+from coaxshell.structure.shell_model import FieldGain, Gain
 
 _PER_WAVE = 8
 _FEWEST = 64
@@ -32,12 +33,12 @@ class ActuatorLimit(NamedTuple):
     saturates: bool
 
 
-def control_gains(solution: ModalSolution, shell: int) -> ControlGains:
-    """Return the gains of a shell; InputError if nothing controls it."""
+def control_law(solution: ModalSolution, shell: int) -> ControlLaw:
+    """Return the control law of a shell; InputError if nothing controls it."""
     gains = solution.problem.shells[shell].gains
     if gains is None:
         name = shell_phrase(shell, len(solution.problem.shells))
-        raise InputError("control", f"the {name} is not controlled", "give the system a PDControl that covers this shell")
+        raise InputError("control", f"the {name} is not controlled", "give the system a PDControl or a Feedback that covers this shell")
     return gains
 
 
@@ -83,7 +84,7 @@ def sensor_rate(solution: ModalSolution, shell: int) -> FloatArray:
 
 
 def demanded_voltage(solution: ModalSolution, shell: int) -> FloatArray:
-    """Return the modal voltage that the control law asks for, V: k_p phi_s + k_d dphi_s/dt, t in transits (Eq. 17).
+    """Return the modal voltage that the control law asks for, V: k_p phi_s + k_d dphi_s/dt, t in transits (Eq. 17), or H(s) phi_s.
 
     Returns
     -------
@@ -95,7 +96,11 @@ def demanded_voltage(solution: ModalSolution, shell: int) -> FloatArray:
         If the shell has no sensor, no actuator or no control.
     """
     actuator_limit(solution, shell)
-    gains = control_gains(solution, shell)
+    gains = control_law(solution, shell)
+    kept = getattr(solution, "control_voltage", None)
+    if kept is not None:
+        return np.asarray(kept[shell], dtype=np.float64)
+    assert isinstance(gains, ControlGains)
     voltage = gains.proportional * amplitudes(solution, shell, voltage_gain(solution, shell))
     if gains.derivative:
         voltage += gains.derivative * sensor_rate(solution, shell)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.structure.control_law import ControlGains
 
 
 def pressure_asked(
@@ -30,10 +32,26 @@ def pressure_asked(
     for i, wall in enumerate(problem.shells):
         if wall.gains is None:
             continue
+        assert isinstance(wall.gains, ControlGains)  # no other law saturates
         sensor = wall.sensor_gain(modes).columns
         sensed, rate = (sensor.v * v[i] + sensor.w * w[i] for w, v in ((normal, tangential), (normal_rate, tangential_rate)))
         pressure[i] = wall.actuator_pressure * (wall.gains.proportional * sensed + wall.gains.derivative * rate)
     return pressure
+
+
+def voltage_asked(solved: SolvedSpectra) -> ComplexArray:
+    """Return the transforms of the voltage H(s) phi_s that the law of each shell asks for, V; 0 on shells without feedback.
+
+    Returns
+    -------
+    ndarray, shape (shells, parities, M + 1, nodes)
+    """
+    voltage = np.zeros_like(solved.normal)
+    for i, wall in enumerate(solved.problem.shells):
+        if wall.gains is not None:
+            sensor = wall.sensor_gain(solved.modes).columns
+            voltage[i] = wall.gains.at(solved.grid.nodes, solved.modes) * (sensor.v * solved.tangential[i] + sensor.w * solved.normal[i])
+    return voltage
 
 
 def saturated(solution: ModalSolution) -> bool:

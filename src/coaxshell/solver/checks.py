@@ -10,6 +10,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
+from coaxshell.model.control import PDControl
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
 from coaxshell.model.prefixes import engineering
@@ -154,7 +156,7 @@ def actuators(*motions: ModalSolution) -> list[str]:
             remedy = "lower the gains to stay within what the actuator can do"
         else:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
-            paper = control.transducers == "paper"  # electrodes are not marched yet
+            paper = control.transducers == "paper" and isinstance(control, PDControl)  # what saturates
             remedy = "set control.saturation = true to see what it can really do, or lower the gains" if paper else "lower the gains"
             if paper and motions[0].along is not None:
                 remedy = "lower the gains; control.saturation = true shows in two dimensions what it can really do"
@@ -171,6 +173,11 @@ def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
     margin = delay_margin(problem, settings.modes, settings.duration)
     if margin is None or margin.delay > USUAL_DELAY:
         return []
+    if isinstance(control, Feedback) and control.delay:
+        return [
+            f"control: {engineering(margin.delay, 's')} more than the loop's delay of {engineering(control.delay, 's')} would make order "
+            f"{margin.order} grow, and electronics take about {engineering(USUAL_DELAY, 's')}; lower the gains, or feed fewer orders back"
+        ]
     return [
         f"control: the loop is ideal, without delay: {engineering(margin.delay, 's')} of it would make order {margin.order} grow, and "
         f"electronics take about {engineering(USUAL_DELAY, 's')}; read the run as the limit of what feedback can do, or lower the gains"

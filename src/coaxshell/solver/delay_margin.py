@@ -35,7 +35,7 @@ def delay_margin(problem: Problem, max_order: int, duration: float) -> DelayMarg
 
     Of the highest order and two below it: where others stand less it is more than the margin.
     """
-    if all(wall.gains is None or wall.gains.proportional == wall.gains.derivative == 0.0 for wall in problem.shells):
+    if all(wall.gains is None or wall.gains.zero for wall in problem.shells):
         return None
     orders = sample(max_order)
     low, high = _FIRST, _FIRST
@@ -57,5 +57,5 @@ def sample(max_order: int) -> FloatArray:
 
 def _unstable(problem: Problem, orders: FloatArray, delay: float, duration: float) -> FloatArray:
     late = delay / problem.scales.time
-    walls = tuple(wall.with_gains(None if wall.gains is None else replace(wall.gains, delay=late)) for wall in problem.shells)
+    walls = tuple(wall.with_gains(None if wall.gains is None else wall.gains.late(late)) for wall in problem.shells)
     return poles_beyond(replace(problem, shells=walls), Modes(orders, sparse=True), 1.0 / duration).orders

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from coaxshell.errors import InputError
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.layers import Shell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
@@ -49,7 +50,10 @@ def require_sources_alone(system: System, dimensions: int) -> None:
 
 
 def _require_plane_electrodes(system: System, dimensions: int) -> None:
-    """Raise InputError if feedback by electrodes is asked for in three dimensions, or is to saturate."""
+    """Raise InputError if feedback by electrodes or by any law is asked for in three dimensions, or is to saturate."""
+    if isinstance(system.control, Feedback) and dimensions == 3:
+        problem = "Feedback is solved in two dimensions only"
+        raise InputError("control", problem, 'use dimensions=2, or PDControl with transducers = "paper"')
     if system.control is None or system.control.transducers != "electrodes":
         return
     paper = 'or transducers = "paper"'
@@ -61,7 +65,9 @@ def _require_plane_electrodes(system: System, dimensions: int) -> None:
 
 
 def require_mid_surfaces(system: System) -> None:
-    """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know, or electrodes push it."""
+    """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know, or of other feedback."""
+    if isinstance(system.control, Feedback):
+        raise InputError("control", "Feedback is not known to the direct engine, which steps PDControl", 'use engine="spectral"')
     if system.control is not None and system.control.transducers == "electrodes":
         problem = "'electrodes' push along the wall too, and the direct engine knows the paper's pressure alone"
         raise InputError("control.transducers", problem, 'use engine="spectral", or transducers = "paper"')

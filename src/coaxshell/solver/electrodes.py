@@ -30,6 +30,7 @@ from coaxshell.numerics.circle import around, peak_on_circle
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.structure.control_law import ControlGains
 
 Segment = float | str | None
 """Length of a segment, m or as text such as "50 mm"; "point" for the value at a point; None for what the pulse's band allows."""
@@ -96,7 +97,9 @@ def _demand(solution: ModalSolution, index: int, orders: FloatArray, share: Floa
     """Return the voltage asked for, (parities, M + 1, T), by how much each order counts."""
     wall = solution.problem.shells[index]
     gains, along = wall.gains, solution.along
-    assert gains is not None
+    if solution.control_voltage is not None:
+        return np.asarray(share[:, None] * solution.control_voltage[index])
+    assert isinstance(gains, ControlGains)
     if along is not None:
         layer = wall.layer_number("sensor")
         if layer is None or not along.potential_rates:

@@ -72,6 +72,7 @@ def require_finite_solution(solution: ModalSolution, where: str = "response", re
         ("the displacement of the absorbers", solution.absorber_displacement, ("absorber",)),
         ("the force of the absorbers", solution.absorber_force, ("absorber", "side")),
         ("what saturated actuators lack", solution.control_correction, shells),
+        ("the voltage of the feedback", solution.control_voltage, shells),
     ):
         index = None if values is None else first_bad(values)
         if values is not None and index is not None:

@@ -22,6 +22,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
+from coaxshell.structure.control_law import ControlGains
 
 
 def initial_decay(problem: Problem, index: int, modes: Modes) -> FloatArray:
@@ -75,8 +76,9 @@ def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArr
     """
     wall = problem.shells[index]
     assert wall.gains is not None
-    sensor = wall.sensor_gain(Modes.up_to(ratio.shape[0] - 1)).columns
-    return np.asarray(wall.gains.at(s) * sensor.recovered(ratio), dtype=np.complex128)
+    modes = Modes.up_to(ratio.shape[0] - 1)
+    sensor = wall.sensor_gain(modes).columns
+    return np.asarray(wall.gains.at(s, modes) * sensor.recovered(ratio), dtype=np.complex128)
 
 
 def sensor_rate_weights(
@@ -112,7 +114,7 @@ def voltage_weights(problem: Problem, rates: FloatArray, controlled: list[int], 
     weights = np.empty_like(rates)
     for row, i in enumerate(controlled):
         gains = problem.shells[i].gains
-        assert gains is not None
+        assert isinstance(gains, ControlGains)  # no other law saturates
         weights[row] = gains.derivative * rates[row] + gains.proportional * trapezoidal_sums(rates[row], time_step)
     return weights
 

@@ -23,6 +23,7 @@ from coaxshell.solver.interface.saturation import circle, voltage_limit
 from coaxshell.solver.sampled_orders import NODES, SampledOrders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.structure.control_law import ControlGains
 
 _INSTANTS = 256
 _UNLIKELY = 4.0
@@ -127,7 +128,7 @@ def asked_above(problem: Problem, above: SampledOrders, squares: FloatArray) -> 
         wall = problem.shells[i]
         assert wall.gains is not None
         assert above.modal is not None
-        law = wall.gains.at(above.nodes) * wall.fed_back(above.modal.modes, above.modal.shells[i])
+        law = wall.gains.at(above.nodes, above.modal.modes) * wall.fed_back(above.modal.modes, above.modal.shells[i])
         found[i] = 0.5 * (above.weight @ (np.abs(law) ** 2 * squares[i]))
     return found
 
@@ -137,7 +138,7 @@ def softened(problem: Problem, actuators: list[LimitedActuator]) -> Problem:
     shells = list(problem.shells)
     for one in actuators:
         wall = shells[one.shell]
-        assert wall.gains is not None
+        assert isinstance(wall.gains, ControlGains)  # no other law saturates
         shells[one.shell] = wall.with_gains(wall.gains.scaled(one.gain, one.gain))
     return replace(problem, shells=tuple(shells))
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.sources import SourceGeometry, source_geometry
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.gains import gains_of
 from coaxshell.model.shells import RigidShell, Shell
@@ -20,6 +21,7 @@ from coaxshell.solver.dimensions import require_sources_alone
 from coaxshell.solver.point_forces import PointForceShares, point_force_shares
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.constituents import constituents, loses
+from coaxshell.structure.control_law import ControlGains, ControlLaw, RationalLaw
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
 from coaxshell.structure.electrodes import with_plane_stress
@@ -28,7 +30,7 @@ from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
-from coaxshell.structure.shell_model import ControlGains, ShellModel
+from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid import require_solid, solid_layers
 from coaxshell.structure.thin_wall import ThinWall
 
@@ -173,7 +175,7 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
         return RigidWall(radius=shell.radius / scales.length)
     if shell.theory == "elastic":
         return _solid(shell, index, scales, system.exterior.density, band)
-    gains, faces = _gains(system, index), shell.wetted == "faces"
+    gains, faces = _gains(system, index, scales.time), shell.wetted == "faces"
     thin: type[ThinWall] = ThinWall
     lossy: type[LossyWall] = LossyWall
     if gains is not None and system.control is not None and system.control.transducers == "electrodes":
@@ -192,8 +194,10 @@ def _solid(shell: Shell, index: int, scales: Scales, density: float, band: Band)
     return kind.of(layers, shell.layers.index(shell.core))
 
 
-def _gains(system: System, index: int) -> ControlGains | None:
+def _gains(system: System, index: int, time: float) -> ControlLaw | None:
     control = system.control
     if control is None or index not in system.controlled_shells:
         return None
+    if isinstance(control, Feedback):
+        return RationalLaw.of(*control.polynomials, control.delay, control.weights, time)
     return ControlGains(*gains_of(system, index))

@@ -159,6 +159,8 @@ class ModalSolution:
         Line force f_n^(i)/(rho_e c_e^2 a) on the inner [0] and outer [1] of the shells it links, positive inward on the shell.
     control_correction : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure of the saturated minus that of the linear control law, where saturation is on.
+    control_voltage : ndarray, same shape, or None
+        Voltage that the law asks for, V, kept where it is no sum of phi_s and its rate; 0 of shells without feedback.
     along : AxialMotion or None
         At a station of a three-dimensional run.
     spectra : SolvedSpectra or None
@@ -181,6 +183,7 @@ class ModalSolution:
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
     control_correction: FloatArray | None = None
+    control_voltage: FloatArray | None = None
     along: AxialMotion | None = None
     spectra: SolvedSpectra | None = field(default=None, init=False, repr=False, compare=False)
 

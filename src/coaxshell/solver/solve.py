@@ -9,10 +9,11 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.system import System
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.actuation import pressure_asked
+from coaxshell.solver.actuation import pressure_asked, voltage_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.excitation import source_parities
@@ -148,8 +149,10 @@ def _solved(
         hoop = grid.invert(solved.solid.hoop)[..., keep]
         potentials = grid.invert(solved.solid.potentials)[..., keep] if solved.solid.potentials.size else None
     correction = np.zeros_like(w) if saturate else None
-    w_rate = v_rate = asked = None
-    if any(shell.gains is not None for shell in problem.shells):
+    w_rate = v_rate = asked = voltage = None
+    if isinstance(system.control, Feedback):
+        voltage = grid.invert(voltage_asked(solved))[..., keep]
+    elif any(shell.gains is not None for shell in problem.shells):
         w_rate, v_rate = (grid.invert(x * grid.nodes)[..., keep] for x in (solved.normal, solved.tangential))
         if saturate:
             asked = pressure_asked(problem, w, v, w_rate, v_rate)
@@ -170,6 +173,7 @@ def _solved(
         absorber_displacement=solved.displacement[:, keep] if links.count else None,
         absorber_force=solved.force[..., keep] if links.count else None,
         control_correction=correction,
+        control_voltage=voltage,
     )
     solution.keep(solved)
     solution.judge_when_read(partial(judgement, solved=solved, asked_for=asked_for, asked=asked))

@@ -25,6 +25,8 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
+from coaxshell.model.control import PDControl
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -32,6 +34,7 @@ from coaxshell.numerics.winding import turning
 from coaxshell.solver.coupling import ModalSystem, determinant
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.structure.control_law import ControlGains
 
 _MAX_NODES = 8192
 _SPACING = 0.8
@@ -88,13 +91,13 @@ class OpenLoop:
         along = {i: problem.shells[i].fed_back_along(modes, nodes) for i in fed_back}
         return cls(system.diagonal, system.coupling, determinant(system.diagonal, system.coupling), fed_back, along)
 
-    def closed(self, problem: Problem, nodes: ComplexArray) -> ComplexArray:
+    def closed(self, problem: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
         """Return D_m/D0_m, the determinant with the feedback of a problem over that without."""
         diagonal, left = list(self.diagonal), [np.ones(1, np.complex128) for _ in self.diagonal]
         for i, pressure in self.fed_back.items():
             gains = problem.shells[i].gains
             if gains is not None:
-                law = gains.at(nodes)
+                law = gains.at(nodes, modes)
                 diagonal[i] = diagonal[i] - law * (pressure + self.along[i] * diagonal[i])
                 left[i] = 1.0 - law * self.along[i]
         coupling = [x * left[i] * left[i + 1] for i, x in enumerate(self.coupling)]
@@ -102,8 +105,11 @@ class OpenLoop:
 
 
 def with_gains(problem: Problem, proportional: float, derivative: float) -> Problem:
-    """Return the problem with the gains of every controlled shell scaled by 0 or 1 each."""
-    shells = (wall.with_gains(None if wall.gains is None else wall.gains.scaled(proportional, derivative)) for wall in problem.shells)
+    """Return the problem with the gains of every shell under PD control scaled by 0 or 1 each."""
+    shells = (
+        wall.with_gains(wall.gains.scaled(proportional, derivative) if isinstance(wall.gains, ControlGains) else wall.gains)
+        for wall in problem.shells
+    )
     return replace(problem, shells=tuple(shells))
 
 
@@ -118,10 +124,9 @@ def _contour(problem: Problem, modes: Modes, least: float) -> ComplexArray:
 
     sigma_0 is the *least* growth that counts, or more where as many nodes cannot tell it from none.
     """
-    highest = Modes(modes.orders[-1:], modes.wavenumber)
-    resonance = max(float(wall.highest_frequency(highest)[0]) for wall in problem.shells)
-    fades = highest_frequency(problem, modes.max_order, modes.wavenumber)
-    dense = min(1.2 * resonance, fades)
+    ends = Modes(np.array([1.0, modes.max_order]), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
+    resonance = max(float(np.hypot(*wall.highest_frequency(ends))) for wall in problem.shells)
+    dense, fades = 1.2 * resonance, highest_frequency(problem, modes.max_order, modes.wavenumber)
     shift = max(least, dense / (_SPACING * _MAX_NODES))
     even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)
     beyond = np.geomspace(even[-1], max(fades, 1.02 * even[-1]), 200)
@@ -152,7 +157,7 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
             open_loop = shared.get_or_make(("open loop", *known, block.tobytes()), make)
         else:
             open_loop = make()
-        ratio = open_loop.closed(problem, block)
+        ratio = open_loop.closed(problem, block, modes)
         turned += turning(ratio)
     turned += np.angle(1.0 / ratio[:, -1])  # beyond the last node the ratio tends to 1 without turning
     counts = np.rint(-turned / np.pi)
@@ -192,7 +197,7 @@ def _pole(problem: Problem, modes: Modes, least: float) -> complex:
     def newton(s: ComplexArray) -> ComplexArray:
         """Return D_m/D0_m over its derivative: how far Newton's method goes from each place."""
         step = 1e-6 * np.abs(s)
-        here, ahead = (OpenLoop.of(problem, x, modes, None).closed(problem, x)[0] for x in (s, s + step))
+        here, ahead = (OpenLoop.of(problem, x, modes, None).closed(problem, x, modes)[0] for x in (s, s + step))
         return np.asarray(here * step / np.where(ahead == here, 1e-300, ahead - here))
 
     contour = _contour(problem, modes, least)
@@ -215,23 +220,38 @@ def require_stable(problem: Problem, max_order: int, duration: float, shared: Sh
     control = problem.system.control
     assert control is not None
     fastest = fastest_growth(problem, unstable.orders, 1.0 / duration, wavenumber)
-    gains = {name: getattr(control, name) for name in ("proportional", "derivative")}
-    alone = {
-        "proportional": unstable_poles(with_gains(problem, 1.0, 0.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
-        "derivative": unstable_poles(with_gains(problem, 0.0, 1.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
-    }
-    guilty = [name for name, bad in alone.items() if bad] or list(gains)
+    names, said = _guilty(control, problem, max_order, duration, wavenumber)
     where = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
     listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5])
     listed += f", ..., {unstable.orders[-1]:.0f} ({unstable.orders.size} in all)" if unstable.orders.size > 5 else ""
     hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
     told = f"order {fastest.order} by e^({fastest.rate:.3g} t), t in transits, at {engineering(hertz, 'Hz')}"
     raise InputError(
-        " and ".join(f"control.{name}" for name in guilty),
-        f"{' and '.join(_shown(gains[name]) for name in guilty)} makes the closed loop unstable: order {listed}{where} grows without "
-        f"bound, fastest {told}",
+        " and ".join(f"control.{name}" for name in names),
+        f"{said} makes the closed loop unstable: order {listed}{where} grows without bound, fastest {told}",
         _remedy(problem),
     )
+
+
+def _guilty(control: PDControl | Feedback, problem: Problem, max_order: int, duration: float, wavenumber: float) -> tuple[list[str], str]:
+    """Return which entries of the control make the loop unstable, and their values."""
+    if isinstance(control, Feedback):
+        if control.delay and not unstable_poles(_at_once(problem), max_order, duration, wavenumber=wavenumber).orders.size:
+            return ["delay"], engineering(control.delay, "s")
+        return ["numerator"], _shown(control.numerator)
+    gains = {name: getattr(control, name) for name in ("proportional", "derivative")}
+    alone = {
+        "proportional": unstable_poles(with_gains(problem, 1.0, 0.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
+        "derivative": unstable_poles(with_gains(problem, 0.0, 1.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
+    }
+    guilty = [name for name, bad in alone.items() if bad] or list(gains)
+    return guilty, " and ".join(_shown(gains[name]) for name in guilty)
+
+
+def _at_once(problem: Problem) -> Problem:
+    """Return the problem whose feedback has no delay."""
+    walls = tuple(wall.with_gains(None if wall.gains is None else wall.gains.late(-wall.gains.delay)) for wall in problem.shells)
+    return replace(problem, shells=walls)
 
 
 def _shown(gain: float | tuple[float, ...]) -> str:

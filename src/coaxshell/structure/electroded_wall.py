@@ -36,7 +36,7 @@ class ElectrodedWall(ThinWall):
         """Return impedance and V/W with feedback."""
         if self.gains is None:
             return self.passive(modes, s)
-        k, inertia, law = self.dynamic_stiffness(modes, s), self.mass * s * s, self.gains.at(s)
+        k, inertia, law = self.dynamic_stiffness(modes, s), self.mass * s * s, self.gains.at(s, modes)
         push, read = self.drive(modes).columns, self.sensor_gain(modes).columns
         along = inertia + np.where(modes.column == 0, 1.0, k.vv - law * (push.v * read.v))  # V_0 does not couple
         tangential = -(k.vw - law * (push.v * read.w)) / along
@@ -47,13 +47,15 @@ class ElectrodedWall(ThinWall):
         """Return mass and damping at once, that of derivative feedback on W included."""
         if self.gains is None:
             return Leading(self.mass, self.damping)
-        return Leading(self.mass, self.damping - self.gains.derivative * (self.drive(modes).columns.w * self.sensor_gain(modes).columns.w))
+        fed_back = self.drive(modes).columns.w * self.sensor_gain(modes).columns.w
+        return Leading(self.mass, self.damping - self.gains.at_once(modes) * fed_back)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
-        """Return the membrane frequency of each order, with open sensors and what proportional feedback stiffens it by."""
-        proportional = 0.0 if self.gains is None else self.gains.proportional
+        """Return the membrane frequency of each order, with open sensors and what feedback stiffens it by."""
+        alone = super().highest_frequency(modes)
+        proportional = 0.0 if self.gains is None else self.gains.stiffening(modes.orders, alone)
         added = -proportional * self.drive(modes).v * self.sensor_gain(modes).v
-        return np.asarray(np.sqrt(super().highest_frequency(modes) ** 2 + np.maximum(added, 0.0) / self.mass))
+        return np.asarray(np.sqrt(alone**2 + np.maximum(added, 0.0) / self.mass))
 
     # Transducers
 
@@ -86,25 +88,25 @@ class ElectrodedWall(ThinWall):
         along = self.mass * s * s + np.where(modes.column == 0, 1.0, self.dynamic_stiffness(modes, s).vv)
         return np.asarray(push.v * read.v / along)
 
-    def feedback_rates(self, modes: Modes) -> tuple[FloatArray, FloatArray]:
-        """Return how fast derivative and proportional feedback act at most, |k_d| |P||S|/M and sqrt(|k_p| |P||S|/M), each of an order."""
+    def _feedback_size(self, modes: Modes) -> FloatArray:
+        """Return |P||S|/M of each order, times the weight that the law gives it; 0 without feedback."""
         if self.gains is None:
-            return np.zeros_like(modes.orders), np.zeros_like(modes.orders)
+            return np.zeros_like(modes.orders)
         size = np.hypot(*self.drive(modes)[:2]) * np.hypot(*self.sensor_gain(modes)[:2]) / self.mass
-        return abs(self.gains.derivative) * size, np.sqrt(abs(self.gains.proportional) * size)
+        return np.asarray(size * np.abs(self.gains.weight(modes.orders)))
 
     def feedback_frequency(self, modes: Modes) -> float:
         """Return a frequency above which feedback is less than half of its inertia, and no order resonates; 0 without feedback.
 
         Where an order resonates the least feedback counts: traction moves the membrane, which hardly radiates.
         """
-        damping, stiffening = self.feedback_rates(modes)
-        fades = float(2.0 * damping.max() + 2.0 * stiffening.max())
+        fades = 0.0 if self.gains is None else self.gains.fades(self._feedback_size(modes))
         return max(fades, 1.2 * float(self.highest_frequency(modes).max())) if fades > 0.0 else 0.0
 
     def fastest_rate(self, modes: Modes) -> FloatArray:
-        """Return the highest frequency of each order, or how fast derivative feedback damps it, if that is more."""
-        return np.maximum(self.highest_frequency(modes), self.feedback_rates(modes)[0])
+        """Return the highest frequency of each order, or how fast feedback damps it, if that is more."""
+        highest = self.highest_frequency(modes)
+        return highest if self.gains is None else np.maximum(highest, self.gains.rate(self._feedback_size(modes)))
 
     # Stress and energy
 

@@ -24,9 +24,10 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.axial import ENTRIES, AxialStiffness, axial_stiffness, eliminated
 from coaxshell.structure.constituents import Constituent, weighted
+from coaxshell.structure.control_law import ControlLaw
 from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.section import Section
-from coaxshell.structure.shell_model import Arm, ControlGains, FieldGain, Gain, WallEnergy, WallMotion, WallOperator, WallStiffness
+from coaxshell.structure.shell_model import Arm, FieldGain, Gain, WallEnergy, WallMotion, WallOperator, WallStiffness
 from coaxshell.structure.thin import wall_stiffness
 from coaxshell.structure.thin_wall import ThinWall, strain_energy
 
@@ -52,7 +53,7 @@ class LossyWall(ThinWall):
         section: Section,
         constituents: tuple[Constituent, ...],
         core: int,
-        gains: ControlGains | None = None,
+        gains: ControlLaw | None = None,
         *,
         wetted_faces: bool = False,
     ) -> Self:

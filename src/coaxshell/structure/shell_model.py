@@ -26,27 +26,10 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.structure.control_law import ControlLaw
 from coaxshell.structure.losses import Relaxation
 
 Ratio = TypeVar("Ratio", FloatArray, ComplexArray)
-
-
-@dataclass(frozen=True)
-class ControlGains:
-    """PD feedback of one wall: u = proportional * phi_s + derivative * dphi_s/dt, t dimensionless (Eq. 17); by a *delay* later."""
-
-    proportional: float
-    derivative: float
-    delay: float = 0.0
-
-    def at(self, s: ComplexArray) -> ComplexArray:
-        """Return u per phi_s, k_p + k_d s."""
-        at_once = self.proportional + self.derivative * s
-        return at_once * np.exp(-self.delay * s) if self.delay else at_once
-
-    def scaled(self, proportional: float, derivative: float) -> ControlGains:
-        """Return the gains times a factor each."""
-        return ControlGains(proportional * self.proportional, derivative * self.derivative, self.delay)
 
 
 def _column(entry: FloatArray) -> FloatArray:
@@ -244,15 +227,15 @@ class ShellModel(ABC):
         R/a, of its reference surface: the mid-surface of a thin wall.
     mass : float
         I/(rho_e a), by which it resists at once; infinite if it does not move.
-    gains : ControlGains or None
+    gains : ControlLaw or None
         Feedback from its sensor to its actuator.
     """
 
     radius: float
     mass: float
-    gains: ControlGains | None = None
+    gains: ControlLaw | None = None
 
-    def with_gains(self, gains: ControlGains | None) -> Self:
+    def with_gains(self, gains: ControlLaw | None) -> Self:
         """Return the wall with other feedback, or with none."""
         return replace(self, gains=gains)
 
@@ -316,10 +299,10 @@ class ShellModel(ABC):
         raise InputError("engine", "'direct' cannot step a wall of this kind", 'use engine="spectral"')
 
     def operator(self, modes: Modes, s: ComplexArray) -> WallOperator:
-        """Return impedance, V/W and U/W with feedback, which adds -(k_p + k_d s) times what it feeds back per gain (Eqs. 4, 17, 20)."""
+        """Return impedance, V/W and U/W with feedback, which adds -H(s) times what it feeds back per gain (Eqs. 4, 17, 20)."""
         found = self.passive(modes, s)
         if self.gains is not None:
-            found.impedance -= self.gains.at(s) * self.fed_back(modes, found)
+            found.impedance -= self.gains.at(s, modes) * self.fed_back(modes, found)
         return found
 
     def leading(self, modes: Modes) -> Leading:
@@ -327,7 +310,7 @@ class ShellModel(ABC):
         if self.gains is None:
             return Leading(self.mass, self.damping)
         sensed = self.sensor_gain(modes).columns.w
-        return Leading(self.mass, self.damping - self.actuator_pressure * self.gains.derivative * sensed)
+        return Leading(self.mass, self.damping - self.actuator_pressure * self.gains.at_once(modes) * sensed)
 
     # Transducers
 
@@ -382,9 +365,7 @@ class ShellModel(ABC):
         if self.gains is None:
             return 0.0
         volts = np.abs(np.stack([x for x in self.sensor_gain(modes) if x is not None])).max(axis=0) * abs(self.actuator_pressure)
-        damping = float((volts * abs(self.gains.derivative)).max()) / self.mass
-        stiffness = float((volts * abs(self.gains.proportional)).max()) / self.mass
-        return 2.0 * damping + 2.0 * float(np.sqrt(stiffness))
+        return self.gains.fades(volts * np.abs(self.gains.weight(modes.orders)) / self.mass)
 
     # Stress, energy, range of the theory
 

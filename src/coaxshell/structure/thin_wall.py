@@ -20,9 +20,9 @@ from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.axial import axial_gain, axial_operator, laminate_of, natural_frequencies, potential, strain
 from coaxshell.structure.axial_energy import axial_energy, axial_strain_energy
 from coaxshell.structure.axial_stress import axial_stress_gain, stress_of_fields
+from coaxshell.structure.control_law import ControlLaw
 from coaxshell.structure.section import PiezoelectricLayer, Section
 from coaxshell.structure.shell_model import (
-    ControlGains,
     FieldGain,
     Gain,
     ShellModel,
@@ -70,7 +70,7 @@ class ThinWall(ShellModel):
     wetted_faces: bool = False
 
     @classmethod
-    def of(cls, section: Section, gains: ControlGains | None = None, *, wetted_faces: bool = False) -> Self:
+    def of(cls, section: Section, gains: ControlLaw | None = None, *, wetted_faces: bool = False) -> Self:
         """Return the wall of a dimensionless section."""
         return cls(radius=section.radius, mass=section.mass, gains=gains, section=section, wetted_faces=wetted_faces)
 

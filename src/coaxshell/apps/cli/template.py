@@ -9,6 +9,7 @@ from coaxshell.model import (
     Described,
     Elastic,
     Exponential,
+    Feedback,
     Fluid,
     Gaussian,
     Layer,
@@ -96,6 +97,8 @@ def _reference() -> Iterator[str]:
     yield from _entries(PointAbsorber)
     yield "[control]: piezoelectric feedback from each shell's sensor layer to its actuator layer"
     yield from _entries(PDControl)
+    yield "  or of any other law:"
+    yield from _entries(Feedback)
 
 
 def _kind(model: type[Described]) -> Iterator[str]:

@@ -7,6 +7,7 @@ from html import escape
 
 from coaxshell.model.absorbers import AbsorberRing
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid, Vacuum
 from coaxshell.model.gains import gains_of
 from coaxshell.model.parts import SystemParts
@@ -93,12 +94,27 @@ def _parts(system: SystemParts) -> list[Cells]:
         control = system.control
         stop = ", by electrodes" if control.transducers == "electrodes" else ""
         stop += ", stops at the field limit" if control.saturation else ""
-        each: dict[tuple[float, float], list[str]] = {}
-        for i in system.controlled_shells:
-            each.setdefault(gains_of(system, i), []).append(shell_phrase(i, len(system.shells)))
-        laws = "; ".join(f"k_p = {p:g}, k_d = {d:g} on {', '.join(names)}" for (p, d), names in each.items())
+        if isinstance(control, Feedback):
+            laws = _law(control, [shell_phrase(i, len(system.shells)) for i in system.controlled_shells])
+        else:
+            each: dict[tuple[float, float], list[str]] = {}
+            for i in system.controlled_shells:
+                each.setdefault(gains_of(system, i), []).append(shell_phrase(i, len(system.shells)))
+            laws = "; ".join(f"k_p = {p:g}, k_d = {d:g} on {', '.join(names)}" for (p, d), names in each.items())
         rows.append(("", "control", f"{laws}{stop}"))
     return rows
+
+
+def _law(law: Feedback, names: Sequence[str]) -> str:
+    """Return what a rational law is in a few words."""
+    parts = [f"H(s) of degree {len(law.numerator) - 1} over {len(law.denominator) - 1}"]
+    parts += [
+        f"{name} corner {engineering(x, 'Hz')}" for name, x in (("sensor", law.sensor_corner), ("amplifier", law.amplifier_corner)) if x
+    ]
+    parts += [f"delay {engineering(law.delay, 's')}"] if law.delay else []
+    if law.weights is not None:
+        parts.append(f"orders up to {law.weights}" if isinstance(law.weights, int) else f"{len(law.weights)} orders weighted")
+    return f"{', '.join(parts)} on {', '.join(names)}"
 
 
 def _shell_rows(number: int, shells: int, shell: Shell | RigidShell) -> list[Cells]:

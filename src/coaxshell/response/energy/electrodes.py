@@ -23,7 +23,7 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
         if wall.gains is None or not charges:
             continue
         driven, area, w, v = True, wall.radius * motion.circle, motion.normal[i], motion.tangential[i]
-        volts = wall.gains.at(s) * _combined(wall.sensor_gain(motion.modes), v, w)
+        volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w)
         history = grid.invert(volts)
         for charge, capacitance in charges:
             current = s * (_combined(charge, v, w) + capacitance * volts)

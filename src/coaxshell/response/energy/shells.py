@@ -68,9 +68,9 @@ def actuator_work(motion: Motion) -> FloatArray:
             if sensor.u is not None and motion.axial is not None:
                 volts += sensor.u * motion.axial[i]
             drive = wall.drive(motion.modes).columns
-            pressure = drive.w * wall.gains.at(s) * volts
+            pressure = drive.w * wall.gains.at(s, motion.modes) * volts
             if np.any(drive.v):
-                traction = drive.v * wall.gains.at(s) * volts
+                traction = drive.v * wall.gains.at(s, motion.modes) * volts
                 total -= SurfaceWork(grid, wall.radius * motion.circle, motion.tangential[i] * s)(traction)
         total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

@@ -10,6 +10,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
+from coaxshell.structure.control_law import ControlGains
 
 
 class ModalStep:
@@ -31,8 +32,8 @@ class ModalStep:
         sensors = [wall.sensor_gain(modes) for wall in walls]
         self.sensor_v, self.sensor_w = (np.stack(x)[:, None] for x in ([gain.v for gain in sensors], [gain.w for gain in sensors]))
         gains = [wall.gains for wall in walls]
-        self.proportional = np.array([0.0 if g is None else g.proportional for g in gains])[:, None, None]
-        self.derivative = np.array([0.0 if g is None else g.derivative for g in gains])[:, None, None]
+        self.proportional = np.array([g.proportional if isinstance(g, ControlGains) else 0.0 for g in gains])[:, None, None]
+        self.derivative = np.array([g.derivative if isinstance(g, ControlGains) else 0.0 for g in gains])[:, None, None]
         self.actuator = np.array([0.0 if wall.gains is None else wall.actuator_pressure for wall in walls])[:, None, None]
         shape = (count, parities, max_order + 1)
         self.w, self.w_before, self.v, self.v_before = (np.zeros(shape) for _ in range(4))

@@ -108,6 +108,7 @@ function summary(path, value) {
   if (/^absorbers\[\d+\]$/.test(path)) return "z" in value ? `${show(value.angle ?? 0, "deg")}, z = ${show(value.z, "m")}, ${show(value.mass, "kg")}` : `${show(value.angle ?? 0, "deg")}, ${show(value.mass, "kg/m")}`;
   if (/^source$/.test(path)) return Array.isArray(value) ? `${value.length} sources` : title(value.type.replace(/-/g, " ").toLowerCase());
   if (path === "resolution") return `${value.modes} orders, step ${value.time_step}`;
+  if (/^control$/.test(path) && "numerator" in value) return `H(s) of degree ${[value.numerator].flat().length - 1} over ${[value.denominator ?? 1].flat().length - 1}`;
   if (/^control$/.test(path)) return `${show(value.proportional, "", 3)}, ${show(value.derivative, "", 3)}`;
   return value.name ?? value.type ?? "";
 }
@@ -176,7 +177,7 @@ function following(item, value, name) {
 
 const HINTS = {
   z: 0,
-  count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150,
+  count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150, numerator: [-0.1, -2e4], denominator: [1],
   distance: 5, peak_pressure: 2.5e4, decay_time: 1.314e-4, width: 1e-4, pressure: 2.5e4, charge_mass: 1, stand_off: 10,
   density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
 };
@@ -184,9 +185,10 @@ const HINTS = {
 function union(schema, choices, path, name, value, bare) {
   let chosen = choices.findIndex((kind) => matches(kind, value));
   if (chosen < 0) chosen = choices.findIndex((kind) => kind.type !== "null");
-  const numeric = choices.find((kind) => ["number", "integer"].includes(kind.type));
+  const numeric = !choices.some((kind) => kind.type === "array") && choices.find((kind) => ["number", "integer"].includes(kind.type));
   if (numeric && choices.some((kind) => kind.type === "null")) return leaf({ ...numeric, optional: true, description: schema.description }, path, name, value);
   if (path.endsWith("control.shells")) return leaf({ type: "string", list: true, description: schema.description }, path, name, Array.isArray(value) ? value.join(", ") : value);
+  if (path.endsWith("control.weights")) return leaf({ type: "string", list: "weights", description: schema.description }, path, name, [value ?? []].flat().join(", "));
   const id = `kind-${path}`;
   const none = Array.isArray(value) && !value.length && choices.some((kind) => kind.type === "array");
   const options = choices.map((kind, i) => el("option", { value: i, selected: i === chosen && !none }, kind.type === "null" ? "None" : kind.type === "array" ? "Several, one by one" : kindTitle(kind)));
@@ -265,13 +267,15 @@ function leaf(schema, path, name, value) {
     return el("div", { class: "field" }, text, select);
   }
   if (schema.type === "string") {
-    const input = el("input", { ...shared, type: "text", class: "name", value: value ?? schema.default ?? "", onchange: () => change(path, schema.list ? listed(input.value) : input.value) });
+    const input = el("input", { ...shared, type: "text", class: "name", value: value ?? schema.default ?? "", onchange: () => change(path, schema.list ? listed(input.value, schema.list) : input.value) });
     return el("div", { class: schema.long ? "field long" : "field" }, text, input);
   }
   return quantity(schema, path, text, value ?? (schema.optional ? "" : schema.default), shared);
 }
 
-function listed(text) {
+// One number alone is the highest order of a modal filter, none no filter.
+function listed(text, kind) {
+  if (kind === "weights" && !text.includes(",")) return text.trim() === "" ? null : numeral(text);
   return text.trim() === "all" ? "all" : text.split(",").map((part) => part.trim()).filter(Boolean).map((part) => (part !== "" && Number.isFinite(Number(part)) ? Number(part) : part));
 }
 
