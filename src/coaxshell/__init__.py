@@ -56,7 +56,7 @@ if TYPE_CHECKING:
         materials,
         presets,
     )
-    from coaxshell.response import PreparedSystem, Response, load_response, natural_frequencies, prepare, simulate
+    from coaxshell.response import PreparedSystem, Response, frequency_response, load_response, natural_frequencies, prepare, simulate
     from coaxshell.solver.settings import Settings
     from coaxshell.studies import (
         Choice,
@@ -125,6 +125,7 @@ __all__ = [
     "absorber_ring",
     "export",
     "fluids",
+    "frequency_response",
     "load_response",
     "materials",
     "natural_frequencies",

@@ -10,6 +10,7 @@ from electrode_mutations import ELECTRODES
 from loss_mutations import LOSSES
 from reading_mutations import READING
 from spatial_mutations import SPATIAL
+from steady_mutations import STEADY
 from wetted_mutations import WETTED
 
 from mutation import Mutation
@@ -484,6 +485,7 @@ MUTATIONS = (
     ),
     *SPATIAL,
     *WETTED,
+    *STEADY,
     *READING,
     *ELASTIC,
     *ELECTRODES,

@@ -13,15 +13,15 @@ from scipy import fft, sparse
 from scipy.special import i0
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid, Nodes
 
 _OVERSAMPLING = 1.5
 _WIDTH = 14  # grid cells under the kernel; with the shape below the error is about 1e-11 of the largest sum
 _SHAPE = np.pi * np.sqrt((_WIDTH * (1.0 - 0.5 / _OVERSAMPLING)) ** 2 - 0.8)
 
 
-def exponential_sums(times: FloatArray, weights: FloatArray, grid: LaplaceGrid) -> ComplexArray:
-    """Return sum_j c_j e^{-s t_j} at all nodes s of a Laplace grid.
+def exponential_sums(times: FloatArray, weights: FloatArray, grid: Nodes) -> ComplexArray:
+    """Return sum_j c_j e^{-s t_j} at all nodes s of a Laplace grid, or at any others, where the sum is taken as it stands.
 
     Parameters
     ----------
@@ -29,13 +29,15 @@ def exponential_sums(times: FloatArray, weights: FloatArray, grid: LaplaceGrid) 
         t_j >= 0.
     weights : ndarray, shape (J, sets)
         Real weights c_j, one set a column.
-    grid : LaplaceGrid
+    grid : LaplaceGrid or Nodes
 
     Returns
     -------
     ndarray, shape (sets, nodes)
         Accuracy 1e-11 of the largest sum.
     """
+    if not isinstance(grid, LaplaceGrid):
+        return np.asarray(weights.T @ np.exp(-np.outer(times, grid.nodes)))
     cells = int(fft.next_fast_len(int(np.ceil(_OVERSAMPLING * grid.samples)), real=True))
     position = times * (cells / grid.period)
     spread = _spreading(position, np.exp(-grid.shift * times), cells) @ weights

@@ -15,6 +15,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from typing import Protocol
 
 import numpy as np
 from scipy import fft
@@ -33,6 +34,20 @@ period brings the next front's share within reach of the end, where e^{sigma t} 
 
 WORKERS = min(os.cpu_count() or 1, 8)
 """Threads for FFTs and for blocks of Laplace nodes."""
+
+
+class Nodes(Protocol):
+    """Values of the Laplace variable at which something is wanted, on a uniform contour or anywhere."""
+
+    @property
+    def nodes(self) -> ComplexArray:
+        """s, shape (nodes,)."""
+        ...
+
+    @property
+    def nyquist(self) -> float:
+        """The highest angular frequency among them."""
+        ...
 
 
 @dataclass(frozen=True)

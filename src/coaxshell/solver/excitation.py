@@ -13,7 +13,7 @@ from coaxshell.acoustics.pulse_transforms import pulse_transform
 from coaxshell.acoustics.sources import SourceGeometry, SurfaceLoad
 from coaxshell.model.sources import Source
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid, Nodes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 
@@ -113,7 +113,7 @@ def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis)
     return incident_of(source_groups(problem, grid.nodes), source_parities(problem.system.sources), grid, basis)
 
 
-def incident_of(groups: list[SourceGroup], parities: int, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+def incident_of(groups: list[SourceGroup], parities: int, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
     """Return modal pressure and slope dp/dr on the outermost surface by some sources, each (parities, orders, nodes), at all nodes."""
     waves = [group.geometry.incident(grid, basis) for group in groups]
     pressure, slope = (

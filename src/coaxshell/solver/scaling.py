@@ -141,7 +141,7 @@ class Problem:
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
 
 
-def dimensionless(system: System, dimensions: int = 2, settings: Settings | None = None) -> Problem:
+def dimensionless(system: System, dimensions: int = 2, settings: Settings | None = None, band: Band | None = None) -> Problem:
     """Return the dimensionless problem of a system in two or three dimensions.
 
     Parameters
@@ -150,8 +150,11 @@ def dimensionless(system: System, dimensions: int = 2, settings: Settings | None
     dimensions : int
     settings : Settings, optional
         Of the run, whose band loss factors are fitted over; that of the default settings unless given.
+    band : Band, optional
+        That band itself, where there is no run.
     """
-    band = USUAL_BAND if settings is None else Band.of(settings.duration, settings.time_step / settings.refinement)
+    if band is None:
+        band = USUAL_BAND if settings is None else Band.of(settings.duration, settings.time_step / settings.refinement)
     require_sources_alone(system, dimensions)
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from coaxshell.acoustics.sources.line import LineGeometry
 from coaxshell.acoustics.sources.plane import PlaneGeometry
-from coaxshell.acoustics.sources.source import FreeField, SourceGeometry, SpatialField, SpatialGeometry, SurfaceLoad, TimeFunction
+from coaxshell.acoustics.sources.source import (
+    FreeField,
+    SourceGeometry,
+    SpatialField,
+    SpatialGeometry,
+    SteadyGeometry,
+    SurfaceLoad,
+    TimeFunction,
+)
 from coaxshell.acoustics.sources.spherical import SphericalGeometry
 from coaxshell.acoustics.sources.spherical_front import SphericalFrontGeometry
 
@@ -17,6 +25,7 @@ __all__ = [
     "SpatialGeometry",
     "SphericalFrontGeometry",
     "SphericalGeometry",
+    "SteadyGeometry",
     "SurfaceLoad",
     "TimeFunction",
     "source_geometry",

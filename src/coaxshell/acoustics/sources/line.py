@@ -20,7 +20,7 @@ from coaxshell.acoustics.sources.source import NEAREST, SurfaceLoad, TimeFunctio
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_ratios import kve
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import LaplaceGrid, Nodes
 from coaxshell.numerics.radial_functions import RadialFunctions
 
 _WAKE_STEP = 1e-3
@@ -35,7 +35,7 @@ class LineGeometry:
     head: float = 1.0
     along_rays = False
 
-    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+    def prepare(self, grid: Nodes, modes: Modes) -> SurfaceLoad:
         """Return L_m = -eps_m K_m(kappa R0)/(K_0(kappa S) kappa b K_m'(kappa b)), from Graf's addition theorem (DLMF 10.44.3)."""
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
@@ -53,9 +53,15 @@ class LineGeometry:
         order_zero = br.kve(0, far.argument) / (br.kve(0, surface.argument) * to_head)
         return surface.keep(br.running_product(order_zero, far.k_ratios / surface.k_ratios))
 
-    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    def incident(self, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return the modal pressure and slope at r = b of a unit pulse."""
         return incident_of_regular(self, grid, basis)
+
+    def free_spectrum(self, s: ComplexArray, x: FloatArray, y: FloatArray) -> ComplexArray:
+        """Return K_0(sR)/K_0(sS) at points, shape (points, nodes)."""
+        range_, _ = rays(self.distance, x, y)
+        path = np.exp(-np.multiply.outer(path_to(self.distance, x, y, NEAREST, self.head), s))
+        return np.asarray(kve(0, np.multiply.outer(range_, s)) / kve(0, s * (self.distance - self.head)) * path)
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> LineField:
         """Return the wave at points up to an instant."""

@@ -20,7 +20,7 @@ from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.sources.source import SurfaceLoad, TimeFunction, incident_of_regular
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import Nodes
 from coaxshell.numerics.radial_functions import RadialFunctions
 
 
@@ -47,7 +47,7 @@ class PlaneGeometry:
         """Sin alpha, what its trace along z takes for a unit of length; negative towards -z."""
         return math.sin(math.radians(self.inclination))
 
-    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+    def prepare(self, grid: Nodes, modes: Modes) -> SurfaceLoad:
         """Return L_m = -eps_m e^{-kappa b}/(kappa b K_m'(kappa b)), from the Wronskian I_m K_m' - I_m' K_m = -1/(kappa b)."""
 
         def load(basis: RadialBasis, nodes: slice) -> ComplexArray:
@@ -56,9 +56,13 @@ class PlaneGeometry:
 
         return load
 
-    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    def incident(self, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return the modal pressure and slope at r = b of a unit pulse."""
         return incident_of_regular(self, grid, basis)
+
+    def free_spectrum(self, s: ComplexArray, x: FloatArray, y: FloatArray) -> ComplexArray:
+        """Return e^{-s (b - x) cos alpha} at points, shape (points, nodes)."""
+        return np.exp(-np.multiply.outer((self.head - x) * math.cos(math.radians(self.inclination)), s))
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> PlaneField:
         """Return the wave at points of the plane z = 0."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import Nodes
 
 NEAREST = 1e-3
 """Least distance from a source at which it is evaluated; nearer points get the value there: fields stay finite."""
@@ -82,11 +82,11 @@ class SourceGeometry(Hashable, Protocol):
         """Whether the wave is its pulse carried along rays, so that its load in time is an integral over the wetted arc."""
         ...
 
-    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+    def prepare(self, grid: Nodes, modes: Modes) -> SurfaceLoad:
         """Return the load function for some modes on a Laplace grid."""
         ...
 
-    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    def incident(self, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return the modal pressure and slope dp/dr at the head's radius of a unit pulse without any scattering, at all nodes of a grid."""
         ...
 
@@ -100,6 +100,14 @@ class SpatialGeometry(SourceGeometry, Protocol):
 
     def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> SpatialField:
         """Return the wave at points in space, z from the plane of its head point; *latest* is the last instant that will be asked for."""
+        ...
+
+
+class SteadyGeometry(SourceGeometry, Protocol):
+    """A kind of source whose wave is known at one frequency everywhere."""
+
+    def free_spectrum(self, s: ComplexArray, x: FloatArray, y: FloatArray) -> ComplexArray:
+        """Return the pressure of a unit pulse at points of the plane z = 0, shape (points, nodes)."""
         ...
 
 
@@ -125,7 +133,7 @@ class UniformField:
         return along_x, along_y, np.zeros_like(along_x)
 
 
-def incident_of_regular(geometry: SourceGeometry, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+def incident_of_regular(geometry: SourceGeometry, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
     """Return the modal pressure P0 and slope dp0/dr at r = b of a wave that is regular inside r = b, each (orders, nodes).
 
     It has P0 = D dp0/dr with D = I_m/(kappa I_m'), and its load is L = P0 - E dp0/dr with E = K_m/(kappa K_m'), so dp0/dr = L/(D - E).

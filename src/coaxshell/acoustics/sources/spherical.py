@@ -19,7 +19,7 @@ from coaxshell.acoustics.rays import path_to, surface_rays
 from coaxshell.acoustics.sources.source import NEAREST, SurfaceLoad, TimeFunction, rays
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.fourier_sums import exponential_sums
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import Nodes
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class SphericalGeometry:
     head: float = 1.0
     along_rays = True
 
-    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+    def prepare(self, grid: Nodes, modes: Modes) -> SurfaceLoad:
         """Return the modal pressure plus rigid scattering of the modal velocity, from :meth:`projections`."""
         pressure, acceleration = self.projections(grid, modes)
 
@@ -39,16 +39,22 @@ class SphericalGeometry:
 
         return load
 
-    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    def incident(self, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return the modal pressure and slope at r = b of a unit pulse."""
         pressure, acceleration = self.projections(grid, basis.modes)
         return pressure, -acceleration
+
+    def free_spectrum(self, s: ComplexArray, x: FloatArray, y: FloatArray) -> ComplexArray:
+        """Return (S/R) e^{-s(R - S)} at points, shape (points, nodes)."""
+        range_, _ = rays(self.distance, x, y)
+        spread = (self.distance - self.head) / range_
+        return np.asarray(spread[:, None] * np.exp(-np.multiply.outer(path_to(self.distance, x, y, NEAREST, self.head), s)))
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> SphericalField:
         """Return the wave at points."""
         return SphericalField(pulse, self.distance, x, y, self.head)
 
-    def projections(self, grid: LaplaceGrid, modes: Modes) -> tuple[ComplexArray, ComplexArray]:
+    def projections(self, grid: Nodes, modes: Modes) -> tuple[ComplexArray, ComplexArray]:
         """Return the modal pressure and radial acceleration s v0 at r = b of a unit pulse, each (orders, nodes).
 
         v0 = (S/R) dR/dr [1 + 1/(sR)] e^{-s(R - S)}, of which the second term is the afterflow. The projections

@@ -22,7 +22,7 @@ from coaxshell.acoustics.sources.source import SurfaceLoad, TimeFunction, incide
 from coaxshell.acoustics.sources.spherical import SphericalField
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import Nodes
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.radial_functions import RadialFunctions
 
@@ -43,7 +43,7 @@ class SphericalFrontGeometry:
     head: float = 1.0
     along_rays = False
 
-    def prepare(self, grid: LaplaceGrid, modes: Modes) -> SurfaceLoad:
+    def prepare(self, grid: Nodes, modes: Modes) -> SurfaceLoad:
         """Return the amplitude of incident and rigidly scattered pressure at r = b, in units of a, per unit pressure at the head:
 
             P_m = S e^{sS} eps_m K_m(kappa R0)/(kappa b K_{m+1}(kappa b) - m K_m(kappa b)),
@@ -60,7 +60,7 @@ class SphericalFrontGeometry:
 
         return load
 
-    def incident(self, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+    def incident(self, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return the amplitudes at r = b of the pressure S e^{sS} eps_m I_m(kappa b) K_m(kappa R0) and of its slope, without scattering."""
         return incident_of_regular(self, grid, basis)
 

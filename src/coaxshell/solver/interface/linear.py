@@ -11,16 +11,48 @@ and the shells answer w = w_linear + G f with G = E C(s) P, E evaluating modes a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.laplace_grid import Nodes
+from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
+from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks
-from coaxshell.solver.structure_spectra import StructureSpectra
 
 _BLOCK_BYTES = 32 * 1024 * 1024
+
+
+class LinearStructure(Protocol):
+    """A structure at some nodes, of a contour or on the imaginary axis: what it does by itself and under unit modal pressures."""
+
+    @property
+    def problem(self) -> Problem:
+        """Shells, fluids, sources."""
+        ...
+
+    @property
+    def grid(self) -> Nodes:
+        """The nodes."""
+        ...
+
+    @property
+    def modes(self) -> Modes:
+        """The modes."""
+        ...
+
+    @property
+    def normal(self) -> ComplexArray:
+        """W without absorbers, shape (shells, parities, M + 1, nodes)."""
+        ...
+
+    @property
+    def compliance(self) -> ComplexArray:
+        """C_ij, shape (shells, shells, M + 1, nodes)."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -33,7 +65,7 @@ class LinearAbsorberSpectra:
 
 
 def solve_linear(
-    structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, progress: Progress | None = None
+    structure: LinearStructure, absorbers: AbsorberSet, points: InterfacePoints, progress: Progress | None = None
 ) -> LinearAbsorberSpectra:
     """Return the interface spectra of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.count

@@ -14,8 +14,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
-from coaxshell.solver.interface.linear import LinearAbsorberSpectra
-from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.interface.linear import LinearAbsorberSpectra, LinearStructure
 
 _SAME_ANGLE = 1e-9
 
@@ -30,7 +29,7 @@ def is_ring(absorbers: AbsorberSet) -> bool:
     return bool(np.all(np.abs(gaps - 360.0 / angles.size) <= _SAME_ANGLE))
 
 
-def solve_ring(structure: StructureSpectra, absorbers: AbsorberSet) -> LinearAbsorberSpectra:
+def solve_ring(structure: LinearStructure, absorbers: AbsorberSet) -> LinearAbsorberSpectra:
     """Return the interface spectra of a ring of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.every_angle.size
     inner = int(absorbers.inner_shell[0])
