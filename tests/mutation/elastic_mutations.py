@@ -70,6 +70,14 @@ ELASTIC = (
         "response/test_solid_wall_stress.py",
     ),
     Mutation(
+        "solid-search-along-the-axis",
+        "solver/axial/through.py",
+        "family.odd if of_odd(one.what) else family.even",
+        "family.even",
+        "how shears with the axis go along it where the largest stress is searched",
+        "response/test_solid_wall_stress.py",
+    ),
+    Mutation(
         "solid-between-points",
         "response/solid_wall_stress.py",
         "max(place - 1, 0), min(place + 1",

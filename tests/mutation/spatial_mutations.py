@@ -56,8 +56,8 @@ SPATIAL = (
     Mutation(
         "axial-displacement-side",
         "solver/axial/sums.py",
-        "odd if name in _ODD else even",
-        "-odd if name in _ODD else even",
+        "odd if of_odd(name) else even",
+        "-odd if of_odd(name) else even",
         "axial displacement of a wave: sin kz",
         "independent/test_axial_waves.py",
     ),

@@ -7,7 +7,9 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.plotting import plot_wall_stress
+from coaxshell.response import stations
 from coaxshell.response.wall_stress import stress_through
+from coaxshell.solver.axial.through import stresses_through
 from coaxshell.studies.metrics import metrics_of
 from coaxshell.studies.reading import MetricSource
 
@@ -45,7 +47,7 @@ def layered():
 def test_no_place_has_more(layered, component):
     angles = np.arange(-180.0, 180.0, 4.0)
     for shell in ("inner", "outer"):
-        through = stress_through(layered.solution, layered.system.shell_index(shell))
+        through = stress_through(layered.motion, layered.system.shell_index(shell))
         for peak, depths in zip(layered.layer_peaks(shell, component), through.depths(), strict=True):
             grid = np.linspace(depths[0], depths[-1], 5)
             most = max(float(np.abs(layered.stress(shell, angles, float(z), component=component)).max()) for z in grid)
@@ -56,7 +58,7 @@ def test_no_place_has_more(layered, component):
 
 
 def test_no_instant_has_more_than_it_can_reach(layered):
-    through, every = stress_through(layered.solution, 1), slice(0, layered.time.size)
+    through, every = stress_through(layered.motion, 1), slice(0, layered.time.size)
     for component in COMPONENTS:
         for at in through.at([0.0, 0.01], component):
             reach = at.reach(every)
@@ -117,3 +119,60 @@ def test_the_map_shows_where(layered):
     assert (star.get_xdata()[0], star.get_ydata()[0]) == pytest.approx((peak.angle, 1e3 * peak.depth))
     drawn = max(float(np.max(mesh.get_array())) for mesh in ax.collections)
     assert drawn == pytest.approx(1e-3 * peak.value, rel=0.03)
+
+
+# Three dimensions
+
+
+@pytest.fixture(scope="module")
+def space(layered):
+    """Return the same walls under spheres off each other's plane."""
+    pulse = cx.Gaussian(peak_pressure=2.5e4, width=0.1 * TRANSIT, centre=0.6 * TRANSIT)
+    sources = [cx.SphericalWave(distance=3.0, pulse=pulse), cx.SphericalWave(distance=2.0, angle=50.0, z=0.6, pulse=pulse)]
+    system = layered.system.replace(source=sources)
+    return cx.simulate(system, duration=1.2, time_step=3e-2, modes=4, dimensions=3, stations=[0.0, 0.5])
+
+
+def test_no_place_along_the_axis_has_more(space):
+    angles, components = np.arange(-180.0, 180.0, 4.0), ("von_mises", "axial", "radial_axial")
+    peaks = {name: space.layer_peaks("outer", name) for name in components}
+    for number, points in enumerate(stress_through(space.motion, 1).depths()):
+        most = dict.fromkeys(components, 0.0)
+        for z in np.linspace(points[0], points[-1], 3):
+            for name in components:  # of a depth at a time: it is one pass
+                most[name] = max(most[name], float(np.abs(space.stress("outer", angles, float(z), component=name)).max()))
+        for name, peak in ((name, peaks[name][number]) for name in components):
+            assert 0.999 * most[name] <= peak.value <= 1.1 * most[name]
+            if number == 1:
+                at = space.stress("outer", peak.angle, peak.depth, component=name, station=peak.station).sel(time=peak.time)
+                assert peak.value == pytest.approx(float(np.squeeze(np.abs(at))), rel=2e-3)
+    for name in components:
+        whole = space.peak_stress("outer", name)
+        assert whole.value == max(peak.value for peak in peaks[name])
+        alone = [space.peak_stress("outer", name, station=z) for z in (0.0, 0.5)]
+        assert whole == max(alone, key=lambda one: one.value)
+        assert [one.station for one in alone] == [0.0, 0.5]
+
+
+def test_little_room_makes_more_passes_and_the_same_peaks(space, monkeypatch):
+    """A layer and a station at a time, those kept forgotten."""
+    expected, passes = space.layer_peaks("outer"), []
+    monkeypatch.setattr(stations, "BYTES", 1)
+    monkeypatch.setattr(stations, "stresses_through", lambda *given: passes.append(given) or stresses_through(*given))
+    again = space.at([0.0, 0.5]).without_transforms()
+    for found, peak in zip(again.layer_peaks("outer"), expected, strict=True):
+        assert (found.value, found.angle, found.depth) == pytest.approx((peak.value, peak.angle, peak.depth), rel=1e-9)
+    assert len(passes) == 6
+
+
+def test_studies_and_maps_know_them_along_the_axis(space):
+    whole, source = space.peak_stress("outer"), MetricSource(space)
+    found = [metric(source) for metric in metrics_of(["outer.peak_wall_stress", "outer.strength_margin"], space.system)]
+    assert found == [pytest.approx(whole.value), pytest.approx(whole.margin)]
+    ax = plot_wall_stress(space, "outer", station=0.5)
+    drawn = max(float(np.max(mesh.get_array())) for mesh in ax.collections)
+    assert drawn == pytest.approx(1e-6 * space.peak_stress("outer", station=0.5).value, rel=0.03)
+    thinned = space.thin(3)
+    with pytest.raises(cx.InputError, match="needs every one of them"):
+        thinned.peak_stress("inner")
+    assert space.summary().each[0].shells[1].wall_stress is None  # which would take as long as the run

@@ -35,8 +35,8 @@ def steel():
 
 def everywhere(response, shell, component, angles=ANGLES, **station):
     """Return the largest magnitude in each layer over a grid of depths and angles and all instants, through histories alone."""
-    solution, found = response.solution, []
-    for depths in stress_through(solution, response.system.shell_index(shell)).depths():
+    found = []
+    for depths in stress_through(response.motion, response.system.shell_index(shell)).depths():
         grid = np.linspace(depths[0], depths[-1], 9)
         found.append(max(float(np.abs(response.stress(shell, angles, float(z), component=component, **station)).max()) for z in grid))
     return found
@@ -55,7 +55,7 @@ def test_no_place_has_more(steel, component):
 
 def test_stress_is_linear_through_a_layer_without_a_field(steel):
     # Why faces are enough: in the core, second differences over the depth vanish.
-    depths = stress_through(steel.solution, 1).depths()[1]
+    depths = stress_through(steel.motion, 1).depths()[1]
     below, middle, above = (np.asarray(steel.stress("outer", 40.0, z)) for z in np.linspace(depths[0], depths[-1], 3))
     np.testing.assert_allclose(0.5 * (below + above), middle, rtol=0, atol=1e-6 * np.abs(above).max())
 

@@ -11,8 +11,8 @@ from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.style import new_figure, style
 from coaxshell.response.arguments import time_window
+from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.wall_stress import stress_through
-from coaxshell.solver.solution import ModalSolution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,7 +63,7 @@ def plot_wall_stress(
     number, span = response.system.shell_index(shell), time_window(response.time, window)
     ((_, motion),) = response.stations_read(peak.station if response.stations is not None else None)
     layers = described_layers(response, number)
-    maps = layer_maps(motion.solution, number, component, span)
+    maps = layer_maps(motion, number, component, span)
     largest = max(float(values.max()) for _, _, values in maps)
     unit, per_pascal = ("MPa", 1e-6) if largest >= 1e4 else ("kPa", 1e-3)
     with style():
@@ -105,9 +105,9 @@ def described_layers(response: Response, shell: int) -> list[str]:
     return [layer.material.name for layer in getattr(response.system.shells[shell], "layers", ())]
 
 
-def layer_maps(solution: ModalSolution, shell: int, component: str, window: slice) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+def layer_maps(motion: WallMotion, shell: int, component: str, window: slice) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
     """Return for each layer angles (degrees), depths (m) and the largest magnitude of a stress over a window of time, (depths, angles)."""
-    stress, found = stress_through(solution, shell), []
+    stress, solution, found = stress_through(motion, shell), motion.solution, []
     angles = np.arange(0.0, 181.0) if solution.normal.shape[1] == 1 else np.arange(-180.0, 181.0)
     for ends in stress.depths():
         depths = np.linspace(ends[0], ends[-1], _DEPTHS)

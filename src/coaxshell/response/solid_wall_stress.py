@@ -1,5 +1,8 @@
 """The stresses through an elastic wall: at the points of its layers, and between them by the polynomials through these.
 
+In three dimensions a search reads the stresses at the points of all layers by solving the waves of the run once more, for all stations at
+once, and takes from the polynomials what stands between the points.
+
 A layer's displacements are polynomials of its degree in the depth, and so, to what the degree resolves, are its stresses: those of all
 points tell those of every depth. The last point of a layer lies within it by a hair.
 """
@@ -15,10 +18,12 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.lobatto import interpolation
 from coaxshell.response.components import SOLID
 from coaxshell.response.depth_stress import DepthStress
+from coaxshell.response.stations import StationMotion
 from coaxshell.response.through import each_within
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.structure.elastic_depth import STRESSES, Shown
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
 
 FINE = 12
@@ -88,3 +93,44 @@ class SolidWallStress:
             spread = shares @ there
             modal[name] = spread.reshape(*spread.shape[:2], -1)
         return fine, DepthStress(modal)
+
+
+class StationWallStress(SolidWallStress):
+    """The stresses at any depth of an elastic wall at a station of a run in three dimensions.
+
+    Parameters
+    ----------
+    motion : StationMotion
+    shell : int
+    """
+
+    def __init__(self, motion: StationMotion, shell: int) -> None:
+        super().__init__(motion.solution, shell)
+        self._motion = motion
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """What may be asked for."""
+        return ("von_mises", *STRESSES)
+
+    def depths(self) -> list[FloatArray]:
+        """Return the depths (m) of each layer, from the inside out, at which a search begins."""
+        return self._motion.searched_depths(self.shell)
+
+    def at(self, depths: Sequence[float], component: str) -> Iterator[DepthStress]:
+        """Yield a stress at each of some depths (m), by the polynomials through the searched depths of its layer."""
+        names: tuple[Shown, ...] = tuple(STRESSES) if component == "von_mises" else (component,)  # type: ignore[assignment, arg-type]
+        per_layer = self.depths()
+        for depth in depths:
+            layer = next((i for i, points in enumerate(per_layer) if depth <= points[-1]), len(per_layer) - 1)
+            points, found = per_layer[layer], self._motion.through_layer(self.shell, layer, names)
+            if depth in points:
+                values = found[:, int(np.flatnonzero(points == depth)[0])]
+            else:
+                values = np.einsum("d,ndpmt->npmt", interpolation(points.size - 1, _within(depth, points)), found)
+            yield DepthStress(dict(zip(names, values, strict=True)))
+
+
+def _within(depth: float, points: FloatArray) -> float:
+    """Return the place of a depth between the first (-1) and the last (1) of a layer's points."""
+    return float(min(max(2.0 * (depth - points[0]) / (points[-1] - points[0]) - 1.0, -1.0), 1.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,10 +13,14 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.wall_motion import MotionSpectra, WallMotion
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.solve import histories_within, station_spectra
+from coaxshell.solver.axial.through import searched_depths, stresses_through
 from coaxshell.structure.elastic_depth import Shown
+from coaxshell.structure.elastic_wall import Asked
 
 _NAMES = {"normal": "w", "tangential": "v", "along_axis": "u"}
 """Displacements as fields are named."""
+BYTES = 2**29
+"""Transforms of stresses through walls that are found together."""
 
 
 def joined(arrays: Sequence[xr.DataArray], known: FloatArray, chosen: Sequence[int], *, alone: bool) -> xr.DataArray:
@@ -43,16 +47,52 @@ class Transforms:
     def __init__(self, spatial: SpatialSolution) -> None:
         self.spatial = spatial
         self._within: tuple[int, float, dict[str, FloatArray]] | None = None
+        self._through: _Through | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: not the transforms."""
-        return {"spatial": self.spatial, "_within": None}
+        return {"spatial": self.spatial, "_within": None, "_through": None}
 
     def within(self, shell: int, depth: float) -> dict[str, FloatArray]:
         """Return motion and stresses at a depth (in a) of an elastic wall at all stations; those asked for last are kept."""
         if self._within is None or self._within[:2] != (shell, depth):
             self._within = shell, depth, histories_within(self.spatial, shell, depth)
         return self._within[2]
+
+    def through(self, shell: int, layer: int, names: tuple[Shown, ...], station: int) -> FloatArray:
+        """Return stresses at the searched depths of a layer of an elastic wall at a station, Pa, shape (names, depths, parities, M + 1, T).
+
+        The waves of the run are solved once more, for as many stations and layers as fit into :data:`BYTES`, which are kept.
+        """
+        kept = self._through
+        if (
+            kept is None
+            or kept.shell != shell
+            or not set(names) <= set(kept.names)
+            or layer not in kept.layers
+            or station not in kept.stations
+        ):
+            kept = self._through = self._solve_through(shell, layer, names, station)
+        chosen = [kept.names.index(name) for name in names]
+        return np.asarray(kept.layers[layer][chosen, :, kept.stations.index(station)])
+
+    def _solve_through(self, shell: int, layer: int, names: tuple[Shown, ...], station: int) -> _Through:
+        self._through = None
+        per_layer = searched_depths(self.spatial, shell)
+        first = self.spatial.fields["w"]
+        one = 16.0 * len(names) * self.spatial.settings.refinement * first[0, shell].size  # bytes of a depth at a station
+        last = min(self.spatial.stations.size, station + max(1, int(BYTES / (one * per_layer[layer].size))))
+        stations, layers, used = range(station, last), [layer], one * per_layer[layer].size * (last - station)
+        for further in [*range(layer + 1, len(per_layer)), *range(layer)]:
+            used += one * per_layer[further].size * len(stations)
+            if used > BYTES:
+                break
+            layers.append(further)
+        asked = [Asked(name, float(z)) for number in layers for z in per_layer[number] for name in names]
+        found = stresses_through(self.spatial, shell, asked, stations)
+        parts = np.split(found, np.cumsum([len(names) * per_layer[number].size for number in layers])[:-1])
+        shaped = (part.reshape(-1, len(names), *part.shape[1:]).swapaxes(0, 1) for part in parts)
+        return _Through(shell, names, dict(zip(layers, shaped, strict=True)), stations)
 
     @property
     def at_hand(self) -> bool:
@@ -63,6 +103,15 @@ class Transforms:
     def found(self) -> StationSpectra:
         """All of them; InputError if instants of the run are missing."""
         return station_spectra(self.spatial)
+
+
+class _Through(NamedTuple):
+    """Stresses through some layers of an elastic wall at some stations, Pa: of each layer (names, depths, stations, parities, M + 1, T)."""
+
+    shell: int
+    names: tuple[Shown, ...]
+    layers: dict[int, FloatArray]
+    stations: range
 
 
 class StationMotion(WallMotion):
@@ -94,6 +143,15 @@ class StationMotion(WallMotion):
         if name not in found:
             return np.zeros(self.solution.normal.shape[1:])
         return np.asarray(found[name][self._station] * (scales.length if what in _NAMES else scales.pressure))
+
+    def searched_depths(self, shell: int) -> list[FloatArray]:
+        """Return the depths (m) of each layer of an elastic wall, from the inside out, at which a search begins."""
+        length = self.solution.problem.scales.length
+        return [length * depths for depths in searched_depths(self._transforms.spatial, shell)]
+
+    def through_layer(self, shell: int, layer: int, names: tuple[Shown, ...]) -> FloatArray:
+        """Return stresses at these depths of a layer, Pa, shape (names, depths, parities, M + 1, T); see :meth:`Transforms.through`."""
+        return self._transforms.through(shell, layer, names, self._station)
 
     def has_rate(self, rate: int) -> bool:
         """Return whether derivatives of an order are there without solving the run again, which takes as long as the run."""

@@ -29,7 +29,8 @@ from coaxshell.response.depth_stress import CutVoltage, DepthStress
 from coaxshell.response.modal import amplitudes, elastic_wall, stress_gain_of
 from coaxshell.response.peaks import Peak, folded
 from coaxshell.response.relaxing import Relaxing, relaxed_solution
-from coaxshell.response.solid_wall_stress import SolidWallStress
+from coaxshell.response.solid_wall_stress import SolidWallStress, StationWallStress
+from coaxshell.response.stations import StationMotion
 from coaxshell.response.synthesis import BLOCK, at_angles
 from coaxshell.response.voltages import ActuatorLimit, actuator_limit, applied, demanded_voltage
 from coaxshell.response.wall_motion import WallMotion
@@ -157,54 +158,52 @@ class WallStress:
             yield DepthStress(modal, cut)
 
 
-def stress_through(solution: ModalSolution, shell: int) -> WallStress | SolidWallStress:
+def stress_through(motion: WallMotion, shell: int) -> WallStress | SolidWallStress:
     """Return the stresses through the wall of a shell; InputError if it is rigid, or of a theory or run whose depths are not known."""
+    solution = motion.solution
     if elastic_wall(solution.problem, shell).faces_move_alike:
         found = WallStress(solution, shell)
         if not found.wall.sampled_depths:
             remedy = 'read response.stress at depths of your own, or use theory = "thin"'
             raise InputError(f"shells[{shell}].theory", "the depths of a wall of this theory are not known", remedy)
         return found
-    if solution.along is not None:
-        remedy = "read response.stress at depths of your own"
-        raise InputError(f"shells[{shell}].theory", "the largest stress through elastic walls is searched in two dimensions alone", remedy)
     solution.need_every_instant("the largest stress through an elastic wall")
-    return SolidWallStress(solution, shell)
+    return StationWallStress(motion, shell) if isinstance(motion, StationMotion) else SolidWallStress(solution, shell)
 
 
 def searchable(solution: ModalSolution, shell: int) -> bool:
-    """Return whether the largest stress through the wall of a shell can be told."""
+    """Return whether the largest stress through the wall of a shell can be told at once: not by solving the waves along the axis again."""
     wall = solution.problem.shells[shell]
     return bool(wall.sampled_depths) if wall.faces_move_alike else solution.along is None and solution.whole
 
 
-def layer_peaks(solution: ModalSolution, shell: int, component: str, window: slice, station: float | None = None) -> list[WallPeak]:
-    """Return the largest magnitude of a stress in each layer of a shell over a window of time, all angles and its depths.
+def layer_peaks(motions: Sequence[tuple[float | None, WallMotion]], shell: int, component: str, window: slice) -> list[WallPeak]:
+    """Return the largest magnitude of a stress in each layer of a shell over a window of time, all angles, its depths, and stations.
 
     Parameters
     ----------
-    solution : ModalSolution
+    motions : sequence of (float or None, WallMotion)
+        Axial positions (m) of stations, None in two dimensions, and the motion there.
     shell : int
     component : str
         One of the wall's.
     window : slice
         Time indices.
-    station : float, optional
-        What to tell of the axial position, m.
 
     Raises
     ------
     InputError
         If the shell is rigid or its depths are not known, or a material lacks constants along the axis.
     """
-    stress = stress_through(solution, shell)
-    described = solution.problem.system.shells[shell]
+    stresses = [stress_through(motion, shell) for _, motion in motions]
+    described = motions[0][1].solution.problem.system.shells[shell]
     layers = described.layers if isinstance(described, Shell) else ()
-    found = []
-    through = stress.depths()
-    each = stress.at([float(z) for z in np.concatenate(through)], component)  # of all layers, as many together as it likes
+    found, through = [], stresses[0].depths()
+    each = [stress.at([float(z) for z in np.concatenate(through)], component) for stress in stresses]  # as many together as it likes
     for number, depths in enumerate(through):
-        peak, depth = _of_layer(stress, depths, islice(each, depths.size), component, window)
+        peaks = [_of_layer(stress, depths, islice(one, depths.size), component, window) for stress, one in zip(stresses, each, strict=True)]
+        best = max(range(len(peaks)), key=lambda i: peaks[i][0].value)
+        (peak, depth), station = peaks[best], motions[best][0]
         material = layers[number].material if number < len(layers) else None
         strength = getattr(material, "strength", None)
         margin = None if strength is None or peak.value == 0.0 else strength / peak.value
@@ -315,7 +314,7 @@ def usual_component(solution: ModalSolution, shell: int) -> str:
 
 def largest_through_wall(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
     """Return the largest stress anywhere in a wall within a window; a mean over a segment is not taken."""
-    return of_wall(layer_peaks(solution, shell, usual_component(solution, shell), window))
+    return of_wall(layer_peaks([(None, WallMotion(solution))], shell, usual_component(solution, shell), window))
 
 
 def largest_of_the_core(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
@@ -334,7 +333,7 @@ def of_the_core(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray
 
 def through_wall(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
     """Return the largest stress through the wall at angles (degrees), Pa, (T, A)."""
-    stress, component = stress_through(motion.solution, shell), usual_component(motion.solution, shell)
+    stress, component = stress_through(motion, shell), usual_component(motion.solution, shell)
     every, depths = slice(0, motion.solution.time.size), np.concatenate(stress.depths())
     return np.asarray(
         reduce(np.maximum, (at.at_angles(np.atleast_1d(theta), every) for at in stress.at([float(z) for z in depths], component)))

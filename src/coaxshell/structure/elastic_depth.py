@@ -35,6 +35,9 @@ STRESSES = {
 }  # fmt: skip
 """Components of the stress by their names."""
 
+ALL_SHOWN = (*DISPLACEMENTS, *STRESSES)
+"""What :func:`all_by_shapes` gives, in its order."""
+
 SIDES: dict[str, str] = {
     name: "tangential" if name in ("tangential", "shear", "radial_hoop") else "normal" for name in (*DISPLACEMENTS, *STRESSES, "potential")
 }
@@ -67,7 +70,7 @@ def shown_by_shapes(basis: OrdersBasis, number: int, radius: float, what: Shown)
 def all_by_shapes(basis: OrdersBasis, number: int, radius: float) -> FloatArray:
     """Return the three displacements and the six stresses at a radius of a layer per unit of each shape, shape (orders, 9, shapes).
 
-    In the order of :data:`DISPLACEMENTS` and :data:`STRESSES`.
+    In the order of :data:`ALL_SHOWN`.
     """
     part, at = _place(basis, number, radius)
     shapes = basis.shapes[..., part.nodes]

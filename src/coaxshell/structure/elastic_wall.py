@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -23,7 +24,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
-from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, shown_by_shapes
+from coaxshell.structure.elastic_depth import ALL_SHOWN, DISPLACEMENTS, STRESSES, Shown, all_by_shapes, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
@@ -73,12 +74,15 @@ class ElasticWall(ShellModel):
         Up to which waves are resolved, radians per transit; a matter of a run's resolution, not of the wall.
     depth_read : float or None
         Depth at which stations read it; None for the motion of its middle and the stresses at its design depth.
+    keeps_shapes : bool
+        Whether stations keep its shapes as long as the modes are in use, which are three times what they read of them.
     """
 
     layers: tuple[SolidLayer, ...]
     core: int
     frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
     depth_read: float | None = field(default=None, compare=False)
+    keeps_shapes: bool = field(default=False, compare=False)
 
     @classmethod
     def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
@@ -115,23 +119,23 @@ class ElasticWall(ShellModel):
         inside = core.inner <= self.radius <= core.outer
         return 0.0 if inside else 0.5 * (core.inner + core.outer) - self.radius
 
-    def points(self, order: float) -> tuple[FloatArray, ...]:
-        """Return depths of each layer, from the inside out, through which a polynomial holds its stress up to an order.
+    def points(self, order: float, wavenumber: float = 0.0) -> tuple[FloatArray, ...]:
+        """Return depths of each layer, from the inside out, through which a polynomial holds its stress up to an order and wavenumber.
 
         Gauss-Lobatto points of a degree :data:`SPARED` below that of the displacements, which resolves waves to 1e-6. Between two layers
         the outer one is meant at a depth: the last point of a layer lies within it by a hair.
         """
         found, hair = [], 1e-8 * (self.layers[-1].outer - self.layers[0].inner)
         for layer in self.layers:
-            rule = lobatto(max(LEAST_SEARCHED, self.degree_of(layer, order) - SPARED))
+            rule = lobatto(max(LEAST_SEARCHED, self.degree_of(layer, order, wavenumber) - SPARED))
             depths = layer.inner - self.radius + 0.5 * layer.thickness * (1.0 + rule.points)
             depths[-1] = layer.outer - self.radius - (0.0 if layer is self.layers[-1] else hair)
             found.append(depths)
         return tuple(found)
 
-    def degree_of(self, layer: SolidLayer, order: float) -> int:
-        """Return the degree that resolves the waves of a layer up to an order."""
-        return degree(layer, order, 0.0, self.frequency)
+    def degree_of(self, layer: SolidLayer, order: float, wavenumber: float = 0.0) -> int:
+        """Return the degree that resolves the waves of a layer up to an order and an axial wavenumber."""
+        return degree(layer, order, wavenumber, self.frequency)
 
     def layer_at(self, depth: float) -> int:
         """Return the number of the layer at a depth; between two layers the outer one is meant, but for the core at its design depth."""
@@ -198,7 +202,7 @@ class ElasticWall(ShellModel):
         middles = [0.5 * (self.layers[i].inner + self.layers[i].outer) for i in self.piezoelectric]
         stressed = self.design_depth if self.depth_read is None else self.depth_read
         moved, count, found = 0.0 if self.depth_read is None else stressed, len(DISPLACEMENTS), []
-        for part in self._shapes(modes):
+        for part in self.basis(modes) if self.keeps_shapes else self._shapes(modes):
             rows = all_by_shapes(part, self.layer_at(stressed), self.radius + stressed)
             if moved != stressed:
                 rows[:, :count] = all_by_shapes(part, self.layer_at(moved), self.radius + moved)[:, :count]
@@ -239,10 +243,20 @@ class ElasticWall(ShellModel):
         """Return the weights of all shapes in quantities per load on either face, (orders, 2 quantities, shapes) of each part."""
         found = []
         for part in self.basis(modes):
-            shown = np.stack([shown_by_shapes(part, self.layer_at(one.depth), self.radius + one.depth, one.what) for one in asked], axis=1)
+            shown = self._shown(part, asked)
             pressed = -part.faces * np.array(self.wetted)[:, None]
             found.append((shown[:, :, None] * pressed[:, None]).reshape(part.orders.size, 2 * len(asked), -1))
         return found
+
+    def _shown(self, part: OrdersBasis, asked: Sequence[Asked]) -> FloatArray:
+        """Return quantities per unit of each shape, (orders, quantities, shapes); along the axis all of a depth at once."""
+        if part.wavenumber == 0.0 or any(one.what == "potential" for one in asked):
+            return np.stack([shown_by_shapes(part, self.layer_at(one.depth), self.radius + one.depth, one.what) for one in asked], axis=1)
+        found = []
+        for depth, some in groupby(asked, key=lambda one: one.depth):
+            rows = all_by_shapes(part, self.layer_at(depth), self.radius + depth)
+            found.append(rows[:, [ALL_SHOWN.index(one.what) for one in some]])
+        return np.concatenate(found, axis=1)
 
     def _summed(self, modes: Modes, s: ComplexArray, weights: list[FloatArray]) -> ComplexArray:
         """Return the sums over all shapes, (rows, orders, nodes), from their weights in each part of the basis."""

@@ -38,9 +38,9 @@ class LossySolidWall(ElasticWall):
         """The wall without losses, every layer as stiff as it ever is within the run."""
         return ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
 
-    def degree_of(self, layer: SolidLayer, order: float) -> int:
+    def degree_of(self, layer: SolidLayer, order: float, wavenumber: float = 0.0) -> int:
         """Return the degree for the waves of a layer that are worth a search: those of soft layers die within it as they become short."""
-        return min(super().degree_of(layer, order), MOST_DEGREE)
+        return min(super().degree_of(layer, order, wavenumber), MOST_DEGREE)
 
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Refuse: its pieces have shapes, some of them."""

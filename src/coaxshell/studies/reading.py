@@ -98,6 +98,8 @@ class MetricSource(DesignReading):
         if entry is None:
             return super().number(name, place)
         assert isinstance(place, int)
+        if entry[0].through:
+            return self.response.peak_stress(place, usual_component(self.solution, place)).value
         return max(self._largest(*entry, place, motion) for motion in self.response.motions)
 
     def _largest(self, quantity: Quantity, where: Where, shell: int, motion: WallMotion) -> float:

@@ -23,7 +23,7 @@ from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.structure.elastic_wall import ElasticWall
 
-_TOGETHER = 4
+TOGETHER = 4
 """Wavenumbers whose amplitudes are added up at once, by a matrix product."""
 
 
@@ -56,8 +56,8 @@ def station_sums(
     sets = wave_sets(problem, sampling, stations, s, None if forces is None else forces.at(block))
     done, whole, bends = 0, pair_count(sets), any(wall.faces_move_alike and wall.moves for wall in problem.shells)
     for waves in sets:
-        for first in range(0, len(waves.modes), _TOGETHER):
-            some = range(first, min(first + _TOGETHER, len(waves.modes)))
+        for first in range(0, len(waves.modes), TOGETHER):
+            some = range(first, min(first + TOGETHER, len(waves.modes)))
             amplitudes = [np.zeros((len(names), len(some), *shape[1:]), np.complex128) for _ in waves.families]
             for place, j in enumerate(some):
                 for one, solved in zip(amplitudes, amplitudes_of(problem, waves, j, grid, block), strict=True):
@@ -69,6 +69,11 @@ def station_sums(
                 under = squares[int(family.forces is not None)]
                 under += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
     return {**fields, SQUARES: squares}
+
+
+def of_odd(name: str) -> bool:
+    """Return whether what a wall is read for goes along the axis as the odd function o: u and the shears with the axis."""
+    return name in _ODD
 
 
 def pair_count(sets: list[WaveSet]) -> int:
@@ -144,7 +149,7 @@ def _add(
     """Add some waves of a family to the fields, by e and o and, if the stresses of thin walls need them, their derivatives."""
     part = slice(some.start, some.stop)
     even, odd, k = family.even[:, part], family.odd[:, part], wavenumber[part]
-    shares = {name: (odd if name in _ODD else even, amplitude) for name, amplitude in amplitudes.items()}
+    shares = {name: (odd if of_odd(name) else even, amplitude) for name, amplitude in amplitudes.items()}
     if derivatives:
         w, v, u = (amplitudes[name] for name in ("w", "v", "u"))
         shares |= {"w_z": (-k * odd, w), "w_zz": (-k * k * even, w), "v_z": (-k * odd, v), "u_z": (k * even, u)}
