@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from elastic_mutations import ELASTIC
 from electrode_mutations import ELECTRODES
+from gradient_mutations import GRADIENTS
 from loss_mutations import LOSSES
 from reading_mutations import READING
 from spatial_mutations import SPATIAL
@@ -486,6 +487,7 @@ MUTATIONS = (
     *SPATIAL,
     *WETTED,
     *STEADY,
+    *GRADIENTS,
     *READING,
     *ELASTIC,
     *ELECTRODES,

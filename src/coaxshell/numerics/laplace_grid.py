@@ -147,6 +147,32 @@ class LaplaceGrid:
         spectrum: ComplexArray = fft.rfft(damped, self.samples, axis=-1, workers=WORKERS)
         return spectrum
 
+    def invert_transposed(self, histories: FloatArray) -> ComplexArray:
+        """Return the transpose of :meth:`invert`: X with Re sum_k X_k S_k = sum_n x_n invert(S)_n for every S (last axis).
+
+        No complex conjugate is taken of S: X_k = taper_k c_k/(P dt) sum_n x_n e^{(sigma + i omega_k) t_n}, P the samples of a period and
+        c_k the times that a node counts in a real transform.
+        """
+        grown = histories * np.exp(self.shift * self.time)
+        spectrum: ComplexArray = fft.rfft(grown, self.samples, axis=-1, workers=WORKERS)
+        return np.conjugate(spectrum, out=spectrum) * (self.taper() * self._counts / self.period)
+
+    def transform_linear_transposed(self, spectrum: ComplexArray) -> FloatArray:
+        """Return the transpose of :meth:`transform_linear`: x with sum_n x_n y_n = Re sum_k X_k transform_linear(y)_k for every y."""
+        weighted = np.conjugate(spectrum * self.hat) * (self.samples / self._counts)
+        histories = fft.irfft(weighted, self.samples, axis=-1, workers=WORKERS, overwrite_x=True)[..., : self.steps + 1]
+        result: FloatArray = histories * (np.exp(-self.shift * self.time) * self.time_step)
+        return result
+
+    @cached_property
+    def _counts(self) -> FloatArray:
+        """How often each node counts in a real transform: once at its ends, else twice, for itself and its conjugate."""
+        counts = np.full(self.nodes.size, 2.0)
+        counts[0] = 1.0
+        if self.samples % 2 == 0:
+            counts[-1] = 1.0
+        return counts
+
     @cached_property
     def hat(self) -> ComplexArray:
         """(sinh(s dt/2)/(s dt/2))^2 at ``nodes``: transform of the hat, two steps wide, that joins samples by straight lines."""

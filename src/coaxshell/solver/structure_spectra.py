@@ -32,7 +32,7 @@ class _UnitAnswers:
     ----------
     compliance, ratio : ndarray or None
         C_ij and V/W.
-    kernels, kernels_with_voltage : KernelTable or None
+    kernels, kernels_transposed, kernels_with_voltage : KernelTable or None
     sensor_rates : ndarray or None
         Step weights of the rates of the controlled shells' sensors.
     open_loop : _UnitAnswers or None
@@ -42,6 +42,7 @@ class _UnitAnswers:
     compliance: ComplexArray | None = None
     ratio: ComplexArray | None = None
     kernels: KernelTable | None = None
+    kernels_transposed: KernelTable | None = None
     kernels_with_voltage: KernelTable | None = None
     sensor_rates: FloatArray | None = None
     open_loop: _UnitAnswers | None = None
@@ -201,6 +202,13 @@ class StructureSpectra:
         if self.units.kernels is None:
             self.units.kernels = KernelTable(self.step_weights([])[0])
         return self.units.kernels
+
+    @property
+    def kernels_transposed(self) -> KernelTable:
+        """Step weights of the velocity kernels with outputs and inputs exchanged: what marches backwards."""
+        if self.units.kernels_transposed is None:
+            self.units.kernels_transposed = KernelTable(self.kernels.kernels.swapaxes(0, 1))
+        return self.units.kernels_transposed
 
     def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
         """Return the points at which absorbers hold the shells, in the terms in which ``kernels`` and motion are given."""

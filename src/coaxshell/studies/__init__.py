@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from coaxshell.numerics.renamed import renamed
 from coaxshell.studies.execution import Execution
 from coaxshell.studies.executors import dask_executor
+from coaxshell.studies.gradients.gradient import gradient
 from coaxshell.studies.optimisation.optimising import optimise, optimise_problem
 from coaxshell.studies.optimisation.optimum import OPTIMUM_PARTS, Optimum
 from coaxshell.studies.optimisation.study import OptimisationStudy
@@ -34,6 +35,7 @@ __all__ = [
     "SweepStudy",
     "Uniform",
     "dask_executor",
+    "gradient",
     "optimise",
     "optimise_problem",
     "read_study",

@@ -195,6 +195,24 @@ class InterfacePoints:
                     modal[i, h] = chosen.T @ forces[points]
         return modal
 
+    def evaluate_transposed(self, values: Array) -> Array:
+        """Return the transpose of :meth:`evaluate`: amplitudes (shells, parities, M + 1[, T]) of values at the points (points[, T])."""
+        return self._spread(values, self._evaluate)
+
+    def project_transposed(self, modal: Array) -> Array:
+        """Return the transpose of :meth:`project`: values at the points (points[, T]) of amplitudes (shells, parities, M + 1[, T])."""
+        values = np.empty((self.count, *modal.shape[3:]), modal.dtype)
+        for (i, _), rows, shape in zip(self._groups, self._rows, self._project, strict=True):
+            values[rows] = sum(one @ modal[i, h] for h, one in enumerate(shape))
+        return values
+
+    def _spread(self, values: Array, shapes: list[FloatArray]) -> Array:
+        modal = np.zeros((self.shells, self.parities, self.modes, *values.shape[1:]), values.dtype)
+        for (i, _), rows, shape in zip(self._groups, self._rows, shapes, strict=True):
+            for h, one in enumerate(shape):
+                modal[i, h] = one.T @ values[rows]
+        return modal
+
     def between(self, kernels: Array) -> Array:
         """Return the kernels from forces at the points to motion at the points, shape (points, points, T).
 

@@ -23,7 +23,8 @@ from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, a
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks
 
-_BLOCK_BYTES = 32 * 1024 * 1024
+BLOCK_BYTES = 32 * 1024 * 1024
+"""Of the matrices of a block of nodes."""
 
 
 class LinearStructure(Protocol):
@@ -72,7 +73,7 @@ def solve_linear(
     excited = points.evaluate(structure.normal)
     force = np.empty((2 * count, nodes.size), np.complex128)
     displacement = np.empty((count, nodes.size), np.complex128)
-    width = max(4, _BLOCK_BYTES // (16 * (2 * count) ** 2))
+    width = max(4, BLOCK_BYTES // (16 * (2 * count) ** 2))
     blocks = [slice(a, min(a + width, nodes.size)) for a in range(0, nodes.size, width)]
 
     def work(block: slice) -> None:

@@ -1,0 +1,214 @@
+"""What fields of a system change of one metric of one run, to first order."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.response import Response
+from coaxshell.solver.adjoint.answer import Backwards, backwards
+from coaxshell.solver.adjoint.structure import StructureSensitivity
+from coaxshell.solver.interface.absorbers import properties
+from coaxshell.solver.recompute import spectra_of
+from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.studies.gradients.norms import Norm
+from coaxshell.studies.gradients.readings import SmoothMetric, smooth_metric
+from coaxshell.studies.metrics import Metric
+from coaxshell.studies.reading import DesignReading, MetricSource
+from coaxshell.studies.varied_fields import Field, field_of, varied
+
+_STEP = 1e-3
+"""Relative step at which the ingredients of a run, never the run itself, are differenced."""
+_ABSORBER = re.compile(r"absorbers(?:\[(\d{1,9})\])?\.(\w+)")
+_FIELDS = ("mass", "damping", "linear_stiffness", "cubic_stiffness")
+
+
+class MetricSensitivity:
+    """One metric of a run, and what fields of the system change of it.
+
+    Parameters
+    ----------
+    system : System
+    metric : Metric
+    power : float or None
+        Of the mean that stands for a largest magnitude; None for that itself.
+    response : Response, optional
+        Of its run by the spectral engine in two dimensions; needed but for masses and distances.
+
+    Raises
+    ------
+    InputError
+        If the metric, or the run, has no gradient.
+    """
+
+    def __init__(self, system: System, metric: Metric, power: float | None, response: Response | None = None) -> None:
+        self.system, self.metric = system, metric
+        if metric.of_design:
+            self.value = self.peak = metric(DesignReading(system))
+            return
+        assert response is not None
+        self._solution, self._problem = response.solution, response.solution.problem
+        orders = self._solution.normal.shape[2]
+        self._smooth: SmoothMetric = smooth_metric(metric, self._problem, orders, power)
+        norm = self._norm
+        self.value = norm.value
+        self.peak = norm.value if self._smooth.where == "rms" else metric(MetricSource(response))
+
+    @cached_property
+    def _norm(self) -> Norm:
+        return self._smooth.norm(self._solution)
+
+    @cached_property
+    def _solved(self) -> SolvedSpectra:
+        return self._solution.spectra or spectra_of(self._solution)
+
+    @cached_property
+    def _back(self) -> Backwards:
+        return backwards(self._solved, self._smooth.reading(self._solution, self._solved, self._norm.slope))
+
+    @cached_property
+    def _structure(self) -> StructureSensitivity:
+        return StructureSensitivity(self._solved, self._back)
+
+    @cached_property
+    def _of_absorbers(self) -> dict[str, FloatArray]:
+        """What the metric changes by per SI unit of each property of every absorber of the description, per degree of its angle."""
+        system, count = self.system, len(self.system.absorber_list)
+        if self.metric.of_design:
+            return _of_design(self.metric, system)
+        found, absorbers = self._back.links, self._solved.absorbers
+        member, share = absorbers.member, 1.0 / absorbers.multiplicity
+        unit = Absorber(mass=1.0, damping=1.0, linear_stiffness=1.0, cubic_stiffness=1.0)
+        scales = properties([unit], self._problem.scales)
+        per_unit = (found.mass, found.damping, found.linear, found.cubic)
+        answer = {name: (per * share)[member] * float(scale[0]) for name, per, scale in zip(_FIELDS, per_unit, scales, strict=True)}
+        angles = np.array([one.angle for one in system.absorber_list]).reshape(count)
+        turned = np.remainder(angles - absorbers.angle[member] + 180.0, 360.0) - 180.0
+        answer["angle"] = (found.angle * share)[member] * np.where(np.abs(turned) < 1e-6, 1.0, -1.0)  # a mirror image turns the other way
+        return answer
+
+    @cached_property
+    def _of_gains(self) -> list[FloatArray]:
+        """What the metric changes by per unit of the gains on W, V, dW/dt and dV/dt, each of shape (M + 1,)."""
+        solution, shell, slope = self._solution, self._smooth.shell, self._norm.slope
+        motion = (solution.normal, solution.tangential, solution.normal_rate, solution.tangential_rate)
+        return [np.einsum("hmt,hmt->m", slope, x[shell]) if x is not None else np.zeros(slope.shape[1]) for x in motion]
+
+    def of(self, path: str) -> float:
+        """Return what the metric changes by per unit of a field, in SI (degrees for angles).
+
+        Parameters
+        ----------
+        path : str
+            Dotted, as ``absorbers[0].mass``, ``control.derivative`` or ``shells[0].layers[1].thickness``.
+
+        Raises
+        ------
+        InputError
+            If it is no field of the system that varies continuously, or the metric has no gradient by it.
+        """
+        match = _ABSORBER.fullmatch(path.strip())
+        name = "" if match is None else "angle" if match[2] == "offset" and isinstance(self.system.absorbers, AbsorberRing) else match[2]
+        if match is not None and name in (*_FIELDS, "angle") and self.system.absorber_list:
+            each = self._of_absorbers[name]
+            if match[1] is None and (name != "angle" or match[2] == "offset"):
+                return self._finite(float(each.sum()), path)
+            if match[1] is not None and isinstance(self.system.absorbers, tuple) and int(match[1]) < each.size:
+                return self._finite(float(each[int(match[1])]), path)
+        return self._differenced(path)
+
+    def _finite(self, value: float, path: str) -> float:
+        if math.isfinite(value):
+            return value
+        problem = "has no gradient where every absorber is linear: they are solved without steps"
+        raise InputError(path, problem, "give one of them a cubic stiffness, however small")
+
+    def _differenced(self, path: str) -> float:
+        """Return the derivative by a field from what it changes in the ingredients of the run, by central differences of fourth order."""
+        field = field_of(self.system, path)
+        step = _STEP * (abs(float(field.present)) or 1.0) if field.quantity is not None else math.nan
+        if not math.isfinite(step):
+            raise InputError(path, "is not a number that varies continuously", "give a property such as absorbers[0].mass")
+        coarse, fine = (self._slope(field, part * step) for part in (1.0, 0.5))
+        return (4.0 * fine - coarse) / 3.0
+
+    def _slope(self, field: Field, step: float) -> float:
+        before, after = (self._beside(field, shift) for shift in (-step, step))
+        if self.metric.of_design:
+            return (self.metric(DesignReading(after)) - self.metric(DesignReading(before))) / (2.0 * step)
+        first, second = (dimensionless(system, settings=self._solution.settings) for system in (before, after))
+        change = self._structure.change(first, second) + self._change_of_gains(first, second) + self._change_of_absorbers(first, second)
+        return change / (2.0 * step)
+
+    def _beside(self, field: Field, shift: float) -> System:
+        try:
+            return varied(self.system, {field.path: float(field.present) + shift})
+        except InputError as error:
+            problem = f"has no gradient at {field.present!r}, the end of what is allowed ({error.problem})"
+            raise InputError(field.path, problem, "begin inside of it") from None
+
+    def _change_of_gains(self, before: Problem, after: Problem) -> float:
+        bars = self._of_gains
+        totals = []
+        for problem in (before, after):
+            at_once, rate = self._smooth.parts(problem)
+            total = bars[0] @ at_once.w + bars[1] @ at_once.v
+            if rate is not None:
+                total += bars[2] @ rate.w + bars[3] @ rate.v
+            totals.append(float(total))
+        return totals[1] - totals[0]
+
+    def _change_of_absorbers(self, before: Problem, after: Problem) -> float:
+        """Return the change by the absorbers' dimensionless properties and angles."""
+        if not self.system.absorber_list:
+            return 0.0
+        lists = [problem.system.absorber_list for problem in (before, after)]
+        if len(lists[0]) != len(lists[1]):
+            raise InputError("absorbers.count", "is a count and has no gradient", "write the absorbers out and vary their properties")
+        unit = Absorber(mass=1.0, damping=1.0, linear_stiffness=1.0, cubic_stiffness=1.0)
+        scales = [float(scale[0]) for scale in properties([unit], self._problem.scales)]
+        first, second = (properties(listed, problem.scales) for listed, problem in zip(lists, (before, after), strict=True))
+        total = 0.0
+        for name, scale, old, new in zip(_FIELDS, scales, first, second, strict=True):
+            if np.any(old != new):
+                total += float((self._of_absorbers[name] / scale) @ (new - old))
+        turned = np.array([b.angle - a.angle for a, b in zip(*lists, strict=True)])
+        if turned.any():
+            total += float(self._of_absorbers["angle"] @ turned)
+        return self._finite(total, "absorbers.cubic_stiffness")
+
+
+def _of_design(metric: Metric, system: System) -> dict[str, FloatArray]:
+    """Return what a mass or a distance of the absorbers changes by with each of them."""
+    listed = system.absorber_list
+    found = {name: np.zeros(len(listed)) for name in (*_FIELDS, "angle")}
+    if metric.quantity in ("absorber_mass", "total_mass"):
+        found["mass"][:] = 1.0
+    elif metric.quantity == "absorber_spacing":
+        closest = _closest_pair(system)
+        if closest is not None:
+            one, other, radius = closest
+            found["angle"][[one, other]] = np.radians(radius) * np.array([-1.0, 1.0])
+    return found
+
+
+def _closest_pair(system: System) -> tuple[int, int, float] | None:
+    """Return the two neighbours whose distance is the smallest, the second ahead of the first, and the radius of the shell beneath them."""
+    best, found = math.inf, None
+    listed = system.absorber_list
+    for shell in {one.inner_shell for one in listed}:
+        here = sorted((i for i, one in enumerate(listed) if one.inner_shell == shell), key=lambda i: listed[i].angle % 360.0)
+        radius = system.shells[shell].radius
+        for one, other in zip(here, [*here[1:], here[0]], strict=True):
+            distance = ((listed[other].angle - listed[one].angle) % 360.0 or 360.0) * radius
+            if one != other and distance < best:
+                best, found = distance, (one, other, radius)
+    return found

@@ -1,0 +1,56 @@
+"""Mutations of gradients: the run backwards."""
+
+from __future__ import annotations
+
+from mutation import Mutation
+
+GRADIENTS = (
+    Mutation(
+        "gradient-history",
+        "solver/adjoint/backward.py",
+        "known = loads[block] - points.project_transposed(ahead).T",
+        "known = loads[block] + points.project_transposed(ahead).T",
+        "what later forces take off a force at a step",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
+        "gradient-tangent",
+        "solver/adjoint/answer.py",
+        "tangent = linear + 3.0 * cubic * forward.stretch**2",
+        "tangent = linear + cubic * forward.stretch**2",
+        "slope of a cubic spring in the march backwards",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
+        "gradient-nodes",
+        "solver/adjoint/nodes.py",
+        "kappa = share * (first + second)",
+        "kappa = share * (first - second)",
+        "the mass of a linear absorber, transposed",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
+        "gradient-weights",
+        "solver/adjoint/structure.py",
+        'matrix -= np.einsum("kimn,klmn,jlmn->ijmn", compliance, kernels, compliance, optimize=True)',
+        "matrix -= 0.0 * matrix",
+        "what step weights of the velocity kernels change with a wall",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
+        "gradient-mirror",
+        "studies/gradients/sensitivity.py",
+        "np.where(np.abs(turned) < 1e-6, 1.0, -1.0)",
+        "np.where(np.abs(turned) < 1e-6, 1.0, 1.0)",
+        "a mirror image turns the other way",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
+        "gradient-count",
+        "numerics/laplace_grid.py",
+        "counts = np.full(self.nodes.size, 2.0)",
+        "counts = np.full(self.nodes.size, 1.0)",
+        "nodes of a real transform stand for two",
+        "solver/test_adjoint.py",
+    ),
+)
