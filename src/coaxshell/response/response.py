@@ -17,6 +17,7 @@ from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage, wall_stress
+from coaxshell.response.history_spectrum import history_spectrum
 from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
 from coaxshell.response.solid_histories import displacement_at_depth
 from coaxshell.response.summary import Summary, response_card, summarise
@@ -252,6 +253,26 @@ class Response:
         """
         number = self._index(shell)
         return self._read(station, lambda motion: shock_spectrum(motion, number, angle, frequency, **options))
+
+    def spectrum(
+        self,
+        quantity: str | xr.DataArray = "stress",
+        shell: int | str = "outer",
+        angle: npt.ArrayLike = HEAD_AND_TAIL,
+        frequency: npt.ArrayLike | None = None,
+        *,
+        per: str = "absolute",
+        source: int | None = None,
+        station: Any = None,
+    ) -> xr.DataArray:
+        """Return the Fourier transform of a history at frequencies (Hz), dims (frequency, angle): absolute or per "incident" pressure.
+
+        Of a quantity of a shell by its name, or of any history that the response gave: ``r.spectrum(r.absorber_displacement())``. Of one
+        that has died away it is what :func:`coaxshell.frequency_response` gives; a warning tells what is left at the end.
+        See :func:`coaxshell.response.history_spectrum.history_spectrum`.
+        """
+        found = self.history(shell, angle, quantity, station=station) if isinstance(quantity, str) else quantity
+        return history_spectrum(found, self.system.sources, frequency, per, source)
 
     def history(
         self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress", *, station: Any = None
