@@ -10,6 +10,7 @@ from electrode_mutations import ELECTRODES
 from gradient_mutations import GRADIENTS
 from loss_mutations import LOSSES
 from reading_mutations import READING
+from sea_mutations import SEA
 from spatial_mutations import SPATIAL
 from steady_mutations import STEADY
 from wetted_mutations import WETTED
@@ -484,6 +485,7 @@ MUTATIONS = (
         "kernels of another structure for a case of a study",
         "studies/test_evaluation.py",
     ),
+    *SEA,
     *SPATIAL,
     *WETTED,
     *STEADY,

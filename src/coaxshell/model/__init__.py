@@ -13,6 +13,7 @@ from coaxshell.model.fluids import VACUUM, Fluid, Vacuum
 from coaxshell.model.layers import Layer
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.pulses import Exponential, Gaussian, Pulse, Sampled, Step
+from coaxshell.model.sea import Sea
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import (
     LineShock,
@@ -51,6 +52,7 @@ __all__ = [
     "Pulse",
     "RigidShell",
     "Sampled",
+    "Sea",
     "Shell",
     "Source",
     "SphericalShock",

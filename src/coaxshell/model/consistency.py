@@ -10,6 +10,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell, serves
 from coaxshell.model.parts import SystemParts
+from coaxshell.model.sea import require_possible
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
 
@@ -21,6 +22,7 @@ def check(system: SystemParts) -> None:
     _sources(system)
     _absorbers(system)
     _control(system)
+    _sea(system)
 
 
 def _shells(system: SystemParts) -> None:
@@ -66,6 +68,17 @@ def _sources(system: SystemParts) -> None:
                 f"{distance!r} m is not outside the outermost shell",
                 f"must be greater than its outer radius {radius:g} m",
             )
+
+
+def _sea(system: SystemParts) -> None:
+    if system.sea is None:
+        return
+    several = isinstance(system.source, tuple)
+    placed = [
+        (f"source[{number}]" if several else "source", distance, source.angle, source.geometry == "plane")
+        for number, (source, distance) in enumerate(zip(system.sources, system.source_distances, strict=True))
+    ]
+    require_possible(system.sea, system.shells[-1].outer_radius, placed)
 
 
 def _absorbers(system: SystemParts) -> None:

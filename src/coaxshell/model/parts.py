@@ -15,6 +15,7 @@ from coaxshell.model.feedback import LAW, Feedback
 from coaxshell.model.fluids import AnyFluid, Fluid, Vacuum
 from coaxshell.model.paths import within
 from coaxshell.model.places import shell_number, shell_words
+from coaxshell.model.sea import Sea
 from coaxshell.model.shells import AnyShell, RigidShell, Shell
 from coaxshell.model.sources import Source, as_source, source_distance
 from coaxshell.numerics.scalars import plain
@@ -75,8 +76,12 @@ def _as_control(value: Any) -> Any:
     raise InputError("", f"{shown(value)} is not a control law", "give a PDControl, a Feedback or a table of the entries of one")
 
 
+def _unless_none(value: Any) -> Any:
+    return None if value == "none" else value
+
+
 class SystemParts(Described):
-    """Shells, fluids, sources, absorbers and control; see :class:`coaxshell.System`, which checks, changes, shows and writes them."""
+    """Shells, fluids, sources, absorbers, control and the sea; see :class:`coaxshell.System`, which checks, changes and writes them."""
 
     name: str = ""
     """What the system is called."""
@@ -90,6 +95,8 @@ class SystemParts(Described):
     """A ring of equal absorbers, or single ones; point absorbers in three dimensions."""
     control: Annotated[PDControl | Feedback | None, BeforeValidator(_as_control)] = None
     """The controller, if there is one."""
+    sea: Annotated[Sea | None, BeforeValidator(_unless_none)] = None
+    """The sea around it, if its surface, its bottom or its pressure counts."""
 
     def __init__(
         self,
@@ -99,10 +106,12 @@ class SystemParts(Described):
         source: Source | Sequence[Source] | Mapping[str, Any] = UNSTATED,
         absorbers: AbsorberRing | Absorber | PointAbsorber | Sequence[Absorber | PointAbsorber] | Mapping[str, Any] | None = (),
         control: PDControl | Feedback | Mapping[str, Any] | None = None,
+        sea: Sea | Mapping[str, Any] | None = None,
         name: str = "",
         **unknown: Any,
     ) -> None:
-        given = {"name": name, "shells": shells, "fluids": fluids, "source": source, "absorbers": absorbers, "control": control}
+        given = {"name": name, "shells": shells, "fluids": fluids, "source": source}
+        given |= {"absorbers": absorbers, "control": control, "sea": sea}
         super().__init__(**stated(given), **unknown)
 
     @property

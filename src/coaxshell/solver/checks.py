@@ -25,6 +25,7 @@ from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import InterfacePoints
 from coaxshell.solver.interface.saturation import voltage_limit
+from coaxshell.solver.rounds import rounds
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.slice_error import slice_error
@@ -64,6 +65,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         + _linear_acoustics(problem)
         + _similitude(problem)
         + slice_of_sphere(problem, float(grid.time[-1]))
+        + sea(problem, float(grid.time[-1]))
         + thin_walls(problem, float(grid.time[-1]))
         + _unresolved_records(problem, grid, max_order)
         + remarks(problem.system)
@@ -246,6 +248,25 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"
+    ]
+
+
+def sea(problem: Problem, duration: float) -> list[str]:
+    """Return the warning that a run of *duration* transits goes on after a scattered wave is back that it leaves out, and from when."""
+    planned = rounds(problem, duration)
+    until = planned.exact_until(planned.done if problem.dimensions == 2 else 0)
+    if duration <= until:
+        return []
+    when = f"t = {until:.4g} ({engineering(until * problem.scales.time, 's')})"
+    if problem.dimensions == 3:
+        return [
+            f"sea: three dimensions reflect the sources alone, which is exact until {when}, when what the shells scatter is back; this run "
+            f"lasts until {duration:.4g}: use duration={until:.4g}, or dimensions=2, which goes on"
+        ]
+    nearest = (problem.planes.nearest if problem.planes is not None else 0.0) * problem.scales.length
+    return [
+        f"sea: {planned.needed} reflections of the scattered wave come within the run, more than the {planned.done} that are added up; "
+        f"it is exact until {when}: use duration={until:.4g}, or a plane further away than {nearest:.4g} m"
     ]
 
 

@@ -24,6 +24,8 @@ _BLOCK_PAIRS = 64 * 1024
 """Order-node pairs that a thread works on at a time."""
 _RECEPTANCE_BYTES = 32 * 1024 * 1024
 _BLOCK_UNKNOWNS, _LONGEST_BLOCK = 512, 32
+_REFLECTION = 1e-8
+"""Seconds of a pair of orders at a node in Graf's sum."""
 _SAMPLE_STRIDE = 8
 """One node in so many is used for the estimate of what the orders left out would add."""
 
@@ -47,7 +49,7 @@ def run_cost(system: System | Problem, settings: Settings, *, retunable: bool = 
     if settings.modes == "auto":
         memory = max(memory, _sampled_bytes(size, 2.0 * MAX_MODES))
     kept = min(float(ROOM), (3.0 * size.shells + 2.0) * size.plane) if retunable else 0.0
-    seconds = _direct_seconds(size) if direct else _spectral_seconds(size)
+    seconds = _direct_seconds(size) if direct else _reflected_seconds(size)
     return Cost(memory + kept + 200.0 * size.samples, seconds + 2e-5 * size.samples)
 
 
@@ -118,6 +120,7 @@ def _spectral_bytes(size: Size) -> float:
     """Return the largest of the stages of the spectral engine."""
     n, plane = size.shells, size.plane
     linear = (2.0 + size.solids) * n * size.source_parities * plane
+    linear *= 2.0 if size.reflections else 1.0  # a round's own and the one before
     structure = linear + ((n * n + n) * plane if size.linked else 0.0)
     ports = 1.5 * (2.0 * size.solids - 1.0) * n * COMPLEX * _BLOCK_PAIRS * WORKERS if size.solids else 0.0  # rows of what solids answer
     solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes) + ports
@@ -182,6 +185,12 @@ def _shared_seconds(size: Size) -> float:
     """Return the time that error estimates and the stability of a feedback take."""
     estimate = 0.5e-6 * size.shells * (size.sampled_top + 1.0) * size.nodes / _SAMPLE_STRIDE
     return 0.02 + estimate + (1.5e-6 * size.orders * 2000 * size.shells / 2.0 if size.feedback else 0.0)
+
+
+def _reflected_seconds(size: Size) -> float:
+    """Return the time of the spectral engine, whose runs are solved again for each reflection in the sea."""
+    once, pairs = _spectral_seconds(size), float(size.orders * size.nodes)
+    return once + size.reflections * (once + _REFLECTION * pairs * size.orders * size.source_parities)
 
 
 def _spectral_seconds(size: Size) -> float:

@@ -25,9 +25,10 @@ def source_spectrum(problem: Problem, source: Source, s: ComplexArray) -> Comple
     return spectrum * np.exp(-s * (source.delay / scales.time)) if source.delay else spectrum
 
 
-def source_parities(sources: Iterable[Source]) -> int:
-    """Return how many parities the sources excite: 1, cosines alone, where all lie on the axis theta = 0, 180 degrees; else 2."""
-    return 2 if any(source.angle % 180.0 != 0.0 for source in sources) else 1
+def source_parities(problem: Problem) -> int:
+    """Return how many parities are excited: 1, cosines alone, where sources and surface lie on theta = 0, 180 degrees; else 2."""
+    aside = problem.planes is not None and not problem.planes.symmetric
+    return 2 if aside or any(source.angle % 180.0 != 0.0 for source in problem.emitters) else 1
 
 
 class UnitLoad:
@@ -83,7 +84,7 @@ class SourceGroup:
 def source_groups(problem: Problem, s: ComplexArray) -> list[SourceGroup]:
     """Return the sources of a problem by geometry, with the transforms of their pulses."""
     groups: dict[SourceGeometry, list[tuple[Source, ComplexArray]]] = {}
-    for source, geometry in zip(problem.system.sources, problem.sources, strict=True):
+    for source, geometry in zip(problem.emitters, problem.sources, strict=True):
         groups.setdefault(geometry, []).append((source, source_spectrum(problem, source, s)))
     return [SourceGroup(geometry, members) for geometry, members in groups.items()]
 
@@ -92,25 +93,55 @@ class SurfaceLoads:
     """The modal loads of all sources on the outermost shell, prepared for some modes on a Laplace grid.
 
     A source at angle theta_s loads cos(m theta) with cos(m theta_s) and sin(m theta) with sin(m theta_s) of its own series.
-    Sources that share a geometry share its modal load.
+    Sources that share a geometry share its modal load. ``returned`` is that of what the planes of the sea send back, at all nodes.
     """
 
-    def __init__(self, problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None = None) -> None:
-        self.parities = source_parities(problem.system.sources)
-        self._modes = modes
+    def __init__(
+        self, problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None = None, returned: ComplexArray | None = None
+    ) -> None:
+        self.parities = source_parities(problem)
+        if returned is not None:
+            self.parities = max(self.parities, returned.shape[0])
+        self._modes, self._returned = modes, returned
         self._groups = [(UnitLoad(group.geometry, grid, modes, shared), group) for group in source_groups(problem, grid.nodes)]
 
     def __call__(self, basis: RadialBasis, nodes: slice) -> list[ComplexArray]:
         """Return the load of the cosine parity, and of the sine parity if any source needs it, at a slice of the grid's nodes."""
-        return superposed(self.parities, self._modes, ((unit(basis, nodes), group.at(nodes)) for unit, group in self._groups))
+        loads = superposed(self.parities, self._modes, ((unit(basis, nodes), group.at(nodes)) for unit, group in self._groups))
+        if self._returned is not None:
+            for load, back in zip(loads, self._returned, strict=False):
+                load += back[..., nodes]
+        return loads
 
 
-def incident_on_surface(problem: Problem, grid: LaplaceGrid, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
+def incident_on_surface(
+    problem: Problem, grid: LaplaceGrid, basis: RadialBasis, returned: ComplexArray | None = None
+) -> tuple[ComplexArray, ComplexArray]:
     """Return the modal pressure and slope dp/dr at the outermost surface of all incident waves, each (1 or 2, M + 1, nodes).
 
-    *basis* holds the modes at all nodes of the grid.
+    Parameters
+    ----------
+    problem : Problem
+    grid : LaplaceGrid
+    basis : RadialBasis
+        Of the modes at all nodes of the grid.
+    returned : ndarray, shape (parities, orders, nodes), optional
+        Load of what the planes of the sea send back, of as many orders and nodes or more.
     """
-    return incident_of(source_groups(problem, grid.nodes), source_parities(problem.system.sources), grid, basis)
+    pressure, slope = incident_of(source_groups(problem, grid.nodes), source_parities(problem), grid, basis)
+    if returned is None:
+        return pressure, slope
+    surface = basis(1.0, problem.head)
+    back = returned[:, : pressure.shape[1], : grid.nodes.size] / (surface.disc - surface.exterior)  # of a wave regular within r = b
+    return _with_parities(pressure, surface.disc * back), _with_parities(slope, back)
+
+
+def _with_parities(one: ComplexArray, other: ComplexArray) -> ComplexArray:
+    """Return the sum of two modal arrays of which either may lack the sines."""
+    large, small = (one, other) if one.shape[0] >= other.shape[0] else (other, one)
+    total = large.copy()
+    total[: small.shape[0]] += small
+    return total
 
 
 def incident_of(groups: list[SourceGroup], parities: int, grid: Nodes, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:

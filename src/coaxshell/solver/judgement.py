@@ -45,6 +45,8 @@ def _judgement(solution: ModalSolution, solved: SolvedSpectra, asked_for: Settin
     stopwatch.lap("error estimates")
     warnings = [*structure.notes, *checks.absorbers(solved, settings.refinement), *checks.before(problem, solved.grid, order)]
     warnings += tolerance_missed(asked_for, order, errors, saturating=control is not None and control.saturation)
-    warnings += checks.after(problem, errors, settings) + checks.tension(problem, tensions(problem, solved.grid, *solved.face_motion))
+    warnings += checks.after(problem, errors, settings) + checks.tension(
+        problem, tensions(problem, solved.grid, *solved.face_motion, structure.returned)
+    )
     stopwatch.lap("pressure on the walls")
     return Judgement(errors, (*warnings, *checks.actuators(solution), *checks.ideal_loop(problem, settings)))

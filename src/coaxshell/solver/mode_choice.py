@@ -37,7 +37,7 @@ def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, shared: 
     orders = np.unique(np.concatenate([np.arange(0, 33), np.geomspace(36, 2 * MAX_MODES, 48).round()]))
     sampled = SampledOrders.of(problem, grid, orders, shared)
     system = problem.system
-    links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
+    links = absorber_set(problem, system.absorber_list, source_parities(problem))
     squares = sampled.excited
     if links.count:
         links, motion, force = _free_forces(sampled, links, grid)

@@ -8,6 +8,8 @@ what was marched between them is marched again. A solution that is still in the 
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
@@ -18,6 +20,7 @@ from coaxshell.solver.cost import require_room
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.interface.linked import modal_pressure_of, solve_linked
+from coaxshell.solver.reflections import reflected
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -47,13 +50,14 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
         force, displacement = solution.absorber_force, solution.absorber_displacement
         if force is None or displacement is None:
             force, displacement = np.zeros((0, 2, solution.time.size)), np.zeros((0, solution.time.size))
-        return _of_forces(structure, links, force, displacement, actuation, continued)
+        acted = partial(_of_forces, links=links, force=force, displacement=displacement, actuation=actuation, continued=continued)
+        return acted(structure) if kept is not None else reflected(structure, acted)
     if kept is None:
         if links.count or actuation is not None:
             require_room(structure.problem, solution.settings)  # a saved run may come from a larger machine
-        kept = solve_linked(structure, links, saturate=actuation is not None)
+        kept = reflected(structure, lambda one: solve_linked(one, links, saturate=actuation is not None))
     if continued and kept.marched:
-        return _of_forces(structure, links, kept.force, kept.displacement, kept.actuation, continued)
+        return _of_forces(kept.structure, links, kept.force, kept.displacement, kept.actuation, continued)
     return kept
 
 
@@ -68,7 +72,7 @@ def _links(solution: ModalSolution) -> AbsorberSet:
     if solution.spectra is not None:
         return solution.spectra.absorbers
     system = solution.problem.system
-    return absorber_set(solution.problem, system.absorber_list, source_parities(system.sources))
+    return absorber_set(solution.problem, system.absorber_list, source_parities(solution.problem))
 
 
 def _of_forces(

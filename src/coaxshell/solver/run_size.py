@@ -9,6 +9,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linear_ring import is_ring
+from coaxshell.solver.rounds import rounds
 from coaxshell.solver.sampled_orders import crossing_order
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
@@ -63,6 +64,8 @@ class Size:
 
     solids: int = 0
     """Transforms of each shell beside W and V, where walls are elastic solids: hoop stress, faces, loads on them, potentials."""
+    reflections: int = 0
+    """Rounds of the series that planes of the sea send back."""
 
     @property
     def plane(self) -> float:
@@ -89,7 +92,7 @@ def size_of(problem: Problem, settings: Settings) -> Size:
     """Return the numbers of a run; "auto" counts as 300 orders."""
     system, steps = problem.system, settings.steps * settings.refinement
     grid = LaplaceGrid(settings.time_step / settings.refinement, steps)
-    excited = source_parities(system.sources)
+    excited = source_parities(problem)
     links = absorber_set(problem, system.absorber_list, excited)
     orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
     feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
@@ -108,7 +111,8 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         nodes=grid.samples // 2 + 1,
         instants=steps + 1,
         sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
-        tabulated=sum(source.geometry == "spherical" for source in system.sources),
+        tabulated=sum(source.geometry == "spherical" for source in problem.emitters),
         solids=5 + max(len(wall.piezoelectric) for wall in solids) if solids else 0,
+        reflections=rounds(problem, settings.duration).done if settings.dimensions == 2 else 0,
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
     )

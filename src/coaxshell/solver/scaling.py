@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from coaxshell.acoustics.basis import RadialBasis
-from coaxshell.acoustics.sources import SourceGeometry, source_geometry
+from coaxshell.acoustics.images import Planes
+from coaxshell.acoustics.sources import SourceGeometry
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.gains import gains_of
@@ -18,6 +19,7 @@ from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.solver.dimensions import require_sources_alone
+from coaxshell.solver.emitters import emitters, planes_of
 from coaxshell.solver.point_forces import PointForceShares, point_force_shares
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.constituents import constituents, loses
@@ -105,11 +107,15 @@ class Problem:
     fluids : tuple of FluidRegion or None
         From the inside out, one more than the shells; None is a vacuum.
     sources : tuple of SourceGeometry
-        Where the system's sources are, one each.
+        Where what sends waves is, one for each of the ``emitters``.
     point_force_shares : callable
         From absorbers and modes to each order's share of a line force on a circle of radius 1, shape (parities, N, M + 1).
     dimensions : int
         2, or 3 where sources are those of three dimensions.
+    images : tuple of Source
+        The images of the system's sources in the planes of the sea, as sources.
+    planes : Planes or None
+        The surface and the bottom of the sea.
     """
 
     system: System
@@ -119,6 +125,13 @@ class Problem:
     sources: tuple[SourceGeometry, ...]
     point_force_shares: PointForceShares = point_force_shares
     dimensions: int = 2
+    images: tuple[Source, ...] = ()
+    planes: Planes | None = None
+
+    @property
+    def emitters(self) -> tuple[Source, ...]:
+        """The system's sources, and after them their images: one for each of ``sources``."""
+        return (*self.system.sources, *self.images)
 
     @property
     def head(self) -> float:
@@ -161,15 +174,9 @@ def dimensionless(system: System, dimensions: int = 2, settings: Settings | None
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
     shells = tuple(_wall(system, i, scales, band) for i in range(len(system.shells)))
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
-    sources = tuple(_geometry(system, source, dimensions) for source in system.sources)
-    return Problem(system, scales, shells, fluids, sources, dimensions=dimensions)
-
-
-def _geometry(system: System, source: Source, dimensions: int) -> SourceGeometry:
-    distance = system.source_distance(source)
-    inclination = getattr(source, "inclination", 0.0) if dimensions == 3 else 0.0
-    a = system.reference_radius
-    return source_geometry(source.geometry, None if distance is None else distance / a, dimensions, inclination, system.head_radius / a)
+    heard = emitters(system, dimensions, (settings or Settings()).duration)
+    sources, images = tuple(one.geometry for one in heard), tuple(one.source for one in heard[len(system.sources) :])
+    return Problem(system, scales, shells, fluids, sources, dimensions=dimensions, images=images, planes=planes_of(system))
 
 
 def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:

@@ -109,7 +109,12 @@ class FacedMotion(NamedTuple):
 
 
 def solid_spectra(
-    problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None = None, progress: Progress | None = None
+    problem: Problem,
+    grid: LaplaceGrid,
+    modes: Modes,
+    shared: SharedParts | None = None,
+    progress: Progress | None = None,
+    returned: ComplexArray | None = None,
 ) -> SolidSpectra:
     """Return all transforms of a structure under its sources.
 
@@ -121,8 +126,10 @@ def solid_spectra(
     shared : SharedParts, optional
         Where modal loads are found, or left for others.
     progress : callable, optional
+    returned : ndarray, shape (parities, M + 1, nodes), optional
+        Load of what the planes of the sea send back.
     """
-    loads = SurfaceLoads(problem, grid, modes, shared)
+    loads = SurfaceLoads(problem, grid, modes, shared, returned)
     shape = (len(problem.shells), loads.parities, modes.count, grid.nodes.size)
     solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
     layers = max(len(wall.piezoelectric) for wall in solids)

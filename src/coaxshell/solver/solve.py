@@ -22,6 +22,7 @@ from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linked import solve_linked
 from coaxshell.solver.judgement import judgement
 from coaxshell.solver.mode_choice import resolve_modes
+from coaxshell.solver.reflections import reflected
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
@@ -135,11 +136,12 @@ def _solved(
 ) -> ModalSolution:
     settings = replace(asked_for, modes=structure.modes.max_order)
     system, grid, keep = problem.system, structure.grid, slice(None, None, settings.refinement)
-    links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
+    links = absorber_set(problem, system.absorber_list, source_parities(problem))
     saturate = system.control is not None and system.control.saturation
     (structure.open_loop if saturate else structure).solve(units=links.count > 0 or saturate)
     stopwatch.lap("modal system at all Laplace nodes")
-    solved = solve_linked(structure, links, progress, saturate=saturate)
+    solved = reflected(structure, lambda one: solve_linked(one, links, progress, saturate=saturate), progress)
+    structure = solved.structure
     if links.count or saturate:
         stopwatch.lap("absorbers and saturation")
     require_finite_stages(solved)

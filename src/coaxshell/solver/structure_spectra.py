@@ -64,6 +64,8 @@ class StructureSpectra:
         Another structure's ``units``; it differs at most in its sources, absorbers and field limits.
     notes : tuple of str
         What was found when its modes were chosen, for the warnings of its answers.
+    returned : ndarray, shape (parities, M + 1, nodes), optional
+        Load of what the planes of the sea send back of its scattered wave.
 
     Attributes
     ----------
@@ -81,9 +83,10 @@ class StructureSpectra:
         shared: SharedParts | None = None,
         units: _UnitAnswers | None = None,
         notes: tuple[str, ...] = (),
+        returned: ComplexArray | None = None,
     ) -> None:
         self.problem, self.grid, self.modes, self.shared = problem.resolving(band(grid)), grid, modes, shared
-        self.units, self.notes = units or _UnitAnswers(), notes
+        self.units, self.notes, self.returned = units or _UnitAnswers(), notes, returned
         self._progress = progress
         self._under_sources: tuple[ComplexArray, ComplexArray] | None = None
         self._solid: SolidSpectra | None = None
@@ -97,6 +100,11 @@ class StructureSpectra:
         """Return whether a problem differs at most in its absorbers."""
         same = problem.system.replace(absorbers=()) == self.problem.system.replace(absorbers=())
         return same and problem.sources == self.problem.sources and self.same_structure(problem)
+
+    def receiving(self, returned: ComplexArray) -> StructureSpectra:
+        """Return the structure under its sources and what the planes of the sea send back, given by its load."""
+        own = self.problem, self.grid, self.modes, self._progress
+        return StructureSpectra(*own, shared=self.share(), units=self.units, notes=self.notes, returned=returned)
 
     def share(self) -> SharedParts:
         """Return where parts are left for other structures, from now on at the latest."""
@@ -115,11 +123,11 @@ class StructureSpectra:
         problem, grid, modes = self.problem, self.grid, self.modes
         if problem.two_faced:
             if self._under_sources is None:
-                self._solid = solid_spectra(problem, grid, modes, self.shared, self._progress)
+                self._solid = solid_spectra(problem, grid, modes, self.shared, self._progress, self.returned)
                 self._under_sources = self._solid.normal, self._solid.tangential
             return
         count, each = len(problem.shells), (modes.count, grid.nodes.size)
-        loads = SurfaceLoads(problem, grid, modes, self.shared) if self._under_sources is None else None
+        loads = SurfaceLoads(problem, grid, modes, self.shared, self.returned) if self._under_sources is None else None
         units = units and self.units.compliance is None
         if loads is not None:
             normal, tangential = (np.empty((count, loads.parities, *each), np.complex128) for _ in range(2))
@@ -238,7 +246,7 @@ class StructureSpectra:
         if self.units.open_loop is None:
             self.units.open_loop = _UnitAnswers()
         passive, units = self.problem.open_loop, self.units.open_loop
-        return StructureSpectra(passive, self.grid, self.modes, self._progress, shared=self.shared, units=units)
+        return StructureSpectra(passive, self.grid, self.modes, self._progress, shared=self.shared, units=units, returned=self.returned)
 
     @property
     def kernels_with_voltage(self) -> KernelTable:

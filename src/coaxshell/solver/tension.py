@@ -60,7 +60,9 @@ def watched(problem: Problem) -> bool:
     return sum(abs(source.pulse.peak) for source in problem.system.sources) > HARMLESS * AMBIENT
 
 
-def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer: ComplexArray | None = None) -> list[Tension]:
+def tensions(
+    problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer: ComplexArray | None = None, returned: ComplexArray | None = None
+) -> list[Tension]:
     """Return the wetted surfaces on which the total pressure falls below -AMBIENT within the run.
 
     Parameters
@@ -71,6 +73,8 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer: C
         Transforms of W.
     outer : ndarray, optional
         Those of the outer faces, where faces move differently and ``normal`` holds the inner ones.
+    returned : ndarray, shape (parities, M + 1, nodes), optional
+        Load of what the planes of the sea send back.
     """
     if not watched(problem):
         return []
@@ -79,7 +83,7 @@ def tensions(problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer: C
     window = np.exp(-20.0 * np.linspace(0.0, 1.0, coarse.nodes.size) ** 4)
     few, few_outer = (x[:, :, : _MOST_ORDERS + 1, : coarse.nodes.size] for x in (normal, normal if outer is None else outer))
     found = []
-    for region, shell, spectra in wall_pressures(problem, coarse, few, few_outer):
+    for region, shell, spectra in wall_pressures(problem, coarse, few, few_outer, returned):
         modal = problem.scales.pressure * coarse.invert(spectra, window)[..., within]
         lowest = _lowest(modal, coarse.time[within])
         if lowest is not None:
@@ -118,7 +122,11 @@ def spectra_of_motion(grid: LaplaceGrid, histories: FloatArray) -> ComplexArray:
 
 
 def wall_pressures(
-    problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer_faces: ComplexArray | None = None
+    problem: Problem,
+    grid: LaplaceGrid,
+    normal: ComplexArray,
+    outer_faces: ComplexArray | None = None,
+    returned: ComplexArray | None = None,
 ) -> Iterator[tuple[int, int, ComplexArray]]:
     """Yield (fluid, shell, transforms of the total pressure on that face) for every wetted face, each (parities, M + 1, nodes).
 
@@ -136,7 +144,7 @@ def wall_pressures(
         if inner is None and outer is not None:
             yield region, region, fluid.density * outer.disc * acceleration[region]
         elif outer is None and inner is not None:
-            incident, slope = incident_on_surface(problem, grid, radial)
+            incident, slope = incident_on_surface(problem, grid, radial, returned)
             total = inner.exterior * beyond[-1]
             total[: len(incident)] += incident - inner.exterior * slope
             yield region, region - 1, total

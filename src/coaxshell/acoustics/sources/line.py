@@ -29,11 +29,25 @@ _WAKE_RADII = 24
 
 @dataclass(frozen=True)
 class LineGeometry:
-    """True two-dimensional line source at distance R0, K_0(kappa R)/K_0(kappa S): an exact solution of the wave equation."""
+    """True two-dimensional line source at distance R0, K_0(kappa R)/K_0(kappa S): an exact solution of the wave equation.
+
+    Attributes
+    ----------
+    distance, head : float
+        R0 and b, in units of a.
+    reference : float or None
+        S, the distance at which the pressure is the pulse and its clock starts: the head's, R0 - b, for None. An image has its source's.
+    """
 
     distance: float
     head: float = 1.0
+    reference: float | None = None
     along_rays = False
+
+    @property
+    def start(self) -> float:
+        """S."""
+        return self.distance - self.head if self.reference is None else self.reference
 
     def prepare(self, grid: Nodes, modes: Modes) -> SurfaceLoad:
         """Return L_m = -eps_m K_m(kappa R0)/(K_0(kappa S) kappa b K_m'(kappa b)), from Graf's addition theorem (DLMF 10.44.3)."""
@@ -45,9 +59,11 @@ class LineGeometry:
         return load
 
     def _across(self, surface: RadialFunctions) -> ComplexArray:
-        """Return K_m(kappa R0)/(K_m(kappa b) K_0(kappa S)), shape (orders, nodes); exponentials cancel: R0 = b + S."""
+        """Return K_m(kappa R0)/(K_m(kappa b) K_0(kappa S)), shape (orders, nodes); exponentials cancel but for e^{-kappa (R0 - b - S)}."""
         far = RadialFunctions(surface.kappa, self.distance, surface.orders, surface.sparse)
-        to_head = br.kve(0, surface.kappa * (self.distance - self.head))
+        to_head = br.kve(0, surface.kappa * self.start)
+        if self.reference is not None:
+            to_head = to_head * np.exp(surface.kappa * (self.distance - self.head - self.reference))
         if surface.sparse:
             return far.k_sample.over(surface.k_sample) / to_head
         order_zero = br.kve(0, far.argument) / (br.kve(0, surface.argument) * to_head)
@@ -60,26 +76,37 @@ class LineGeometry:
     def free_spectrum(self, s: ComplexArray, x: FloatArray, y: FloatArray) -> ComplexArray:
         """Return K_0(sR)/K_0(sS) at points, shape (points, nodes)."""
         range_, _ = rays(self.distance, x, y)
-        path = np.exp(-np.multiply.outer(path_to(self.distance, x, y, NEAREST, self.head), s))
-        return np.asarray(kve(0, np.multiply.outer(range_, s)) / kve(0, s * (self.distance - self.head)) * path)
+        path = np.exp(-np.multiply.outer(path_to(self.distance, x, y, NEAREST, self.head) + (self.distance - self.head - self.start), s))
+        return np.asarray(kve(0, np.multiply.outer(range_, s)) / kve(0, s * self.start) * path)
 
     def free_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, latest: float) -> LineField:
         """Return the wave at points up to an instant."""
-        return LineField(pulse, self.distance, x, y, latest, self.head)
+        return LineField(pulse, self.distance, x, y, latest, self.head, self.reference)
 
     def spatial_field(self, pulse: TimeFunction, x: FloatArray, y: FloatArray, z: FloatArray, latest: float) -> UniformField:
         """Return the wave at points in space, alike at all z."""
         x, y, _ = np.broadcast_arrays(x, y, z)
-        return UniformField(LineField(pulse, self.distance, x, y, latest, self.head))
+        return UniformField(LineField(pulse, self.distance, x, y, latest, self.head, self.reference))
 
 
 class LineField:
     """A true two-dimensional line source: the pulse itself with its front, plus a tabulated wake."""
 
-    def __init__(self, pulse: TimeFunction, distance: float, x: FloatArray, y: FloatArray, latest: float, head: float = 1.0) -> None:
-        self._pulse, self._start = pulse, distance - head
+    def __init__(
+        self,
+        pulse: TimeFunction,
+        distance: float,
+        x: FloatArray,
+        y: FloatArray,
+        latest: float,
+        head: float = 1.0,
+        reference: float | None = None,
+    ) -> None:
+        self._pulse, self._start = pulse, distance - head if reference is None else reference
         self._range, self._ray = rays(distance, x, y)
         self._path, self._spread = path_to(distance, x, y, NEAREST, head), np.sqrt(self._start / self._range)
+        if reference is not None:
+            self._path = self._path + (distance - head - reference)
         self._wakes: dict[int, Callable[[float, FloatArray], FloatArray]] = {}
         self._latest = latest
 

@@ -21,6 +21,7 @@ from coaxshell.model import (
     PlaneWave,
     PointAbsorber,
     Sampled,
+    Sea,
     Shell,
     SphericalShock,
     SphericalWave,
@@ -99,6 +100,8 @@ def _reference() -> Iterator[str]:
     yield from _entries(PDControl)
     yield "  or of any other law:"
     yield from _entries(Feedback)
+    yield "[sea]: surface, bottom and pressure of the sea around the shells"
+    yield from _entries(Sea)
 
 
 def _kind(model: type[Described]) -> Iterator[str]:

@@ -13,6 +13,7 @@ from coaxshell.model.gains import gains_of
 from coaxshell.model.parts import SystemParts
 from coaxshell.model.places import region_side, shell_phrase
 from coaxshell.model.prefixes import engineering
+from coaxshell.model.sea import Sea
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
 
@@ -33,6 +34,8 @@ def system_line(system: SystemParts) -> str:
     if system.control is not None:
         words = "control by electrodes" if system.control.transducers == "electrodes" else "control"
         parts.append(f"saturating {words}" if system.control.saturation else words)
+    if system.sea is not None:
+        parts.append(f"{system.sea.depth:g} m deep in the sea")
     name = f"{system.name!r}, " if system.name else ""
     return f"<System: {name}{'; '.join(parts)}>"
 
@@ -102,6 +105,8 @@ def _parts(system: SystemParts) -> list[Cells]:
                 each.setdefault(gains_of(system, i), []).append(shell_phrase(i, len(system.shells)))
             laws = "; ".join(f"k_p = {p:g}, k_d = {d:g} on {', '.join(names)}" for (p, d), names in each.items())
         rows.append(("", "control", f"{laws}{stop}"))
+    if system.sea is not None:
+        rows.append(("", "sea", _sea(system.sea)))
     return rows
 
 
@@ -115,6 +120,12 @@ def _law(law: Feedback, names: Sequence[str]) -> str:
     if law.weights is not None:
         parts.append(f"orders up to {law.weights}" if isinstance(law.weights, int) else f"{len(law.weights)} orders weighted")
     return f"{', '.join(parts)} on {', '.join(names)}"
+
+
+def _sea(sea: Sea) -> str:
+    planes = ["reflecting surface"] if sea.surface else []
+    planes += [f"rigid bottom {_length(sea.bottom)} below"] if sea.bottom is not None else []
+    return f"axis {_length(sea.depth)} deep, surface towards {sea.up:g}°, {' and '.join(planes) or 'nothing reflects'}"
 
 
 def _shell_rows(number: int, shells: int, shell: Shell | RigidShell) -> list[Cells]:

@@ -50,6 +50,7 @@ def cross_section(system: SystemParts) -> str:
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{SIZE}" height="{SIZE}" viewBox="{-half:g} {-half:g} {SIZE} {SIZE}" '
             f'role="img" style="max-width:100%;height:auto"><title>{title}</title>',
             *_fluids(system),
+            *_sea(system),
             *_absorbers(system, factor),
             *(element for shell in system.shells for element in _shell(system, shell, factor)),
             *(element for source in system.sources for element in _source(system, source)),
@@ -88,6 +89,37 @@ def _fluids(system: SystemParts) -> Iterator[str]:
         hole = _circle(inner) if inner else ""
         yield f'<path d="{_circle(radius)}{hole}" fill="{_WATER}" fill-rule="evenodd" opacity="{_opacity(fluid):.3g}"/>'
         inner = radius
+
+
+def _sea(system: SystemParts) -> Iterator[str]:
+    """Yield the surface of the sea, the air above it in white, and the bottom, hatched; beyond the picture an arrow with the distance."""
+    sea = system.sea
+    if sea is None:
+        return
+    turn, wide = f'transform="rotate({-sea.up:g})"', SIZE
+    at = _pixels(system, sea.depth)
+    if at < SIZE / 2 * math.sqrt(2.0):
+        waves = "".join("q-4 4 0 8t0 8" for _ in range(2 * wide // 16 + 1))
+        yield f'<g {turn}><path d="M{at:.1f} {-wide}{waves}" fill="none" stroke="{_WATER}" stroke-width="1.6"/>'
+        yield f'<path d="M{at + 3:.1f} {-wide}h{wide}v{2 * wide}h{-wide}Z" fill="#FFFFFF" opacity="0.85"/></g>'
+    if sea.bottom is not None and (down := _pixels(system, sea.bottom)) < SIZE / 2 * math.sqrt(2.0):
+        hatch = "".join(f"M{-down:.1f} {y}l-9 -9" for y in range(-wide, wide, 9))
+        line = f'<path d="M{-down:.1f} {-wide}V{wide}" stroke-width="1.8"/>'
+        yield f'<g {turn} stroke="#6B5B3E">{line}<path d="{hatch}" stroke-width="0.8"/></g>'
+    said = [f"surface {sea.depth:g} m above the axis"] if sea.surface else [f"{sea.depth:g} m deep, surface left out"]
+    said += [f"bottom {sea.bottom:g} m below"] if sea.bottom is not None else []
+    half = SIZE / 2
+    yield f'<text x="{4 - half:g}" y="{half - 17:g}" font-size="10" fill="currentColor" opacity="0.7">{", ".join(said)}</text>'
+    yield from _arrow_up(sea.up)
+
+
+def _arrow_up(up: float) -> Iterator[str]:
+    """Yield a small arrow in the corner that points to the surface."""
+    half = SIZE / 2
+    yield (
+        f'<g transform="translate({half - 16:g} {16 - half:g}) rotate({-up:g})" fill="none" stroke="{_WATER}" stroke-width="1.5">'
+        '<path d="M-9 0H8m-5 -4l5 4l-5 4"/><title>towards the surface</title></g>'
+    )
 
 
 def _circle(radius: float) -> str:

@@ -90,7 +90,7 @@ class Motion:
             tangential=known.tangential,
             axial=None,
             every=every * solution.settings.refinement,
-            incident=partial(incident_on_surface, known.problem, known.grid),
+            incident=partial(incident_on_surface, known.problem, known.grid, returned=known.structure.returned),
             links=known.links,
             actuation=known.actuation,
             solid=known.solid,

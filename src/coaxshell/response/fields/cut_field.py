@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -17,7 +17,9 @@ from coaxshell.response.fields.axial_cut import PlaneField, VolumeField, axial_h
 from coaxshell.response.fields.cross_cut import CircleField, RasterField, is_exact
 from coaxshell.response.fields.cuts import Cut
 from coaxshell.response.fields.evaluate import points_of
+from coaxshell.response.fields.grids import Grid
 from coaxshell.response.fields.inversion import band
+from coaxshell.response.fields.mirrored import Mirrored, flow_back, in_water, mirrored
 from coaxshell.response.fields.request import FieldRequest, Tell
 from coaxshell.response.fields.scattered import Points, raster_radii
 from coaxshell.response.fields.spatial_incident import SpatialIncident
@@ -40,6 +42,20 @@ class _Scattered(Protocol):
     def add(self, out: FloatArray, quantity: SpatialQuantity, chosen: slice) -> None:
         """Add a quantity at a slice of the instants to ``out``, (instants, z, points)."""
         ...
+
+
+class _Felt(NamedTuple):
+    """A scattered field, at which of the axial positions of its cut it is felt, and its points at each."""
+
+    field: _Scattered
+    felt: np.ndarray
+    points: int
+
+    def read(self, quantity: SpatialQuantity, chosen: slice, instants: int) -> FloatArray:
+        """Return a quantity at a slice of the instants, (instants, z felt, points)."""
+        here = np.zeros((instants, self.felt.size, self.points))
+        self.field.add(here, quantity, chosen)
+        return here
 
 
 class CutField:
@@ -67,8 +83,8 @@ class CutField:
         self.cut, self.asked, self.times, self.quantities = cut, asked, times, tuple(quantities)
         self._problem = spatial.problem
         self._grid = band(laplace_grid(spatial.settings), asked.resolution)
-        self._felt: np.ndarray | slice = slice(None)
-        self._scattered = None if asked.part == "incident" else self._solved(spatial)
+        self._scattered = None if asked.part == "incident" else self._solved(spatial, cut)
+        self._sent_back = [] if asked.part == "incident" else self._images(spatial)
         self._incident = self._of_sources() if asked.part in ("total", "incident") else None
 
     def values(self, chosen: slice = slice(None)) -> list[FloatArray]:
@@ -77,17 +93,40 @@ class CutField:
         found = [np.zeros((times.size, self.cut.z.size, self.cut.points)) for _ in self.quantities]
         for quantity, out in zip(self.quantities, found, strict=True):
             if self._scattered is not None:
-                here = np.zeros((times.size, self.cut.z[self._felt].size, self.cut.points))
-                self._scattered.add(here, quantity, chosen)
-                out[:, self._felt] = here
+                out[:, self._scattered.felt] = self._scattered.read(quantity, chosen, times.size)
+        for place, scattered in self._sent_back:
+            self._add_sent_back(found, times, chosen, place, scattered)
         if self._incident is not None:
             self._add_incident(found, times, *self._incident)
+        if self._problem.planes is not None:
+            dry = ~in_water(self._problem, self.cut.grid.radius, self.cut.grid.angle)
+            for out in found:
+                out[..., dry] = 0.0
         return found
 
-    def _solved(self, spatial: SpatialSolution) -> _Scattered | None:
-        """Return the scattered field, None where there is none yet."""
-        cut, asked, times, quantities = self.cut, self.asked, self.times, self.quantities
-        waves, self._felt = cut_waves(spatial, self._grid, cut.z, float(times.max()), asked)
+    def _images(self, spatial: SpatialSolution) -> list[tuple[Mirrored, _Felt]]:
+        """Return what the planes of the sea send back of the scattered wave: where it is read, and its field there."""
+        cut, grid, found = self.cut, self.cut.grid, []
+        for place in mirrored(self._problem, grid.radius, grid.angle, self.times, self.asked.resolution):
+            there = Grid(False, grid.axes, place.radius, place.angle)
+            scattered = self._solved(spatial, Cut("across" if cut.kind == "across" else "along", there, cut.z, None))
+            if scattered is not None:
+                found.append((place, scattered))
+        return found
+
+    def _add_sent_back(self, found: list[FloatArray], times: FloatArray, chosen: slice, place: Mirrored, scattered: _Felt) -> None:
+        planes = self._problem.planes
+        assert planes is not None
+        read = {quantity: scattered.read(quantity, chosen, times.size) for quantity in self.quantities}
+        if "radial" in read:
+            read["radial"], read["angular"] = flow_back(planes, place, self.cut.grid.angle, (read["radial"], read["angular"]))
+        for quantity, out in zip(self.quantities, found, strict=True):
+            out[:, scattered.felt[:, None], place.at] += place.image.sign * read[quantity]
+
+    def _solved(self, spatial: SpatialSolution, cut: Cut) -> _Felt | None:
+        """Return the scattered field on a cut, None where there is none yet."""
+        asked, times, quantities = self.asked, self.times, self.quantities
+        waves, felt = cut_waves(spatial, self._grid, cut.z, float(times.max()), asked)
         if waves is None:
             return None
         points = points_of(cut.grid)
@@ -98,14 +137,15 @@ class CutField:
         tell: Tell = (lambda _: None) if asked.progress is None else (lambda share: asked.progress(share, "field"))  # type: ignore[misc]
         if cut.kind == "along":
             lines = lines_of(waves, asked, cut.grid, times)
-            return PlaneField(axial_histories(waves, lines, cut.points, times, quantities, tell))
+            return _Felt(PlaneField(axial_histories(waves, lines, cut.points, times, quantities, tell)), felt, cut.points)
         if cut.kind == "volume":
             rings = rings_of(waves, asked, cut.grid.radii, times)
             rows = rings[-1].rows.stop if rings else 0
-            return VolumeField(axial_histories(waves, rings, rows, times, quantities, tell), rings, cut.grid.axes[1])
+            volume = VolumeField(axial_histories(waves, rings, rows, times, quantities, tell), rings, cut.grid.axes[1])
+            return _Felt(volume, felt, cut.points)
         if exact:
-            return CircleField.solved(waves, asked, points, times, quantities, tell)
-        return RasterField.solved(waves, asked, cut.grid, times, quantities, tell)
+            return _Felt(CircleField.solved(waves, asked, points, times, quantities, tell), felt, cut.points)
+        return _Felt(RasterField.solved(waves, asked, cut.grid, times, quantities, tell), felt, cut.points)
 
     def _of_sources(self) -> tuple[np.ndarray, SpatialIncident]:
         """Return the incident waves outside the outermost shell, at which points of a section: exact, (z, points)."""

@@ -18,6 +18,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.response.fields.grids import Grid, grid_of, labelled
 from coaxshell.response.fields.incident import Incident
 from coaxshell.response.fields.inversion import band
+from coaxshell.response.fields.mirrored import flow_back, in_water, mirrored
 from coaxshell.response.fields.modal_field import Quantity
 from coaxshell.response.fields.request import FieldRequest, request, require_room, when_of
 from coaxshell.response.fields.scattered import Points, add_exact, add_gridded, grouped, raster_radii
@@ -49,7 +50,7 @@ def _exact(spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, points: Poin
 def evaluate(
     spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
 ) -> list[FloatArray]:
-    """Return dimensionless quantities at all points and times, each of shape (times, points)."""
+    """Return dimensionless quantities at all points and times, each of shape (times, points); 0 above the surface of the sea."""
     points = points_of(grid)
     exact = _exact(spectra, asked, grid, points)
     results = []
@@ -66,11 +67,38 @@ def evaluate(
             else:
                 add_gridded(out, spectra, asked, (grid.radius, grid.angle), times, quantity, tell)
         results.append(out)
+    if asked.part != "incident":
+        _add_mirrored(results, spectra, asked, grid, times, quantities)
     if asked.part in ("total", "incident"):
         add_incident(results, spectra, asked, grid, times, quantities)
+    if spectra.problem.planes is not None:
+        dry = ~in_water(spectra.problem, grid.radius, grid.angle)
+        for out in results:
+            out[:, dry] = 0.0
     if asked.progress is not None:
         asked.progress(1.0, "field")
     return results
+
+
+def _add_mirrored(
+    results: list[FloatArray], spectra: SolvedSpectra, asked: FieldRequest, grid: Grid, times: FloatArray, quantities: tuple[Quantity, ...]
+) -> None:
+    """Add what the planes of the sea send back of the scattered wave, read where each image shows it."""
+    planes = spectra.problem.planes
+    for place in mirrored(spectra.problem, grid.radius, grid.angle, times, asked.resolution):
+        points = grouped(place.radius, place.angle)
+        exact = points.radius.size <= raster_radii(spectra.problem, asked, points.radius)
+        read: dict[Quantity, FloatArray] = {}
+        for quantity in quantities:
+            out = read[quantity] = np.zeros((times.size, place.at.size))
+            if exact:
+                add_exact(out, spectra, asked, points, times, quantity, lambda _: None)
+            else:
+                add_gridded(out, spectra, asked, (place.radius, place.angle), times, quantity, lambda _: None)
+        if "radial" in read and planes is not None:
+            read["radial"], read["angular"] = flow_back(planes, place, grid.angle, (read["radial"], read["angular"]))
+        for quantity, result in zip(quantities, results, strict=True):
+            result[:, place.at] += place.image.sign * read[quantity]
 
 
 def add_incident(

@@ -51,7 +51,7 @@ class Incident:
 
     def __init__(self, problem: Problem, x: FloatArray, y: FloatArray, latest: float, smooth: LaplaceGrid | None = None) -> None:
         self._size = x.size
-        sources = zip(problem.system.sources, problem.sources, strict=True)
+        sources = zip(problem.emitters, problem.sources, strict=True)
         self._waves = [_wave(problem, source, geometry, x, y, latest, smooth) for source, geometry in sources] if x.size else []
 
     def pressure(self, time: float) -> FloatArray:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -43,6 +43,8 @@ class WallSlopes:
 
     inner: ComplexArray | None
     outer: ComplexArray | None
+    returned: ComplexArray | None = None
+    """In the exterior, at its inner wall: of what the planes of the sea send back, regular around the shells."""
 
 
 def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part: str) -> WallSlopes | None:
@@ -50,7 +52,7 @@ def wall_slopes(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part:
     radial = RadialBasis(spectra.modes, grid.nodes)
 
     def incident() -> ComplexArray:
-        return incident_on_surface(spectra.problem, grid, radial)[1]
+        return incident_on_surface(spectra.problem, grid, radial, spectra.structure.returned)[1]
 
     inner, outer = (faces[..., : grid.nodes.size] for faces in spectra.face_motion)
     return region_slopes(region, part, inner, incident, radial, outer)
@@ -135,7 +137,9 @@ class Transfer:
         radial = RadialBasis(Modes.up_to(modes.max_order + 1, modes.wavenumber), nodes)  # one more: slopes need the next order
         self.kappa = radial.modes.kappa(region.fluid.slowness, nodes)
         self._inner = radial(region.fluid.slowness, region.inner) if region.index > 0 else None
-        self._outer = radial(region.fluid.slowness, region.outer) if not region.exterior else None
+        standing_from = region.inner if slopes.returned is not None else region.outer
+        beyond = region.exterior and slopes.returned is None
+        self._outer = None if beyond else radial(region.fluid.slowness, standing_from)
         self.standing, self.outgoing = self._amplitudes(slopes)
         driven = self.standing if self.standing is not None else self.outgoing
         assert driven is not None
@@ -144,6 +148,10 @@ class Transfer:
     def _amplitudes(self, slopes: WallSlopes) -> tuple[ComplexArray | None, ComplexArray | None]:
         """Return A and B, each (parities, M + 1, nodes) or None."""
         inner, outer, keep = self._inner, self._outer, slice(0, self.max_order + 1)
+        if slopes.returned is not None:
+            assert inner is not None
+            assert slopes.inner is not None
+            return slopes.returned * inner.disc[keep], slopes.inner * inner.exterior[keep]
         if inner is None or outer is None:
             standing = None if outer is None or slopes.outer is None else slopes.outer * outer.disc[keep]
             outgoing = None if inner is None or slopes.inner is None else slopes.inner * inner.exterior[keep]
@@ -291,9 +299,20 @@ class ModalField:
         return result
 
 
-def modal_field(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part: str) -> ModalField | None:
-    """Return the field of a region; None where the part vanishes."""
+def modal_field(spectra: SolvedSpectra, grid: LaplaceGrid, region: Region, part: str, *, sent_back: bool = False) -> ModalField | None:
+    """Return the field of a region; None where the part vanishes.
+
+    With what the planes of the sea send back around the shells if that is asked for: it is one with the rest within the nearest of them.
+    """
     slopes = wall_slopes(spectra, grid, region, part)
     if slopes is None:
         return None
+    returned = spectra.structure.returned
+    if sent_back and region.exterior and returned is not None and part in ("total", "scattered"):
+        surface = RadialBasis(spectra.modes, grid.nodes)(1.0, spectra.problem.head)
+        regular = returned[..., : grid.nodes.size] / (surface.disc - surface.exterior)
+        assert slopes.inner is not None
+        missing = slopes.inner.shape[0] - regular.shape[0]
+        regular = np.concatenate([regular, np.zeros_like(slopes.inner[: max(0, missing)])])
+        slopes = replace(slopes, returned=regular)
     return ModalField(region, Transfer(region, slopes, grid.nodes, spectra.modes), grid)

@@ -285,7 +285,10 @@ def domain_of(problem: Problem, name: str | int, radius: float | None) -> Domain
         if radius is not None:
             raise InputError("radius", f"{radius!r} is not allowed for the region {name!r}", "only the exterior has a radius to choose")
         return Domain(region, region.outer)
-    outer = EXTERIOR_RADIUS if radius is None else positive("radius", radius, "a")
+    nearest = np.inf if problem.planes is None else problem.planes.nearest
+    outer = min(EXTERIOR_RADIUS, nearest) if radius is None else positive("radius", radius, "a")
+    if outer > nearest:
+        raise InputError("radius", f"{outer:g} reaches beyond the surface or the bottom of the sea", f"give at most {nearest:g}")
     if outer <= region.inner:
         raise InputError("radius", f"{outer:g} is not outside the outermost shell", f"give more than {region.inner:g}")
     return Domain(region, outer)

@@ -89,7 +89,7 @@ def labelled_rms(
 def _mean_square(spectra: SolvedSpectra, asked: FieldRequest, domain: Domain, times: FloatArray) -> FloatArray:
     """Return the mean square of the dimensionless pressure over a domain, shape (times,)."""
     radii, weights = domain.rule(asked.resolution)
-    field = modal_field(spectra, band(spectra.grid, asked.resolution), domain.region, asked.part)
+    field = modal_field(spectra, band(spectra.grid, asked.resolution), domain.region, asked.part, sent_back=True)
     weight = mode_filter(asked.filter, spectra.modes.max_order)[:, None]
     points = points_around(weight.size) if domain.region.exterior else 0
     block = max(1, int(asked.memory / 4 / (8 * times.size * (4 * weight.size + 3 * points))))

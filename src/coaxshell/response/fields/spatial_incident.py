@@ -33,9 +33,7 @@ class SpatialIncident:
         self, problem: Problem, x: FloatArray, y: FloatArray, z: FloatArray, latest: float, smooth: LaplaceGrid | None = None
     ) -> None:
         self._size = x.size
-        self._waves = [
-            self._wave(problem, i, source, (x, y, z), latest, smooth) for i, source in enumerate(problem.system.sources) if x.size
-        ]
+        self._waves = [self._wave(problem, i, source, (x, y, z), latest, smooth) for i, source in enumerate(problem.emitters) if x.size]
 
     @staticmethod
     def _wave(

@@ -7,6 +7,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
@@ -23,6 +24,8 @@ from coaxshell.response.fields.spatial_waves import cut_waves
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import laplace_grid
+from coaxshell.solver.rounds import rounds
+from coaxshell.solver.scaling import Problem
 
 
 class SpatialRmsOptions(TypedDict, total=False):
@@ -71,12 +74,23 @@ def spatial_pressure_rms(
     problem, run = spatial.problem, laplace_grid(spatial.settings)
     domain, position = domain_of(problem, region, radius), float(axis("z", z)[0])
     when = when_of(default_instants(run.time) if time is None else time, float(run.time[-1]), problem.scales)
+    _require_nothing_sent_back(problem, domain, float(when.max()))
     square = _mean_square(spatial, asked, domain, position, np.atleast_1d(when))
     found = labelled_rms(problem, asked, domain, when, square, region)
     meaning = {"units": "a", "long_name": MEANINGS["z"]}
     return found.assign_coords(
         z=xr.Variable((), position, meaning), z_metres=xr.Variable((), position * problem.scales.length, meaning | {"units": "m"})
     )
+
+
+def _require_nothing_sent_back(problem: Problem, domain: Domain, latest: float) -> None:
+    """Refuse means of the exterior once the planes of the sea send the scattered wave back into it: single points know it, means do not."""
+    if problem.planes is None or not domain.region.exterior:
+        return
+    until = rounds(problem, latest).start + 2.0 * problem.planes.nearest - domain.outer - problem.head
+    if latest > until:
+        found = f"{latest:.4g} is after t = {until:.4g}, when what the shells scatter is back within {domain.outer:g} a from the sea"
+        raise InputError("time", found, "ask for earlier instants or a smaller radius, or average the pressure at points")
 
 
 def _mean_square(spatial: SpatialSolution, asked: FieldRequest, domain: Domain, z: float, times: FloatArray) -> FloatArray:

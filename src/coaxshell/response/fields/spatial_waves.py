@@ -111,7 +111,7 @@ class SpatialWaves:
     @property
     def parities(self) -> int:
         """How many parities the motion around the circle has."""
-        return max(source_parities(self.problem.system.sources), 1 if self.forces is None else self.forces.parities)
+        return max(source_parities(self.problem), 1 if self.forces is None else self.forces.parities)
 
     def sets(self, block: slice) -> list[WaveSet]:
         """Return all waves at a slice of the nodes."""

@@ -132,6 +132,8 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
     """Return the values of a quantity, shape (F, ...), or (...) for a single frequency."""
     if dimensions not in (2, 3):
         raise InputError("dimensions", f"{shown(dimensions)} is not allowed", "must be one of 2, 3")
+    if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
+        raise InputError("sea", "an answer at a frequency is that of unbounded water", "leave the sea out, or give it surface = false")
     if dimensions == 2:
         require_two_dimensions(system, Settings())
     transit = system.reference_radius / system.exterior.sound_speed
@@ -227,7 +229,7 @@ def _read(system: SteadySystem, what: Asked, tail: Tail) -> ComplexArray | Float
         if what.per == "incident":
             ones = np.ones(system.grid.nodes.size, np.complex128)
             groups = [SourceGroup(group.geometry, [(source, ones) for source, _ in group.members]) for group in groups]
-        motion = system.under_sources(groups, source_parities(problem.system.sources))
+        motion = system.under_sources(groups, source_parities(problem))
         drive = scales.pressure if what.per == "incident" else 1.0 / scales.time
     steady = Steady(system, motion, tail)
     if what.quantity.kind == "target":

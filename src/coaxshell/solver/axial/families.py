@@ -111,7 +111,7 @@ def wave_sets(
     forces : WallForces, optional
         At the same nodes.
     """
-    a, top, parities = problem.scales.length, sampling.max_order, source_parities(problem.system.sources)
+    a, top, parities = problem.scales.length, sampling.max_order, source_parities(problem)
     spherical: dict[float, list[SourceGroup]] = {}
     uniform: list[SourceGroup] = []
     sets: list[WaveSet] = []

@@ -117,8 +117,8 @@ def line_layout(problem: Problem, sampling: AxialSampling) -> LineLayout:
         If there are point absorbers too, or sources that run along the axis.
     """
     system = problem.system
-    absorbers = absorber_set(problem, system.absorber_list, source_parities(system.sources))
-    pairs = zip(system.sources, problem.sources, strict=True)
+    absorbers = absorber_set(problem, system.absorber_list, source_parities(problem))
+    pairs = zip(problem.emitters, problem.sources, strict=True)
     planes = {axial_position(one) / problem.scales.length for one, wave in pairs if isinstance(wave, SphericalFrontGeometry)}
     origin = planes.pop() if len(planes) == 1 else 0.0
     lattice = _lattice(absorbers.every_angle, sampling.max_order)

@@ -73,7 +73,7 @@ class WaveMotion:
 
     def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return modal pressure and slope dp/dr on the outermost surface as if nothing were there, each (parities, orders, nodes)."""
-        parities = source_parities(self._problem.system.sources)
+        parities = source_parities(self._problem)
         sources = [i for i, family in enumerate(self._families) if family.forces is None]
         found = [np.stack(incident_of(self._families[i].groups, parities, self._grid, basis)) for i in sources]
         pressure, slope = _superposed(self._shares[sources], found, self._around)
@@ -102,7 +102,7 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
     forces : WallForces, optional
         Of absorbers, at these wavenumbers and nodes.
     """
-    origin, around = np.zeros(1), source_parities(problem.system.sources)
+    origin, around = np.zeros(1), source_parities(problem)
     around = around if forces is None else max(around, forces.parities)
     blocks = node_blocks(grid, sampling.max_order)
     per_block = [

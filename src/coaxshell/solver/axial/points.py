@@ -84,7 +84,7 @@ def point_layout(problem: Problem) -> PointLayout:
     system, a = problem.system, problem.scales.length
     listed = system.point_absorbers
     in_plane = all(axial_position(source) == 0.0 and getattr(source, "inclination", 0.0) == 0.0 for source in system.sources)
-    around = source_parities(system.sources) == 1 and _symmetric(listed, -1.0, 1.0)
+    around = source_parities(problem) == 1 and _symmetric(listed, -1.0, 1.0)
     along = in_plane and _symmetric(listed, 1.0, -1.0)
     images: list[list[int]] = []
     found: dict[tuple[object, ...], int] = {}
@@ -220,7 +220,7 @@ def point_sums(
     motion = np.zeros((carried.count, s.size), np.complex128)
     receptance = np.zeros((classes.moved.size, s.size), np.complex128)
     shares = class_shares(problem, layout, classes, sampling.max_order)
-    shapes = [carried.around(problem, Modes.up_to(sampling.max_order), parity) for parity in range(source_parities(problem.system.sources))]
+    shapes = [carried.around(problem, Modes.up_to(sampling.max_order), parity) for parity in range(source_parities(problem))]
     sets = wave_sets(problem, sampling, carried.z, s)
     apart = not any(waves.modes is sampling.modes for waves in sets)
     done, whole = 0, pair_count(sets) + (sum(modes.count for modes in sampling.modes) if apart else 0)

@@ -175,6 +175,6 @@ def spherical_fronts(problem: Problem) -> list[Front]:
     length, time = problem.scales.length, problem.scales.time
     return [
         Front(getattr(source, "z", 0.0) / length, geometry.distance - geometry.head, source.delay / time)
-        for source, geometry in zip(problem.system.sources, problem.sources, strict=True)
+        for source, geometry in zip(problem.emitters, problem.sources, strict=True)
         if isinstance(geometry, SphericalFrontGeometry)
     ]

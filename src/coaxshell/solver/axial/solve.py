@@ -218,7 +218,7 @@ def require_known(problem: Problem, settings: Settings) -> None:
             "use saturation = false: a warning tells if a voltage at a station exceeds its limit, and two dimensions how much that matters"
         )
         raise InputError("control.saturation", "voltages are cut at their limit in two dimensions alone", told)
-    for source, geometry in zip(system.sources, problem.sources, strict=True):
+    for source, geometry in zip(problem.emitters, problem.sources, strict=True):
         if not isinstance(geometry, PlaneGeometry):
             continue
         for z in settings.stations:

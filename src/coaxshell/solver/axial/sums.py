@@ -47,7 +47,7 @@ def station_sums(
     those left out that are zero at all stations; and "squares", (2, shells, 2, M + 1): mean squares along the axis of W and of the
     strains, |m V - W|^2 + |k U|^2, parities and nodes added up, under the sources [0] and under the forces of absorbers [1].
     """
-    s, parities = grid.nodes[block], source_parities(problem.system.sources)
+    s, parities = grid.nodes[block], source_parities(problem)
     parities = parities if forces is None else max(parities, forces.parities)
     shape = (stations.size, len(problem.shells), parities, sampling.max_order + 1, s.size)
     fields: dict[str, ComplexArray] = {}

@@ -77,7 +77,7 @@ class _Pass:
 
     def at(self, stations: FloatArray) -> ComplexArray:
         """Return the transforms at stations (z in a), shape (stresses, stations, parities, M + 1, nodes)."""
-        blocks, parities = node_blocks(self.grid), source_parities(self.problem.system.sources)
+        blocks, parities = node_blocks(self.grid), source_parities(self.problem)
         per_block = [wave_sets(self.problem, self.sampling, stations, self.grid.nodes[block]) for block in blocks]
         shape = (len(self.asked), stations.size, parities, self.sampling.max_order + 1)
         found = np.zeros((*shape, self.grid.nodes.size), np.complex128)

@@ -23,10 +23,10 @@ _TIMES = 128
 def surface_loads(problem: Problem, grid: LaplaceGrid, max_order: int) -> FloatArray:
     """Return the modal loads on the outermost shell, incident plus rigidly scattered, shape (parities, M + 1, T)."""
     modes = Modes.up_to(max_order)
-    parities = source_parities(problem.system.sources)
+    parities = source_parities(problem)
     loads = np.zeros((parities, modes.count, grid.time.size))
     scattering = scattering_weights(grid, modes)
-    for source, geometry in zip(problem.system.sources, problem.sources, strict=True):
+    for source, geometry in zip(problem.emitters, problem.sources, strict=True):
         if not geometry.along_rays:
             load = _load_by_series(problem, source, geometry, grid, modes)
         else:

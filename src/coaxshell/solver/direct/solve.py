@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
+from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -22,6 +23,7 @@ from coaxshell.solver.finite import numerical_failures
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
+from coaxshell.solver.rounds import rounds
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
@@ -47,6 +49,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     require_mid_surfaces(system)
     problem = dimensionless(system, settings=settings)
     require_steps(problem)
+    _require_no_return(problem, settings.duration)
     grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
     require_room(problem, settings)
     order, warnings = resolve_modes(problem, grid, settings)
@@ -54,7 +57,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
         require_room(problem, replace(settings, modes=order))
     require_stable(problem, order, settings.duration)
     stopwatch.lap("stability of the feedback")
-    links = absorber_set(problem, system.absorber_list, source_parities(system.sources))
+    links = absorber_set(problem, system.absorber_list, source_parities(problem))
     saturate = system.control is not None and system.control.saturation
     with numerical_failures(grid):
         result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)
@@ -86,6 +89,15 @@ def require_steps(problem: Problem) -> None:
     """Raise InputError if a wall is none that is stepped."""
     for wall in problem.shells:
         wall.stiffness(Modes.up_to(0))
+
+
+def _require_no_return(problem: Problem, duration: float) -> None:
+    """Raise InputError if what the shells scatter comes back from the planes of the sea within the run."""
+    planned = rounds(problem, duration)
+    if planned.needed:
+        until = planned.exact_until(0)
+        found = f"what the shells scatter is back from the sea's surface or bottom at t = {until:.4g}, which the direct engine leaves out"
+        raise InputError("sea", found, f'use duration={until:.4g}, or engine="spectral"')
 
 
 def _left_out(problem: Problem, grid: LaplaceGrid, order: int, links: AbsorberSet, result: DirectResult) -> FloatArray:

@@ -79,7 +79,7 @@ def gradient(
     settings = Settings.asked(system, keywords)
     asked = _metric(metric, system)
     fields = fields_of(system, variables)
-    require_gradient(settings, power := power_of(smooth))
+    require_gradient(system, settings, power := power_of(smooth))
     response = None if asked.of_design else simulate(system, settings=settings, progress=progress)
     run = MetricSensitivity(system, asked, power, response)
     return _labelled(run, asked, fields, settings)
@@ -105,8 +105,10 @@ def power_of(smooth: float | None) -> float | None:
     return float(power)
 
 
-def require_gradient(settings: Settings, power: float | None) -> None:
+def require_gradient(system: System, settings: Settings, power: float | None) -> None:
     """Refuse runs that have no gradient: InputError."""
+    if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
+        raise InputError("sea", "what surface and bottom reflect is not run backwards yet", "leave the sea out")
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} has no gradient", 'use engine="spectral"')
     if settings.dimensions != 2:

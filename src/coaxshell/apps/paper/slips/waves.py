@@ -50,7 +50,7 @@ def reversed_diffraction(problem: Problem) -> Problem:
 def printed_potential(problem: Problem, impulse: bool) -> Problem:
     """Return the problem with the printed potential of the incident wave (Eq. 2), with or without the impulse at its front."""
     sources = []
-    for source, geometry in zip(problem.system.sources, problem.sources, strict=True):
+    for source, geometry in zip(problem.emitters, problem.sources, strict=True):
         wave = _spherical(geometry)
         if not isinstance(source.pulse, Exponential):
             raise InputError("source", "has no decay time, and the printed potential is that of a decaying exponential", "give a shock")

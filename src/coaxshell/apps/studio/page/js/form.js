@@ -8,7 +8,7 @@ import { costText, digest, spatial } from "./space.js";
 import { editable, numeral, show } from "./units.js";
 import { capital, inWords, regionSide, shellName, shellPhrase, title } from "./words.js";
 
-const ORDER = ["absorbers", "control", "shells", "source", "fluids", "name"];
+const ORDER = ["absorbers", "control", "shells", "source", "sea", "fluids", "name"];
 const OPEN = new Set(["absorbers", "control"]);
 const KEPT_OPEN = new Map();
 const SAMPLES = new Set(["time", "pressure"]);
@@ -109,6 +109,7 @@ function summary(path, value) {
   if (/^source$/.test(path)) return Array.isArray(value) ? `${value.length} sources` : title(value.type.replace(/-/g, " ").toLowerCase());
   if (path === "resolution") return `${value.modes} orders, step ${value.time_step}`;
   if (/^control$/.test(path) && "numerator" in value) return `H(s) of degree ${[value.numerator].flat().length - 1} over ${[value.denominator ?? 1].flat().length - 1}`;
+  if (/^sea$/.test(path)) return `${show(value.depth, "m", 3)} deep`;
   if (/^control$/.test(path)) return `${show(value.proportional, "", 3)}, ${show(value.derivative, "", 3)}`;
   return value.name ?? value.type ?? "";
 }
@@ -179,7 +180,7 @@ const HINTS = {
   z: 0,
   count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150, numerator: [-0.1, -2e4], denominator: [1],
   distance: 5, peak_pressure: 2.5e4, decay_time: 1.314e-4, width: 1e-4, pressure: 2.5e4, charge_mass: 1, stand_off: 10,
-  density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
+  depth: 20, density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
 };
 
 function union(schema, choices, path, name, value, bare) {

@@ -13,6 +13,7 @@ export function draw(system) {
     const wall = (shell.layers ?? []).reduce((sum, layer) => sum + Number(layer.thickness || 0), 0);
     picture.append(svg("circle", { cx: SIZE.x, cy: SIZE.y, r: shell.radius * scale, fill: "var(--accent-soft)", "fill-opacity": 0.55, stroke: shell.rigid ? "var(--text)" : "var(--current)", "stroke-width": Math.max(wall * scale, shell.rigid ? 2.5 : 1.4) }));
   });
+  picture.append(...planes(system.sea, scale));
   const sources = Array.isArray(system.source) ? system.source : [system.source];
   picture.append(...absorbers(system, shells, scale), ...sources.flatMap((source) => shock(source, outer, scale)));
   by("section").replaceChildren(picture, el("figcaption", {}, caption(system, outer)));
@@ -21,6 +22,17 @@ export function draw(system) {
 function point(radius, degrees) {
   const angle = (degrees * Math.PI) / 180;
   return [SIZE.x + radius * Math.cos(angle), SIZE.y - radius * Math.sin(angle)];
+}
+
+// Surface and bottom of the sea where they are in the picture.
+function planes(sea, scale) {
+  if (!sea) return [];
+  const [up, reach] = [Number(sea.up ?? 90), SIZE.width];
+  const at = (length, colour, name) => {
+    const far = length * scale, [x, y] = point(far, up), [dx, dy] = [Math.sin((up * Math.PI) / 180) * reach, Math.cos((up * Math.PI) / 180) * reach];
+    return Math.abs(far) < reach ? [svg("line", { class: name, x1: x - dx, y1: y - dy, x2: x + dx, y2: y + dy, stroke: colour, "stroke-width": 1.6 })] : [];
+  };
+  return [...at(Number(sea.depth), "var(--accent)", "surface"), ...(sea.bottom ? at(-Number(sea.bottom), "var(--muted)", "bottom") : [])];
 }
 
 export function placed(system) {
@@ -65,7 +77,7 @@ function head(x, y, angle) {
 function caption(system, outer) {
   const source = Array.isArray(system.source) ? system.source[0] : system.source;
   const distance = source.distance ?? (source.stand_off ? source.stand_off + outer : null);
-  return `outermost radius ${show(outer, "m")}, source ${distance ? `at ${show(distance, "m")}` : "far away"} (${show(Number(source.angle) || 0, "deg")})`;
+  return `outermost radius ${show(outer, "m")}, source ${distance ? `at ${show(distance, "m")}` : "far away"} (${show(Number(source.angle) || 0, "deg")})${system.sea ? `, surface ${show(Number(system.sea.depth), "m")} above` : ""}`;
 }
 
 function words(system) {
