@@ -158,3 +158,11 @@ def test_what_is_not_reflected_is_told() -> None:
     assert not [text for text in cx.simulate(system, **SETTINGS).warnings if text.startswith("sea")]
     close = cx.simulate(system.replace(sea=cx.Sea(depth=1.01)), duration=1.5, time_step=0.05, modes=2)
     assert any("more than the 64 that are added up; it is exact until t = 1.3 " in text for text in close.warnings)
+
+
+def test_what_knows_no_reflections_says_so() -> None:
+    near = BARE.replace(sea=cx.Sea(depth=3.0))
+    with pytest.raises(InputError, match="unbounded water"):
+        cx.frequency_response(near, frequency=100.0, quantity="stress", shell="inner", angle=0.0)
+    with pytest.raises(InputError, match="not run backwards"):
+        cx.gradient(near, metric="inner.rms_stress", variables=["shells[0].radius"], duration=1.0, time_step=0.05, modes=4)
