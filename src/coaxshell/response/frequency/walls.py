@@ -99,7 +99,7 @@ def _of_motion(steady: Steady, shell: int, wall: ShellModel, gain: Gain) -> Comp
 def _demanded(steady: Steady, shell: int, wall: ShellModel) -> ComplexArray:
     """Return the modal control voltage, V."""
     assert wall.gains is not None
-    return np.asarray(wall.gains.at(steady.s) * _of_motion(steady, shell, wall, wall.sensor_gain(steady.system.modes)))
+    return np.asarray(wall.gains.at(steady.s, steady.system.modes) * _of_motion(steady, shell, wall, wall.sensor_gain(steady.system.modes)))
 
 
 def _within(steady: Steady, shell: int, wall: ElasticWall, what: Shown, depth: float) -> ComplexArray:
