@@ -290,3 +290,19 @@ def test_controlled_shells_answer(preset):
     s = 2j * np.pi * np.array([100.0, 500.0]) * cx.presets.load(preset).reference_radius / cx.presets.load(preset).exterior.sound_speed
     law = np.broadcast_to(control.proportional, 1)[0] + np.broadcast_to(control.derivative, 1)[0] * s
     np.testing.assert_allclose(volts, law[:, None] * sensed.values, rtol=1e-9)
+
+
+def test_a_law_with_delay_filter_and_weights_answers_by_its_own_h():
+    case, frequency = cx.presets.load("electrodes"), np.array([100.0, 500.0])
+    law = cx.Feedback(
+        numerator=[2e-4], denominator=[1e-4, 1.0], delay="1 us", amplifier_corner="20 kHz", weights=[1.0] * 5, transducers="electrodes"
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cx.PhysicsWarning)
+        volts, sensed = (
+            cx.frequency_response(case.replace(control=law), frequency, f"{name}_voltage", shell="inner", modes=4)
+            for name in ("actuator", "sensor")
+        )
+    s = 2j * np.pi * frequency
+    expected = 2e-4 / (1.0 + 1e-4 * s) * np.exp(-1e-6 * s) / (1.0 + s / (2.0 * np.pi * 20e3))
+    np.testing.assert_allclose(volts, expected[:, None] * sensed.values, rtol=1e-9)
