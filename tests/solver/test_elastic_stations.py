@@ -137,18 +137,22 @@ def test_histories_are_those_of_their_depth():
 
 
 def test_reciprocity_of_two_points_off_each_other_s_plane():
-    """A source at one point gives another what a source there gives the first, distances of their fronts counted."""
+    """A source at one point gives another what a source there gives the first, distances of their fronts counted.
+
+    To what orders and wavenumbers leave out, whatever the time step and the axial period: 1e-4 up to order 4, 2e-6 up to 6, 5e-8 up to 8,
+    1e-10 up to 10.
+    """
     places, times = ((3.0, 0.0, 0.0), (2.0, 50.0, 0.6)), np.array([7.0, 7.5])
     answers = []
     for (r, angle, z), (far, around, along) in (places, places[::-1]):
         walls = system(cx.SphericalWave(distance=r, angle=angle, z=z, pulse=BROAD))
         start = r - walls.head_radius
-        found = cx.simulate(walls, **{**SPACE, "duration": 6.6, "time_step": 4e-2, "modes": 6})
+        found = cx.simulate(walls, **{**SPACE, "duration": 6.6, "time_step": 4e-2, "modes": 8})
         asked = times - start
         at = found.pressure(radius=[far], angle=[around], z=along, time=asked, part="scattered", time_resolution=4e-2)
         answers.append(np.asarray(at).squeeze() / start)
     assert np.abs(answers[0]).max() > 1.0
-    np.testing.assert_allclose(answers[0], answers[1], rtol=1e-3)
+    np.testing.assert_allclose(answers[0], answers[1], rtol=2e-7)
 
 
 def test_energy_over_the_whole_length_closes():

@@ -79,5 +79,11 @@ def spherical_bare() -> dict[str, FloatArray]:
         return dict(stored)
 
 
+def elastic_thick() -> dict[str, FloatArray]:
+    """Return the histories of reference/elastic_thick_plane.npz: t, and hoop, axial (Pa), w (m), each (shell, 1, angle, time)."""
+    with _data("elastic_thick_plane.npz").open("rb") as file, np.load(file) as stored:
+        return dict(stored)
+
+
 def _data(name: str) -> Any:
     return resources.files("coaxshell.apps.verification").joinpath("data").joinpath(name)

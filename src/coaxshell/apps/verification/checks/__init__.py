@@ -17,6 +17,7 @@ ORDER = (
     "spherical_reference",
     "independent_stations",
     "stations",
+    "exact_walls",
     "inclined_waves",
     "engines",
     "energy",

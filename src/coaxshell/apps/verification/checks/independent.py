@@ -39,6 +39,7 @@ def configurations() -> dict[str, tuple[System, float]]:
     layered = bare.replace(shells=[wall.replace(radius=0.4), wall.replace(radius=0.7), outer], fluids=fluids)
     return {
         "bare": (bare, 5e-7),
+        "bare, fluids at the true faces": (bare.replace(shells=[shell.replace(wetted="faces") for shell in bare.shells]), 5e-7),
         "active control": (bare.replace(control=GAINS), 5e-7),
         "saturated control": (bare.replace(control=GAINS.replace(saturation=True)), 4e-4),
         "one absorber with a strong cubic spring": (bare.replace(absorbers=[Absorber(**strong, angle=0)]), 3e-5),
