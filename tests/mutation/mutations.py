@@ -253,7 +253,7 @@ MUTATIONS = (
     Mutation(
         "absorber-radius",
         "solver/interface/absorbers.py",
-        "max(absorbers.count, 1)] / problem.shells[i].radius)",
+        "max(absorbers.count, 1)] / problem.surfaces[i].radius)",
         "max(absorbers.count, 1)])",
         "line force to pressure: 1/R of the shell it acts on",
         "solver/test_absorbers.py",

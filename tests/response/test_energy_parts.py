@@ -38,7 +38,7 @@ def run_of(problem: Problem) -> Any:
 def spectra_of(problem: Problem, normal: np.ndarray) -> SolvedSpectra:
     """Return the transforms of a run without absorbers in which the walls have no tangential motion."""
     structure, nothing = StructureSpectra(problem, GRID, Modes.up_to(M)), np.zeros((0, 2, GRID.time.size))
-    return SolvedSpectra(structure, absorber_set(problem, (), 1), normal, np.zeros_like(normal), nothing, nothing[:, 0])
+    return SolvedSpectra(structure, absorber_set(problem, (), 1), normal, np.zeros_like(normal), None, nothing, nothing[:, 0])
 
 
 @pytest.fixture

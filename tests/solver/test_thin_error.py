@@ -87,7 +87,7 @@ def test_thin_walls_far_from_exact_ones_are_warned_of():
     at_faces = warned(told(BARE, wetted="faces"))
     assert at_faces == [text for text in at_faces if "with fluids at its faces" in text and "wetted" not in text]
     active = warned(cx.presets.load("active"))
-    assert active[0].endswith('theory = "elastic", which knows neither absorbers nor feedback, to see by how much')
+    assert active[0].endswith('theory = "elastic", which does not know feedback, to see by how much')
 
 
 def test_what_is_no_thin_wall_or_near_an_exact_one_is_not_warned_of():

@@ -42,6 +42,8 @@ class _Link(Described):
     """Cubic stiffness k_nl of each link (N/m^3 per metre of length)."""
     inner_shell: Count = 0
     """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
+    footprint: Length | None = None
+    """Arc of each wall that it holds (m), in two dimensions; unless given the wall's thickness on exact walls, a line on thin ones."""
 
     @model_validator(mode="after")
     def _determined(self) -> Self:

@@ -102,7 +102,7 @@ def _absorbers(system: SystemParts) -> None:
         for end in (inner, inner + 1):
             if isinstance(system.shells[end], RigidShell):
                 raise InputError(f"{where}.inner_shell", f"{inner} links shells[{end}], which is rigid", "must link two elastic shells")
-        if isinstance(absorber, PointAbsorber) and absorber.footprint is not None:
+        if absorber.footprint is not None:
             around = 2.0 * math.pi * system.shells[inner].radius
             if absorber.footprint > around:
                 found = f"{absorber.footprint:g} m is more than the circumference of shells[{inner}]"

@@ -39,7 +39,7 @@ def _as_sources(value: Any) -> Any:
 def _as_absorber(value: Any) -> Absorber | AbsorberRing | PointAbsorber:
     if isinstance(value, Absorber | AbsorberRing | PointAbsorber):
         return value
-    if isinstance(value, Mapping) and not {"z", "footprint"}.isdisjoint(value):
+    if isinstance(value, Mapping) and "z" in value:
         return PointAbsorber.model_validate(dict(value))
     if isinstance(value, Mapping) and not {"count", "offset"}.isdisjoint(value):
         if "angle" in value:

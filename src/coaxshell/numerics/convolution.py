@@ -167,3 +167,18 @@ class HistorySum:
         spectrum = fft.rfft(recent, 2 * length, axis=-1, workers=workers)
         total = np.einsum("ijmk,jhmk->ihmk", self._table.transform(length), spectrum)
         return np.asarray(fft.irfft(total, 2 * length, axis=-1, workers=workers)[..., length:])
+
+
+def summed_weights(weights: FloatArray, every: int, steps: int) -> FloatArray:
+    """Return step weights for steps *every* times longer: a hat as wide is the sum of narrower ones."""
+    whole = weights[..., : weights.shape[-1] // every * every]
+    falling = 1.0 - np.arange(every) / every  # from each long step on; what lies before it rises with the rest of 1
+    parts = whole.reshape(*whole.shape[:-1], -1, every) @ np.stack([falling, 1.0 - falling], axis=1)
+    total = np.zeros((*weights.shape[:-1], steps))
+    whole_steps = min(steps, parts.shape[-2])
+    total[..., :whole_steps] = parts[..., :whole_steps, 0]
+    total[..., 1:] += parts[..., : steps - 1, 1]
+    rest = weights[..., whole.shape[-1] :]
+    if whole_steps < steps:
+        total[..., whole_steps] += rest @ falling[: rest.shape[-1]]
+    return total

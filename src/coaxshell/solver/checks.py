@@ -18,6 +18,7 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.records.measures import energy_above, share_below
 from coaxshell.model.sources import UnderwaterExplosion
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver import wetted_surfaces
@@ -115,7 +116,8 @@ def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
     if not solved.marched or links.count == 0:
         return []  # solved exactly, or none
     points = InterfacePoints(solved.problem, links, solved.modes)
-    local = 2.0 / step * np.diag(points.immediate(solved.passive.kernels.present)).reshape(2, links.count).max(axis=0)
+    present = _masses(solved.problem, step, solved.modes) if solved.problem.two_faced else solved.passive.kernels.present
+    local = 2.0 / step * np.diag(points.immediate(present)).reshape(2, links.count).max(axis=0)
     force = np.abs(solved.force).max(axis=(1, 2))
     peak = np.zeros(links.count)
     np.maximum.at(peak, links.member, force)
@@ -130,6 +132,12 @@ def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
         f"absorbers: the stiffest vibrates at {fastest:.3g} per transit on the shell's own mass, {fastest * step:.2g} radians a step, "
         f"more than {RESOLVED_ANGLE:g}; use time_step = {refinement * RESOLVED_ANGLE / fastest:.2g} or refinement = {factor}"
     ]
+
+
+def _masses(problem: Problem, step: float, modes: Modes) -> FloatArray:
+    """Return the weights at lag 0 of surfaces that bear the mass of their walls alone: what a face yields at once does not vibrate."""
+    mobility = [0.5 * step / problem.shells[surface.shell].mass for surface in problem.surfaces]
+    return np.asarray(np.diag(mobility)[:, :, None] * np.ones(modes.count))
 
 
 def actuators(*motions: ModalSolution) -> list[str]:
@@ -245,6 +253,8 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     changed = " without saturation" if control is not None and control.saturation else ""
     if control is not None and control.transducers == "electrodes":
         changed = ' with transducers="paper"'
+    if problem.two_faced and problem.system.absorber_list:
+        changed += " without absorbers"
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"
@@ -280,8 +290,9 @@ def thin_walls(problem: Problem, duration: float) -> list[str]:
             f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, error.at_faces, THIN_LIMIT)
         )
         remedies = [f'wetted = "faces" (about {faces} %)'] if error.at_faces < FACES_HELP * error.value else []
-        plain = system.control is None and not system.absorber_list
-        remedies.append('theory = "elastic"' + ("" if plain else ", which knows neither absorbers nor feedback, to see by how much"))
+        unknown = [] if system.control is None else ["feedback"]
+        unknown += ["absorbers in three dimensions"] if problem.dimensions == 3 and (system.absorber_list or system.point_absorbers) else []
+        remedies.append('theory = "elastic"' + (f", which does not know {' and '.join(unknown)}, to see by how much" if unknown else ""))
         where = "faces" if error.wetted == "faces" else "mid-surface"
         found.append(
             f"{shell_phrase(error.shell, len(problem.shells))}: thin-wall theory with fluids at its {where} leaves its hoop stress about "

@@ -14,6 +14,7 @@ from dataclasses import replace
 from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS
+from coaxshell.solver.faced_forces import PARTS
 from coaxshell.solver.run_size import COMPLEX, REAL, Size, size_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import MAX_MODES, Settings
@@ -121,14 +122,14 @@ def _spectral_bytes(size: Size) -> float:
     n, plane = size.shells, size.plane
     linear = (2.0 + size.solids) * n * size.source_parities * plane
     linear *= 2.0 if size.reflections else 1.0  # a round's own and the one before
-    structure = linear + ((n * n + n) * plane if size.linked else 0.0)
+    structure = linear + ((size.surfaces**2 + (0 if size.solids else n)) * plane if size.linked else 0.0)
     ports = 1.5 * (2.0 * size.solids - 1.0) * n * COMPLEX * _BLOCK_PAIRS * WORKERS if size.solids else 0.0  # rows of what solids answer
     solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes) + ports
     tabulated = structure + size.tabulated * (9.0 * plane + 35.0 * size.orders * size.nodes)
     stages = [solved, tabulated, structure + COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
     held = structure
     if size.linked:
-        forced = 2.0 * n * size.parities * plane
+        forced = (2.0 + 2.0 * size.solids) * n * size.parities * plane  # of solids all that forces move, and all together
         forces = REAL * 6.0 * size.points * size.instants
         working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
         stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.parities * plane]
@@ -143,7 +144,7 @@ def _spectral_bytes(size: Size) -> float:
 
 def _marched_bytes(size: Size) -> tuple[float, float]:
     """Return what the interface march works with, and what of it stays."""
-    n, outputs = size.shells, size.shells + size.controlled
+    n, outputs = size.surfaces, size.surfaces + size.controlled
     pairs = outputs * n
     unknowns = size.points + size.controlled * size.parities * size.orders
     length = 1
@@ -157,7 +158,9 @@ def _marched_bytes(size: Size) -> tuple[float, float]:
     matrices = REAL * (8.0 * (length * unknowns) ** 2 + pairs * size.orders * (length**2 + 340.0))
     circle = 128.0 * (size.parities * size.orders) ** 2 if size.controlled else 0.0
     transforms = 1.5 * COMPLEX * size.orders * longest * (pairs + n * size.parities)
-    making = 4.5 * size.plane  # one pair of shells at a time
+    making = 4.5 * size.plane  # one pair of surfaces at a time
+    if size.solids:
+        making = PARTS * (n * n + 4.5) * size.plane  # of all, at finer steps
     return max(left + state + matrices + circle + transforms, kernels + making), left
 
 

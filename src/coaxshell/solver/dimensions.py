@@ -30,6 +30,9 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
     _require_plane_electrodes(system, dimensions)
+    if dimensions == 3 and any(one.footprint is not None for one in system.absorber_list):
+        problem = "the footprint of a line absorber is known in two dimensions only"
+        raise InputError("absorbers", problem, "leave footprint out, use dimensions=2, or point absorbers, with z")
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
         return
@@ -42,9 +45,10 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     if system.point_absorbers:
         problem = f"a point force has no finite displacement on shells[{solid}], an elastic wall"
         raise InputError("absorbers", problem, f"leave them out, {thin}")
-    if system.absorber_list:
-        problem = f"a line force has no finite displacement on shells[{solid}], an elastic wall"
-        raise InputError("absorbers", problem, f"leave them out, {thin}")
+    if system.absorber_list and dimensions == 3:
+        raise InputError(
+            "absorbers", f"lines are held on shells[{solid}], an elastic wall, in two dimensions only", f"use dimensions=2, {thin}"
+        )
     if system.control is not None:
         raise InputError("control", f"feedback acts on thin walls, and shells[{solid}] is elastic", f"leave it out, {thin}")
 

@@ -17,7 +17,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.estimates import ORDERS_FACTOR
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
-from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density
+from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.shared_parts import SharedParts
@@ -41,7 +41,7 @@ def choose_modes(problem: Problem, grid: LaplaceGrid, tolerance: float, shared: 
     squares = sampled.excited
     if links.count:
         links, motion, force = _free_forces(sampled, links, grid)
-        squares = squares + sampled.forced(force_density(problem, links, force))
+        squares = squares + sampled.forced(links, force)
     strain = sampled.norms(squares)[:, 1]
     remaining = ORDERS_FACTOR * share_above(orders, strain)
     enough = np.flatnonzero(remaining <= tolerance)
@@ -75,11 +75,10 @@ def share_above(orders: FloatArray, norms: FloatArray) -> FloatArray:
 
 def _free_forces(sampled: SampledOrders, links: AbsorberSet, grid: LaplaceGrid) -> tuple[AbsorberSet, ComplexArray, ComplexArray]:
     """Return linear absorbers instead, the walls' motion without them and their forces, (2, N, nodes), phases drawn at random."""
-    sides = np.stack([links.inner_shell, links.inner_shell + 1])
-    phase = np.exp(2j * np.pi * np.random.default_rng(0).random((*sides.shape, sampled.nodes.size)))
-    motion = phase * np.sqrt(sampled.motion())[sides]
+    phase = np.exp(2j * np.pi * np.random.default_rng(0).random((2, links.count, sampled.nodes.size)))
+    motion = phase * np.sqrt(sampled.motion(links))
     linear = replace(links, cubic=np.zeros_like(links.cubic))
-    mobility = sampled.mobility()
+    mobility = sampled.mobility(links)
     force = each_alone(linear, sampled.nodes, mobility, motion)
     mean = 2.0 * grid.shift * NODES.step * grid.frequency_step / np.pi  # of squares over the time that the contour weighs
     for _ in range(0 if links.is_linear else _LINEARISATIONS):
@@ -95,13 +94,12 @@ def _changed(
     sampled: SampledOrders, links: AbsorberSet, motion: ComplexArray, force: ComplexArray, strain: FloatArray, order: int
 ) -> float:
     """Return what leaving out the orders above one changes in the stress through the absorbers, relative, on the worst shell."""
-    sides = np.stack([links.inner_shell, links.inner_shell + 1])
-    moved = np.einsum("abnk,bnk->ank", sampled.mobility(order)[sides[:, None], sides[None, :]], force)
-    whole, beyond = sampled.motion(), sampled.motion(order)
+    moved = np.einsum("abnk,bnk->ank", sampled.mobility(links, order), force)
+    whole, beyond = sampled.motion(links), sampled.motion(links, order)
     share = np.sqrt(np.divide(beyond, whole, out=np.zeros_like(whole), where=whole > 0))
-    change = each_alone(links, sampled.nodes, sampled.mobility(), moved + motion * share[sides])
+    change = each_alone(links, sampled.nodes, sampled.mobility(links), moved + motion * share)
     kept = np.where(sampled.orders <= order, sampled.weight, 0.0)
-    part = sampled.norms(sampled.forced(force_density(sampled.problem, links, change)))[:, 1] @ kept
+    part = sampled.norms(sampled.forced(links, change))[:, 1] @ kept
     total = strain @ sampled.weight
     return float(np.sqrt(np.divide(part, total, out=np.zeros_like(part), where=total > 1e-290)).max())
 

@@ -22,7 +22,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
 from coaxshell.solver.limited_orders import actuators_of, asked_above, moved_above, moved_below, softened
-from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, force_density, mobility_of
+from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, mobility_at
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 REST = 1e-7
@@ -126,11 +126,10 @@ def forces_changed(structure: StructureSpectra, links: AbsorberSet, above: Sampl
 
     The phases of dw, known by their mean squares alone, are drawn at random, the same in every run.
     """
-    soft = above.mobility()
-    sides = np.stack([links.inner_shell, links.inner_shell + 1])
-    moved = np.einsum("abnk,bnk->ank", soft[sides[:, None], sides[None, :]], force)
+    soft = above.mobility(links)
+    moved = np.einsum("abnk,bnk->ank", soft, force)
     phase = np.exp(2j * np.pi * np.random.default_rng(0).random(moved.shape))
-    moved = moved + phase * np.sqrt(above.motion())[sides]
+    moved = moved + phase * np.sqrt(above.motion(links))
     return forces_against(structure, links, moved, soft)
 
 
@@ -139,12 +138,12 @@ def forces_against(
 ) -> ComplexArray:
     """Return what walls that would move by ``moved`` (2, N, nodes) more change in the forces, of the same shape, at some nodes.
 
-    -Y (1 + (G + dG) Y)^-1 moved, ``soft`` the mobility dG of the orders left out, shape (shells, shells, nodes).
+    -Y (1 + (G + dG) Y)^-1 moved, ``soft`` the mobility dG of the orders left out, shape (2, 2, N, nodes).
     """
     nodes, count = structure.grid.nodes[which], links.count
     if 2 * count > COUPLED_POINTS:
         share = np.where(np.arange(structure.modes.count) == 0, 0.5, 1.0)
-        mobility = mobility_of(structure.problem, structure.compliance[..., which], share)
+        mobility = mobility_at(structure.problem, links, structure.modes, structure.compliance[..., which], share)
         return each_alone(links, nodes, mobility if soft is None else soft + mobility, moved)
     found = np.empty((2, count, nodes.size), np.complex128)
     points = InterfacePoints(structure.problem, links, structure.modes)
@@ -167,11 +166,11 @@ def against(
     """Return what :func:`forces_against` does at a few nodes, where the orders of the points have a compliance."""
     count = links.count
     receptance = np.ascontiguousarray(np.moveaxis(points.between(compliance), -1, 0))
-    sides, index = np.stack([links.inner_shell, links.inner_shell + 1]), np.arange(count)
+    index = np.arange(count)
     for a in (0, 1):
         for b in (0, 1):
             if soft is not None:
-                receptance[:, a * count + index, b * count + index] += soft[sides[a], sides[b]].T
+                receptance[:, a * count + index, b * count + index] += soft[a, b].T
     own, other, _ = admittance(links, nodes)
     by_side = receptance.reshape(nodes.size, 2 * count, 2, count)
     followed = by_side * own[:, None, None] + by_side[:, :, ::-1] * other[:, None, None]  # of the walls, through the forces
@@ -184,9 +183,8 @@ def against(
 def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArray) -> FloatArray:
     """Return the norms (shells, 2, M + 1) of what line forces (2, N, nodes) at the sampled nodes move in the orders kept."""
     pressure = InterfacePoints(structure.problem, links, structure.modes).project(force.reshape(2 * links.count, -1))
-    compliance, ratio = structure.compliance[..., NODES], structure.tangential_ratio[..., NODES]
-    normal = np.einsum("ijmk,jhmk->ihmk", compliance, pressure)
-    return surface_norms(normal, ratio[:, None] * normal)
+    moved = structure.moved_by(pressure, NODES)
+    return surface_norms(moved.normal, moved.tangential)
 
 
 def left_out(
@@ -224,7 +222,7 @@ def left_out(
         if links is None or force is None:
             return above.excited, None
         change = forces_changed(structure, links, above, force)
-        return above.excited + above.forced(force_density(above.problem, links, force + change)), change
+        return above.excited + above.forced(links, force + change), change
 
     squares, change = moving(above)
     if interface is not None and interface.asked is not None:

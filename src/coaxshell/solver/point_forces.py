@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import FloatArray
@@ -22,6 +23,11 @@ class PlacedForces(Protocol):
     def shapes(self, modes: Modes) -> FloatArray:
         """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
         ...
+
+
+def patch(argument: npt.ArrayLike) -> FloatArray:
+    """Return sin(x)/x, the mean of cos over a patch of which x is half the phase."""
+    return np.asarray(np.sinc(np.asarray(argument) / np.pi))
 
 
 PointForceShares = Callable[[PlacedForces, Modes], FloatArray]

@@ -92,8 +92,8 @@ def _of_forces(
         value, slope = _beyond_end(grid)
         rate = 3.0 * pressure[..., -1:] - 4.0 * pressure[..., -2:-1] + pressure[..., -3:-2]
         spectrum += pressure[..., -1:] * value + rate / (2.0 * grid.time_step) * slope
-    normal, tangential = (structure if actuation is None else structure.open_loop).forced_spectra(spectrum)
-    return SolvedSpectra(structure, links, normal, tangential, force, displacement, actuation)
+    moved = (structure if actuation is None else structure.open_loop).forced_spectra(spectrum)
+    return SolvedSpectra(structure, links, *moved, force, displacement, actuation)
 
 
 def _beyond_end(grid: LaplaceGrid) -> tuple[ComplexArray, ComplexArray]:

@@ -66,6 +66,8 @@ class Size:
     """Transforms of each shell beside W and V, where walls are elastic solids: hoop stress, faces, loads on them, potentials."""
     reflections: int = 0
     """Rounds of the series that planes of the sea send back."""
+    surfaces: int = 0
+    """Surfaces on which links act."""
 
     @property
     def plane(self) -> float:
@@ -114,5 +116,6 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         tabulated=sum(source.geometry == "spherical" for source in problem.emitters),
         solids=5 + max(len(wall.piezoelectric) for wall in solids) if solids else 0,
         reflections=rounds(problem, settings.duration).done if settings.dimensions == 2 else 0,
+        surfaces=len(problem.surfaces),
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
     )

@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
+from coaxshell.solver.faced_forces import surfaces_of
 from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
@@ -69,7 +71,11 @@ class SampledOrders:
     strain : ndarray, shape (shells, orders, nodes)
         |m V/W - 1|^2: the strain's share of |W|^2.
     modal : ModalSystem or None
-        None where faces of walls move differently: nothing but the sources acts there.
+        None where faces of walls move differently.
+    faced : FacedSystem or None
+        Where they do.
+    surface_excited : ndarray, shape (surfaces, orders, nodes)
+        The same of the surfaces on which links act.
     """
 
     problem: Problem
@@ -79,6 +85,8 @@ class SampledOrders:
     excited: FloatArray
     strain: FloatArray
     modal: ModalSystem | None
+    faced: FacedSystem | None
+    surface_excited: FloatArray
 
     @classmethod
     def of(cls, problem: Problem, grid: LaplaceGrid, orders: FloatArray, shared: SharedParts | None = None) -> SampledOrders:
@@ -92,7 +100,7 @@ class SampledOrders:
         for load in SurfaceLoads(problem, grid.sparser(NODES.step), modes, shared)(modal.radial, slice(0, nodes.size)):
             excited += np.abs(np.stack(modal.solve_outside(load))) ** 2
         strain = [np.abs(orders[:, None] * wall.tangential - 1.0) ** 2 for wall in modal.shells]
-        return cls(problem, orders, _weights(orders), nodes, excited, np.stack(strain), modal)
+        return cls(problem, orders, _weights(orders), nodes, excited, np.stack(strain), modal, None, excited)
 
     @classmethod
     def _of_faces(cls, problem: Problem, grid: LaplaceGrid, modes: Modes, shared: SharedParts | None) -> SampledOrders:
@@ -104,15 +112,26 @@ class SampledOrders:
             for load in SurfaceLoads(problem, grid.sparser(NODES.step), modes, shared)(system.radial, slice(0, nodes.size))
         ]
         excited = np.sum([[np.abs(wall.normal) ** 2 for wall in walls] for walls in answers], axis=0)
+        held = np.sum([np.abs(surfaces_of(problem, walls)) ** 2 for walls in answers], axis=0)
         strained = np.sum([[np.abs(modes.column * wall.tangential - wall.normal) ** 2 for wall in walls] for walls in answers], axis=0)
         strain = np.divide(strained, excited, out=np.zeros_like(strained), where=excited > 0)
-        return cls(problem, modes.orders, _weights(modes.orders), nodes, excited, strain, None)
+        return cls(problem, modes.orders, _weights(modes.orders), nodes, excited, strain, None, system, held)
 
     @cached_property
+    def _answers(self) -> tuple[ComplexArray, ComplexArray]:
+        """Displacements of the surfaces and W of the walls per modal pressure on each surface, (rows, surfaces, orders, nodes)."""
+        if self.modal is not None:
+            found = np.stack([np.stack(self.modal.solve(j, 1.0)) for j in range(len(self.problem.shells))], axis=1)
+            return found, found
+        assert self.faced is not None
+        answers = [self.faced.under_force(surface, 1.0) for surface in self.problem.surfaces]
+        moved = [surfaces_of(self.problem, walls) for walls in answers]
+        return np.stack(moved, axis=1), np.stack([np.stack([wall.normal for wall in walls]) for walls in answers], axis=1)
+
+    @property
     def compliance(self) -> ComplexArray:
-        """C_ij, shape (shells, shells, orders, nodes): W of shell i per modal pressure on shell j."""
-        assert self.modal is not None
-        return np.stack([np.stack(self.modal.solve(j, 1.0)) for j in range(len(self.problem.shells))], axis=1)
+        """C_ij, shape (surfaces, surfaces, orders, nodes): displacement of surface i per modal pressure on surface j."""
+        return self._answers[0]
 
     def norms(self, squares: FloatArray) -> FloatArray:
         """Return the mean squares over the surface of displacement and strain, summed over the nodes, of each order.
@@ -129,70 +148,127 @@ class SampledOrders:
         share = np.where(self.orders == 0, 1.0, 0.5)
         return np.stack([squares.sum(axis=-1), (squares * self.strain).sum(axis=-1)], axis=1) * share
 
-    def forced(self, density: ComplexArray) -> FloatArray:
-        """Return |W|^2 of every shell and order under point forces, shape (shells, orders, nodes).
+    def forced(self, links: AbsorberSet, force: ComplexArray) -> FloatArray:
+        """Return |W|^2 of every shell and order under the forces (2, N, nodes) of some absorbers, shape (shells, orders, nodes)."""
+        if links.footprint is None:
+            return self._forced(force_density(self.problem, links, force))
+        means = links.means(self.problem, self._modes)
+        parts = [
+            self._forced(force_density(self.problem, links, force, members), _by_surface(self.problem, links, members, means))
+            for members in links.held_alike
+        ]
+        return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
+
+    def _forced(self, density: ComplexArray, means: FloatArray | None = None) -> FloatArray:
+        """Return |W|^2 under point forces.
 
         Parameters
         ----------
-        density : ndarray, shape (shells, shells, nodes)
-            sum_n f_n,j conj(f_n,k) of the line forces on shells j and k: cos^2 and sin^2 of m theta_n add to 1, and products of
+        density : ndarray, shape (surfaces, surfaces, nodes)
+            sum_n f_n,j conj(f_n,k) of the line forces on surfaces j and k: cos^2 and sin^2 of m theta_n add to 1, and products of
             different absorbers' forces cancel over the orders.
+        means : ndarray, shape (surfaces, orders), or None
+            h_m of these forces, 1 unless given.
         """
-        radius = np.pi * np.array([shell.radius for shell in self.problem.shells])
-        moved = np.einsum("ijmk,jlk->ilmk", self.compliance / radius[:, None, None], density)
-        squares = np.einsum("ilmk,ilmk->imk", moved, np.conj(self.compliance) / radius[:, None, None])
+        radius = np.pi * np.array([surface.radius for surface in self.problem.surfaces])
+        per_force = self._answers[1] / radius[:, None, None]
+        if means is not None:
+            per_force = per_force * means[:, :, None]
+        moved = np.einsum("ijmk,jlk->ilmk", per_force, density)
+        squares = np.einsum("ilmk,ilmk->imk", moved, np.conj(per_force))
         return np.asarray(squares.real, dtype=np.float64)
 
-    def mobility(self, above: int = -1) -> ComplexArray:
-        """Return the displacement at a point of shell i per line force at the same angle of shell j, shape (shells, shells, nodes).
+    @property
+    def _modes(self) -> Modes:
+        return Modes(self.orders, sparse=True)
+
+    def mobility(self, links: AbsorberSet, above: int = -1) -> ComplexArray:
+        """Return the displacement where each absorber holds surface a per line force where it holds b, shape (2, 2, N, nodes).
 
         Of the orders above one alone if it is given.
         """
         share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 0.5, 1.0)
-        return mobility_of(self.problem, self.compliance, share)
+        return mobility_at(self.problem, links, self._modes, self.compliance, share)
 
-    def motion(self, above: int = -1) -> FloatArray:
-        """Return the mean square of the motion of a point of every shell under the sources, shape (shells, nodes).
+    def motion(self, links: AbsorberSet, above: int = -1) -> FloatArray:
+        """Return the mean square of the motion under the sources where each absorber holds its surfaces, shape (2, N, nodes).
 
         Of the orders above one alone if it is given.
         """
         share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 1.0, 0.5)
-        return np.asarray(np.einsum("imk,m->ik", self.excited, share))
+        if links.footprint is None:
+            return np.asarray(np.einsum("imk,m->ik", self.surface_excited, share)[links.surfaces])
+        weight = links.means(self.problem, self._modes) ** 2 * share
+        found = np.empty((2, links.count, self.nodes.size))
+        for side in (0, 1):
+            for members in links.held_alike:
+                first = members[0]
+                found[side, members] = weight[side, first] @ self.surface_excited[links.surfaces[side, first]]
+        return found
 
 
-def force_density(problem: Problem, links: AbsorberSet, force: ComplexArray) -> ComplexArray:
-    """Return sum_n f_n,j conj(f_n,k) on shells j, k, shape (shells, shells, nodes), from line forces (2, N, nodes)."""
-    density = np.zeros((len(problem.shells), len(problem.shells), force.shape[-1]), np.complex128)
-    for inner in np.unique(links.inner_shell):
-        members = links.inner_shell == inner
-        pair, sides = slice(inner, inner + 2), force[:, members]
-        density[pair, pair] += np.einsum("ank,bnk,n->abk", sides, np.conj(sides), links.multiplicity[members])
+def _by_surface(problem: Problem, links: AbsorberSet, members: npt.NDArray[np.int64], means: FloatArray) -> FloatArray:
+    """Return h_m by surface, shape (surfaces, orders), of absorbers that hold the same surfaces alike; 1 where they hold none."""
+    found = np.ones((len(problem.surfaces), means.shape[-1]))
+    found[links.surfaces[:, members[0]]] = means[:, members[0]]
+    return found
+
+
+def force_density(problem: Problem, links: AbsorberSet, force: ComplexArray, members: npt.NDArray[np.int64] | None = None) -> ComplexArray:
+    """Return sum_n f_n,j conj(f_n,k) on surfaces j, k, shape (surfaces, surfaces, nodes), from line forces (2, N, nodes).
+
+    Of some absorbers alone if ``members`` gives their numbers.
+    """
+    count = len(problem.surfaces)
+    density, inner = np.zeros((count, count, force.shape[-1]), np.complex128), links.surfaces[0]
+    some = np.ones(links.count, dtype=bool) if members is None else np.isin(np.arange(links.count), members)
+    for first in np.unique(inner[some]):
+        here = (inner == first) & some
+        pair, sides = slice(first, first + 2), force[:, here]  # surfaces that look at one gap stand next to each other
+        density[pair, pair] += np.einsum("ank,bnk,n->abk", sides, np.conj(sides), links.multiplicity[here])
     return density
 
 
 def mobility_of(problem: Problem, compliance: ComplexArray, share: FloatArray) -> ComplexArray:
-    """Return the displacement at a point of shell i per line force at the same angle of shell j, shape (shells, shells, nodes).
+    """Return the displacement at a point of surface i per line force at the same angle of surface j, (surfaces, surfaces, nodes).
 
     Parameters
     ----------
     problem : Problem
-    compliance : ndarray, shape (shells, shells, orders, nodes)
+    compliance : ndarray, shape (surfaces, surfaces, orders, nodes)
     share : ndarray, shape (orders,)
         How many orders each stands for, half of that for order 0.
     """
-    radius = np.pi * np.array([shell.radius for shell in problem.shells])
+    radius = np.pi * np.array([surface.radius for surface in problem.surfaces])
     return np.asarray(np.einsum("ijmk,m->ijk", compliance, share) / radius[:, None])
+
+
+def mobility_at(problem: Problem, links: AbsorberSet, modes: Modes, compliance: ComplexArray, share: FloatArray) -> ComplexArray:
+    """Return the displacement where each absorber holds surface a per line force where it holds b, shape (2, 2, N, nodes).
+
+    ``share`` as in :func:`mobility_of`; a footprint weighs it by h_m of both.
+    """
+    if links.footprint is None:
+        return mobility_of(problem, compliance, share)[links.surfaces[:, None], links.surfaces]
+    means = links.means(problem, modes)
+    found = np.empty((2, 2, links.count, compliance.shape[-1]), np.complex128)
+    for members in links.held_alike:
+        held = _by_surface(problem, links, members, means)
+        weighed = compliance * (held[:, None] * held)[..., None]
+        surfaces = links.surfaces[:, members[0]]
+        found[:, :, members] = mobility_of(problem, weighed, share)[surfaces[:, None], surfaces][:, :, None]
+    return found
 
 
 def each_alone(links: AbsorberSet, nodes: ComplexArray, mobility: ComplexArray, motion: ComplexArray) -> ComplexArray:
     """Return the forces (2, N, nodes) of absorbers that do not feel each other on walls that would move by ``motion`` (2, N, nodes).
 
-    ``mobility`` is that of :meth:`SampledOrders.mobility`.
+    ``mobility`` is that of :func:`mobility_at`.
     """
     own, other, _ = (x.T for x in admittance(links, nodes))
     force = np.empty(motion.shape, np.complex128)
-    for n, inner in enumerate(links.inner_shell):
-        (g00, g01), (g10, g11) = mobility[inner : inner + 2, inner : inner + 2]
+    for n in range(links.count):
+        (g00, g01), (g10, g11) = mobility[:, :, n]
         a, b = 1.0 + g00 * own[n] + g01 * other[n], g00 * other[n] + g01 * own[n]
         c, d = g10 * own[n] + g11 * other[n], 1.0 + g10 * other[n] + g11 * own[n]
         determinant = a * d - b * c

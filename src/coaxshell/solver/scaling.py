@@ -7,6 +7,8 @@ the outer radius.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.images import Planes
@@ -93,6 +95,23 @@ class FluidRegion:
         return 1.0
 
 
+class Surface(NamedTuple):
+    """A surface of a wall on which forces act.
+
+    Attributes
+    ----------
+    shell : int
+    side : 0, 1 or None
+        Its inner or its outer face; None is the reference surface of a wall whose faces move alike.
+    radius : float
+        In a.
+    """
+
+    shell: int
+    side: int | None
+    radius: float
+
+
 @dataclass(frozen=True)
 class Problem:
     """The dimensionless problem.
@@ -142,6 +161,22 @@ class Problem:
     def two_faced(self) -> bool:
         """Whether any wall has faces that move differently."""
         return not all(wall.faces_move_alike for wall in self.shells)
+
+    @cached_property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The surfaces on which links act, from the inside out: one a wall; of one whose faces move differently those that look at gaps."""
+        found: list[Surface] = []
+        for i, wall in enumerate(self.shells):
+            if wall.faces_move_alike:
+                found.append(Surface(i, None, wall.radius))
+                continue
+            found += [Surface(i, 0, wall.wetted[0])] if i > 0 else []
+            found += [Surface(i, 1, wall.wetted[1])] if i + 1 < len(self.shells) else []
+        return tuple(found)
+
+    def surface_facing(self, shell: int, side: int) -> int:
+        """Return the number of the surface of a shell that looks inward (0) or outward (1)."""
+        return next(n for n, one in enumerate(self.surfaces) if one.shell == shell and one.side in (None, side))
 
     def resolving(self, frequency: float) -> Problem:
         """Return the problem with walls that resolve waves up to a frequency, radians per transit: itself where none has such a choice."""

@@ -18,7 +18,7 @@ from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.excitation import SurfaceLoads
-from coaxshell.solver.scaling import Problem
+from coaxshell.solver.scaling import Problem, Surface
 from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.structure.elastic_wall import ElasticWall
@@ -60,6 +60,11 @@ class FacedSystem:
         """Return what all walls do under a pressure on the surface that the exterior fluid wets."""
         return [self._answer(reading, faces) for reading, faces in zip(self._reading, self.cascade.solve_outside(load), strict=True)]
 
+    def under_force(self, surface: Surface, load: ComplexArray | float) -> list[WallAnswer]:
+        """Return what all walls do under an inward pressure on one surface of a wall."""
+        faces = self.cascade.solve(surface.shell, load, surface.side)
+        return [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
+
     def _answer(self, reading: ComplexArray, faces: FaceMotion) -> WallAnswer:
         if reading.ndim == 2:
             return WallAnswer(faces.outer, reading * faces.outer, 0.0, [], faces)
@@ -95,10 +100,37 @@ class SolidSpectra:
     loads: ComplexArray
     potentials: ComplexArray
 
+    def add(self, parity: int, nodes: slice, answers: list[WallAnswer]) -> None:
+        """Add what all walls do, in one parity at a slice of the nodes."""
+        for shell, wall in enumerate(answers):
+            at = (shell, parity, slice(None), nodes)
+            self.normal[at] += wall.normal
+            self.tangential[at] += wall.tangential
+            self.hoop[at] += wall.hoop
+            for layer, potential in enumerate(wall.potentials):
+                self.potentials[(layer, *at)] += potential
+            for side in (0, 1):
+                self.faces[(side, *at)] += wall.faces[side]
+                self.loads[(side, *at)] += wall.faces[2 + side]
+
+    def plus(self, other: SolidSpectra) -> SolidSpectra:
+        """Return both motions together; parities that one of them lacks are at rest there."""
+        parts = (self.normal, self.tangential, self.hoop, self.faces, self.loads, self.potentials)
+        others = (other.normal, other.tangential, other.hoop, other.faces, other.loads, other.potentials)
+        return SolidSpectra(*(_together(a, b) for a, b in zip(parts, others, strict=True)))
+
     @property
     def nbytes(self) -> int:
         """Bytes beside W and V."""
         return self.hoop.nbytes + self.faces.nbytes + self.loads.nbytes + self.potentials.nbytes
+
+
+def _together(a: ComplexArray, b: ComplexArray) -> ComplexArray:
+    """Return the sum of two spectra (..., parities, orders, nodes), of which one may have one parity only."""
+    more, fewer = (a, b) if a.shape[-3] >= b.shape[-3] else (b, a)
+    total = more.copy()
+    total[..., : fewer.shape[-3], :, :] += fewer
+    return total
 
 
 class FacedMotion(NamedTuple):
@@ -106,6 +138,21 @@ class FacedMotion(NamedTuple):
 
     faces: ComplexArray
     loads: ComplexArray
+
+
+def nothing_moves(problem: Problem, parities: int, orders: int, nodes: int) -> SolidSpectra:
+    """Return transforms of walls at rest, of a structure some of whose walls have two faces."""
+    shape = (len(problem.shells), parities, orders, nodes)
+    layers = max(len(wall.piezoelectric) for wall in problem.shells if isinstance(wall, ElasticWall))
+    motion, faces, potentials = (np.zeros((n, *shape), np.complex128) for n in (3, 4, layers))
+    return SolidSpectra(motion[0], motion[1], motion[2], faces[:2], faces[2:], potentials)
+
+
+def make_shapes(problem: Problem, modes: Modes, s: ComplexArray) -> None:
+    """Make what all blocks of nodes share of walls with two faces, before all threads ask for it."""
+    for wall in problem.shells:
+        if isinstance(wall, ElasticWall):
+            wall.two_port(modes, s[:1])
 
 
 def solid_spectra(
@@ -130,24 +177,13 @@ def solid_spectra(
         Load of what the planes of the sea send back.
     """
     loads = SurfaceLoads(problem, grid, modes, shared, returned)
-    shape = (len(problem.shells), loads.parities, modes.count, grid.nodes.size)
-    solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
-    layers = max(len(wall.piezoelectric) for wall in solids)
-    motion, faces = (np.empty((n, *shape), np.complex128) for n in (3, 4))
-    found = SolidSpectra(motion[0], motion[1], motion[2], faces[:2], faces[2:], np.zeros((layers, *shape), np.complex128))
-    for wall in solids:
-        wall.two_port(modes, grid.nodes[:1])  # what all blocks share is made once, before all threads ask for it
+    found = nothing_moves(problem, loads.parities, modes.count, grid.nodes.size)
+    make_shapes(problem, modes, grid.nodes)
 
     def work(block: slice) -> None:
         system = FacedSystem(problem, grid.nodes[block], modes)
         for parity, load in enumerate(loads(system.radial, block)):
-            for shell, wall in enumerate(system.under_sources(load)):
-                at = (shell, parity, slice(None), block)
-                found.normal[at], found.tangential[at], found.hoop[at] = wall.normal, wall.tangential, wall.hoop
-                found.faces[(0, *at)], found.faces[(1, *at)] = wall.faces.inner, wall.faces.outer
-                for layer, potential in enumerate(wall.potentials):
-                    found.potentials[(layer, *at)] = potential
-                found.loads[(0, *at)], found.loads[(1, *at)] = wall.faces.load_inner, wall.faces.load_outer
+            found.add(parity, block, system.under_sources(load))
 
     with one_blas_thread():  # small products on all threads
         map_node_blocks(node_blocks(grid, modes.max_order), work, progress, "frequencies")

@@ -35,6 +35,8 @@ class SolvedSpectra:
         Those that acted, maybe none.
     normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
         W and V.
+    solid : SolidSpectra or None
+        All that walls do whose faces move differently; None where there are none.
     force : ndarray, shape (N, 2, T)
         Line forces on the inner [.., 0] and outer [.., 1] shell, for every absorber of the description.
     displacement : ndarray, shape (N, T)
@@ -51,6 +53,7 @@ class SolvedSpectra:
     absorbers: AbsorberSet
     normal: ComplexArray
     tangential: ComplexArray
+    solid: SolidSpectra | None
     force: FloatArray
     displacement: FloatArray
     actuation: FloatArray | None = None
@@ -73,11 +76,6 @@ class SolvedSpectra:
         return self.structure.modes
 
     @property
-    def solid(self) -> SolidSpectra | None:
-        """What walls whose faces move differently do; None where there are none."""
-        return self.structure.solid if self.problem.two_faced else None
-
-    @property
     def face_motion(self) -> FaceSpectra:
         """W of the inner and of the outer face of every wall: what the fluids feel."""
         return FaceSpectra(self.normal, self.normal) if self.solid is None else FaceSpectra(*self.solid.faces)
@@ -96,7 +94,7 @@ class SolvedSpectra:
     def nbytes(self) -> int:
         """Bytes of all transforms, those of the structure that forces need included."""
         structure = self.passive if self.absorbers.count or self.actuation is not None else None
-        unit = 0 if structure is None else structure.compliance.nbytes + structure.tangential_ratio.nbytes
+        unit = 0 if structure is None else structure.unit_bytes
         solid = 0 if self.solid is None else self.solid.nbytes
         return self.normal.nbytes + self.tangential.nbytes + unit + solid
 

@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
-from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.excitation import SourceGroup, incident_of
@@ -132,9 +131,11 @@ class SteadySystem:
 
     @cached_property
     def compliance(self) -> ComplexArray:
-        """W of shell i per modal pressure on shell j, shape (shells, shells, M + 1, nodes)."""
-        columns = [self._cascade.solve(j, 1.0) for j in range(len(self.problem.shells))]
-        return np.stack([np.stack([face.outer for face in column]) for column in columns], axis=1)
+        """Displacement of surface i per modal pressure on surface j, shape (surfaces, surfaces, M + 1, nodes)."""
+        surfaces = self.problem.surfaces
+        columns = [self._cascade.solve(one.shell, 1.0, one.side) for one in surfaces]
+        moved = [[column[i].inner if side == 0 else column[i].outer for i, side, _ in surfaces] for column in columns]
+        return np.stack([np.stack(column) for column in moved], axis=1)
 
     def _linked(self, bare: ComplexArray, slope: ComplexArray, pressure: ComplexArray) -> SteadyMotion:
         """Return the motion with absorbers from that without, shape (4, shells, parities, M + 1, nodes)."""
@@ -144,20 +145,19 @@ class SteadySystem:
             nodes = self.grid.nodes.size
             force, moved = np.zeros((0, 2, nodes), np.complex128), np.zeros((0, nodes), np.complex128)
             return SteadyMotion(bare[0], bare[1], bare[2], bare[3], slope, pressure, links, force, moved)
-        if self.problem.two_faced:
-            remedy = 'leave them out, or use theory = "thin" for all shells'
-            raise InputError("absorbers", "the steady answer knows them between thin walls alone", remedy)
-        alone = _Alone(self.problem, self.grid, self.modes, bare[1], self.compliance)
+        surfaces = self.problem.surfaces
+        moved_alone = np.stack([bare[0 if side == 0 else 1, i] for i, side, _ in surfaces])
+        alone = _Alone(self.problem, self.grid, self.modes, bare[1], moved_alone, self.compliance)
         if is_ring(links) and self.problem.point_force_shares is point_force_shares:
             found = solve_ring(alone, links)
         else:
             found = solve_linear(alone, links, InterfacePoints(self.problem, links, self.modes))
         total = np.zeros((*bare.shape[:2], links.parities, *bare.shape[3:]), np.complex128)
         total[:, :, : bare.shape[2]] = bare
-        for shell, by_parity in enumerate(found.modal_pressure):
+        for surface, by_parity in zip(surfaces, found.modal_pressure, strict=True):
             for parity, load in enumerate(by_parity):
                 if np.any(load):
-                    total[:, :, parity] += _stacked(self._cascade.solve(shell, load))
+                    total[:, :, parity] += _stacked(self._cascade.solve(surface.shell, load, surface.side))
         sides = found.force.reshape(2, links.count, -1).swapaxes(0, 1)[links.member]
         moved = found.mass_displacement[links.member]
         return SteadyMotion(total[0], total[1], total[2], total[3], slope, pressure, links, sides, moved)
@@ -170,6 +170,7 @@ class _Alone(NamedTuple):
     grid: Frequencies
     modes: Modes
     normal: ComplexArray
+    surface_motion: ComplexArray
     compliance: ComplexArray
 
 

@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.convolution import KernelTable
+from coaxshell.numerics.convolution import KernelTable, summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.interface.march import march
@@ -123,7 +123,7 @@ class CoarserStructure(StructureSpectra):
         super().__init__(fine.problem, grid, fine.modes)
         self._fine, self._every, self._kept = fine, every, slice(0, grid.time.size * every, every)
         points = InterfacePoints(fine.problem, absorbers, fine.modes)
-        many = points.count**2 > _MANY * len(fine.problem.shells) ** 2 * points.modes
+        many = points.count**2 > _MANY * len(fine.problem.surfaces) ** 2 * points.modes
         self._points, self._absorbers = None if saturate or many else points, absorbers
 
     @cached_property
@@ -170,21 +170,6 @@ class CoarserStructure(StructureSpectra):
         return self._fine.voltage_without_actuators[..., self._kept]
 
 
-def summed_weights(weights: FloatArray, every: int, steps: int) -> FloatArray:
-    """Return step weights for steps *every* times longer: a hat as wide is the sum of narrower ones."""
-    whole = weights[..., : weights.shape[-1] // every * every]
-    falling = 1.0 - np.arange(every) / every  # from each long step on; what lies before it rises with the rest of 1
-    parts = whole.reshape(*whole.shape[:-1], -1, every) @ np.stack([falling, 1.0 - falling], axis=1)
-    total = np.zeros((*weights.shape[:-1], steps))
-    whole_steps = min(steps, parts.shape[-2])
-    total[..., :whole_steps] = parts[..., :whole_steps, 0]
-    total[..., 1:] += parts[..., : steps - 1, 1]
-    rest = weights[..., whole.shape[-1] :]
-    if whole_steps < steps:
-        total[..., whole_steps] += rest @ falling[: rest.shape[-1]]
-    return total
-
-
 def march_error(structure: StructureSpectra, interface: Interface, whole: FloatArray) -> FloatArray:
     """Return the printed error of displacement and stress by the march's steps, shape (shells, 2), relative.
 
@@ -216,7 +201,7 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
     :func:`march_error`; actuators are taken as free, which changes most.
     """
     grid, problem, links = structure.grid, structure.problem, interface.links
-    late = np.flatnonzero(unresolved_orders(problem, grid, structure.modes))
+    late = np.flatnonzero(unresolved_orders(problem, grid, structure.modes) | problem.two_faced)
     if not late.size:
         return np.zeros_like(whole)
     points, compliance = InterfacePoints(problem, links, structure.modes), structure.compliance
@@ -225,7 +210,7 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
         histories = histories + interface.actuation[:, :, late]
     pressure = grid.transform(histories)
     marched = grid.transform(structure.kernels.kernels[:, :, late]) / (grid.time_step * grid.nodes)
-    moved = np.zeros((len(problem.shells), pressure.shape[1], structure.modes.count, grid.nodes.size), np.complex128)
+    moved = np.zeros((len(problem.surfaces), pressure.shape[1], structure.modes.count, grid.nodes.size), np.complex128)
     moved[:, :, late] = np.einsum("ijmk,jhmk->ihmk", marched - compliance[:, :, late] * grid.hat, pressure)
     orders = _some_orders(structure.modes.max_order)
     given = np.zeros((*moved.shape[:2], orders.size, grid.nodes.size), np.complex128)
@@ -237,8 +222,8 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
         assert interface.saturating is not None
         law = voltage_law(interface.saturating.problem, i, grid.nodes, structure.tangential_ratio[i])
         given[i] += problem.shells[i].actuator_pressure * (law * moved[i])[:, orders]
-    normal = np.einsum("ijmk,jhmk->ihmk", compliance[:, :, orders], given)
-    motion = _motion(normal, structure.tangential_ratio[:, None, orders] * normal, orders)
+    changed = structure.moved_by(given, orders=orders)
+    motion = _motion(changed.normal, changed.tangential, orders)
     return relative(_of_orders(motion, orders, grid.invert), whole)
 
 
@@ -260,8 +245,8 @@ def _difference(structure: StructureSpectra, interface: Interface, whole: FloatA
     if interface.actuation is not None and coarse.actuation is not None:
         given = _between(coarser, grid, coarse.actuation[:, :, orders])
         pressure += grid.transform_linear(given - interface.actuation[:, :, orders])
-    normal = np.einsum("ijmk,jhmk->ihmk", structure.compliance[:, :, orders], pressure)
-    motion = _motion(normal, structure.tangential_ratio[:, None, orders] * normal, orders)
+    changed = structure.moved_by(pressure, orders=orders)
+    motion = _motion(changed.normal, changed.tangential, orders)
     return relative(_of_orders(motion, orders, grid.invert), whole)
 
 

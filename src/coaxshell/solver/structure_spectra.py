@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -14,6 +16,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
+from coaxshell.solver.faced_forces import march_weights, moved_by_forces, surface_compliance, surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
@@ -46,6 +49,14 @@ class _UnitAnswers:
     kernels_with_voltage: KernelTable | None = None
     sensor_rates: FloatArray | None = None
     open_loop: _UnitAnswers | None = None
+
+
+class Moved(NamedTuple):
+    """Transforms of W and V, each (shells, parities, orders, nodes), and where walls have two faces of all else that they do."""
+
+    normal: ComplexArray
+    tangential: ComplexArray
+    solid: SolidSpectra | None = None
 
 
 class StructureSpectra:
@@ -125,6 +136,8 @@ class StructureSpectra:
             if self._under_sources is None:
                 self._solid = solid_spectra(problem, grid, modes, self.shared, self._progress, self.returned)
                 self._under_sources = self._solid.normal, self._solid.tangential
+            if units and self.units.compliance is None:
+                self.units.compliance = surface_compliance(problem, grid, grid.nodes, modes, self._progress)
             return
         count, each = len(problem.shells), (modes.count, grid.nodes.size)
         loads = SurfaceLoads(problem, grid, modes, self.shared, self.returned) if self._under_sources is None else None
@@ -176,28 +189,39 @@ class StructureSpectra:
         return self._sources()[1]
 
     @property
+    def surface_motion(self) -> ComplexArray:
+        """Displacements under the sources alone of the surfaces on which links act, shape (surfaces, parities, M + 1, nodes)."""
+        return self.normal if self.solid is None else surface_motion(self.problem, self.normal, self.solid.faces)
+
+    @property
     def compliance(self) -> ComplexArray:
-        """Compliance C_ij, W of shell i per modal pressure on shell j, shape (shells, shells, M + 1, nodes)."""
+        """Compliance C_ij, displacement of surface i per modal pressure on surface j, shape (surfaces, surfaces, M + 1, nodes)."""
         self.solve(units=True)
         assert self.units.compliance is not None
         return self.units.compliance
 
     @property
+    def unit_bytes(self) -> int:
+        """Bytes of the answers to unit pressures."""
+        self.solve(units=True)
+        return sum(0 if x is None else x.nbytes for x in (self.units.compliance, self.units.ratio))
+
+    @property
     def tangential_ratio(self) -> ComplexArray:
-        """V/W under any normal load, shape (shells, M + 1, nodes)."""
+        """V/W under any normal load, shape (shells, M + 1, nodes), where no wall has two faces."""
         self.solve(units=True)
         assert self.units.ratio is not None
         return self.units.ratio
 
     @cached_property
     def linear_displacement(self) -> FloatArray:
-        """W under the sources alone, shape (shells, parities, M + 1, T)."""
-        return self.grid.invert(self.normal)
+        """Displacements of the surfaces under the sources alone, shape (surfaces, parities, M + 1, T)."""
+        return self.grid.invert(self.surface_motion)
 
     @cached_property
     def linear_velocity(self) -> FloatArray:
-        """dW/dt under the sources alone, shape (shells, parities, M + 1, T)."""
-        return self.grid.invert(self.normal * self.grid.nodes)
+        """Velocities of the surfaces under the sources alone, shape (surfaces, parities, M + 1, T)."""
+        return self.grid.invert(self.surface_motion * self.grid.nodes)
 
     @cached_property
     def orders_above(self) -> SampledOrders:
@@ -225,9 +249,11 @@ class StructureSpectra:
     def step_weights(self, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
         """Return the step weights of modal pressures in the velocities and in the rates of the sensors' voltages of some shells.
 
-        By product integration, and where the step does not resolve an order's membrane by the trapezoidal rule.
+        By product integration, and where the step does not resolve an order's membrane, or a wall has two faces, by the trapezoidal rule.
         """
         problem, grid = self.problem, self.grid
+        if problem.two_faced:
+            return march_weights(problem, grid, self.modes, self._progress), np.empty((0, 0, 0, 0))
         velocity = velocity_weights(problem, grid, self.compliance)
         rate = sensor_rate_weights(problem, grid, self.compliance, self.tangential_ratio, sensors)
         late = unresolved_orders(problem, grid, self.modes)
@@ -276,14 +302,34 @@ class StructureSpectra:
         laws = [voltage_law(self.problem, i, self.grid.nodes, bare.tangential_ratio[i]) for i in self.controlled]
         return np.stack([self.grid.invert(law * bare.normal[i]) for law, i in zip(laws, self.controlled, strict=True)])
 
-    def forced_spectra(self, pressure: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the transforms of W and V, sources and modal pressures on the shells together.
+    def moved_by(self, pressure: ComplexArray, nodes: slice = slice(None), orders: npt.NDArray[np.int64] | slice = slice(None)) -> Moved:
+        """Return what modal pressures alone move, in some of the orders at some of the nodes.
 
         Parameters
         ----------
-        pressure : ndarray, shape (shells, parities, M + 1, nodes)
+        pressure : ndarray, shape (surfaces, parities, orders, nodes)
+            Transforms at these nodes, positive inward.
+        nodes, orders
+            Which of the grid's nodes and of the orders 0 to M.
+        """
+        if self.problem.two_faced:
+            modes = Modes(self.modes.orders[orders], sparse=self.modes.orders[orders].size < self.modes.count)
+            solid = moved_by_forces(self.problem, self.grid, modes, pressure, nodes)
+            return Moved(solid.normal, solid.tangential, solid)
+        normal = np.einsum("ijmk,jhmk->ihmk", self.compliance[:, :, orders, nodes], pressure)
+        return Moved(normal, self.tangential_ratio[:, None, orders, nodes] * normal)
+
+    def forced_spectra(self, pressure: ComplexArray) -> Moved:
+        """Return the transforms of what sources and modal pressures on the surfaces move together.
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (surfaces, parities, M + 1, nodes)
             Transforms of modal pressures, positive inward.
         """
+        if self.solid is not None:
+            whole = self.solid.plus(moved_by_forces(self.problem, self.grid, self.modes, pressure, progress=self._progress))
+            return Moved(whole.normal, whole.tangential, whole)
         parities = max(pressure.shape[1], self.normal.shape[1])
         shape = (*pressure.shape[:1], parities, *pressure.shape[2:])
         normal, tangential = np.zeros(shape, np.complex128), np.zeros(shape, np.complex128)
@@ -296,4 +342,4 @@ class StructureSpectra:
                 moved += self.compliance[i, j] * pressure[j]
             normal[i, forced] += moved
             tangential[i, forced] += np.multiply(self.tangential_ratio[i], moved, out=moved)
-        return normal, tangential
+        return Moved(normal, tangential)

@@ -13,7 +13,8 @@ from coaxshell.numerics.late import integrate
 from coaxshell.numerics.modes import Modes
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.synthesis import angle_basis, at_angles
-from coaxshell.solver.interface.absorbers import Properties, properties
+from coaxshell.solver.faced_forces import surface_motion
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, Properties, absorber_set, properties
 from coaxshell.solver.interface.link_motion import LinkMotion
 from coaxshell.structure.shell_model import ShellModel
 
@@ -38,9 +39,11 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
     """Return the energy of the line absorbers of a motion in two dimensions; zeros without any."""
     fitted, scales = motion.problem.system.absorber_list, motion.problem.scales
 
-    def at(shell: int, here: list[int], side: list[int]) -> tuple[FloatArray, FloatArray, float]:
+    def on_lines(shell: int, here: list[int], side: list[int]) -> tuple[FloatArray, FloatArray, float]:
         return *_at_absorbers(motion, shell, np.array([fitted[n].angle for n in here])), _impedance(motion, shell)
 
+    every = absorber_set(motion.problem, fitted, 2)
+    at: Walls = on_lines if every.footprint is None else _on_footprints(motion, every)
     inner = [one.inner_shell for one in fitted]
     return held_energy(properties(fitted, scales), inner, motion.links, at, motion.grid, motion.kept)
 
@@ -89,6 +92,22 @@ def held_energy(
             powers[1] += np.sum(np.where(damping > 0.0, (force[here, side] - spring) * parting, 0.0), axis=0)
     taken = integrate.cumulative_simpson(powers, dx=grid.time_step, initial=0.0, axis=-1)[:, kept]
     return AbsorberEnergy(energies[0], energies[1], taken[0], taken[1] - taken[0])
+
+
+def _on_footprints(motion: Motion, links: AbsorberSet) -> Walls:
+    """Return the walls where absorbers hold them over arcs: the mean motion there, by the orders' h_m, of the faces that they hold."""
+    problem, grid = motion.problem, motion.grid
+    spectra = motion.normal if motion.solid is None else surface_motion(problem, motion.normal, motion.solid.faces)
+    points = InterfacePoints(problem, links, motion.modes)
+    w, dw = (points.evaluate(grid.invert(x)) for x in (spectra, spectra * grid.nodes))
+    means = links.means(problem, motion.modes) ** 2 / motion.circle
+
+    def at(shell: int, here: list[int], side: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        ends, wall = np.array(side) * links.count + here, problem.shells[shell]
+        softness = means[side, here].sum(axis=-1) / wall.radius
+        return w[ends], dw[ends], (2.0 * wall.mass / grid.time_step / softness)[:, None]
+
+    return at
 
 
 def _at_absorbers(motion: Motion, shell: int, angle: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -36,7 +36,7 @@ class WallsAtLines:
         turn = float(wave.modes.wavenumber) * layout.origin
         parts = wave.normal.reshape(wave.normal.shape[0], -1, wave.around, *wave.normal.shape[2:])
         per_shell = np.einsum("pnm,sapmk->sank", shapes[:around], parts[:, :, :around], optimize=True)
-        at = per_shell[layout.points.shell, :, np.tile(np.arange(layout.absorbers.count), 2)]
+        at = per_shell[layout.points.surface, :, np.tile(np.arange(layout.absorbers.count), 2)]
         even, odd = at[:, 0], at[:, 1] if at.shape[1] == 2 else np.zeros_like(at[:, 0])
         both = [np.cos(turn) * even - np.sin(turn) * odd, -np.sin(turn) * even - np.cos(turn) * odd]
         for parity in range(layout.axial_parities):
@@ -75,7 +75,7 @@ def lines_energy(walls: WallsAtLines, kept: slice, length: float) -> AbsorberEne
             spring = (linear + cubic * stretch**2) * stretch
             energies[1] += share @ (0.5 * linear * stretch[:, kept] ** 2 + 0.25 * cubic * stretch[:, kept] ** 4)
             if damping > 0.0:
-                wall = layout.problem.shells[layout.points.shell[point]]
+                wall = layout.problem.shells[layout.points.surface[point]]
                 weaker = damping / (damping + line_impedance(wall, layout.sampling.modes[0], grid))
                 rate = parting + weaker * (links.stretch_rate[:, side] - parting)
                 powers[0] += share @ (damping * rate**2)

@@ -193,8 +193,8 @@ def _around(
     angles = np.radians(np.tile(absorbers.angle, 2))[:, None] * modes.orders
     slope = np.radians(modes.orders) * np.stack([-np.sin(angles), np.cos(angles)][: points.parities])
     total = np.zeros(points.count)
-    for i in np.unique(points.shell):
-        here = np.flatnonzero(points.shell == i)
+    for i in np.unique(points.surface):
+        here = np.flatnonzero(points.surface == i)
         share = (multiplicity[here, None] / beta_pi) / radii[i]
         for h in range(points.parities):
             placed = share * _product(load[here], pressures[i, h])

@@ -87,7 +87,7 @@ def march_backwards(
     earlier = [toeplitz[k * count : (k + 1) * count, : k * count] for k in range(length)]
     sums, history = HistorySum(kernels, points.parities), History()
     law, psi, eta = np.zeros((steps, count)), np.zeros((steps, count)), np.zeros((steps, absorbers.count))
-    velocity = np.zeros((points.shells, points.parities, points.modes, steps))
+    velocity = np.zeros((points.surfaces, points.parities, points.modes, steps))
     loads, slopes = np.ascontiguousarray(load.T[::-1]), np.ascontiguousarray(tangent.T[::-1])
     for start in range(0, steps - 1, length):  # forces begin at step 1: the first instant is at rest
         block = slice(start, min(start + length, steps - 1))

@@ -73,8 +73,8 @@ def _against(
     """Return the change (2, N, nodes) of the forces on walls that move by so much more and are so much softer."""
     if 2 * links.count > COUPLED_POINTS:
         own = mobility_of(layout.problem, compliance, _half_of_0(Modes.up_to(compliance.shape[2] - 1)))
-        return each_alone(links, s, own + soft, moved)
-    return against(layout.points, links, layout.folded(compliance), s, moved, soft)
+        return each_alone(links, s, (own + soft)[links.surfaces[:, None], links.surfaces], moved)
+    return against(layout.points, links, layout.folded(compliance), s, moved, soft[links.surfaces[:, None], links.surfaces])
 
 
 def _compliance(system: ModalSystem) -> ComplexArray:

@@ -10,6 +10,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.convolution import summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver.axial.blocks import BlockMap, Found
@@ -19,7 +20,7 @@ from coaxshell.solver.axial.line_structure import line_answers, line_kernels, wa
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.orders_left_out import with_tangent
-from coaxshell.solver.step_error import SHARES, summed_weights
+from coaxshell.solver.step_error import SHARES
 
 _INSTANTS = 64
 """Of stretches that are taken to the points of a period together."""

@@ -88,7 +88,7 @@ def wave_answers(layout: LineLayout, grid: LaplaceGrid, j: int) -> tuple[Complex
     """Return w at the lines under the sources, (2N, axial parities, nodes), and C_ij, (shells, shells, orders, nodes), of a wavenumber."""
     problem, modes = layout.problem, layout.sampling.modes[j]
     walls, absorbers = len(problem.shells), layout.absorbers
-    shapes, shell = absorbers.shapes(modes), layout.points.shell
+    shapes, shell = absorbers.shapes(modes), layout.points.surface
     motion = np.zeros((shell.size, layout.axial_parities, grid.nodes.size), np.complex128)
     compliance = np.empty((walls, walls, modes.count, grid.nodes.size), np.complex128)
     for block in node_blocks(grid, modes.max_order):

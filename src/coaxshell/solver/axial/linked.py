@@ -10,7 +10,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.convolution import KernelTable
+from coaxshell.numerics.convolution import KernelTable, summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress, of_stage
@@ -23,7 +23,7 @@ from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, mar
 from coaxshell.solver.interface.march import march
 from coaxshell.solver.kernels import exponential_weights, initial_decay
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.step_error import SHARES, summed_weights
+from coaxshell.solver.step_error import SHARES
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 Numbers = TypeVar("Numbers", FloatArray, ComplexArray)

@@ -17,12 +17,8 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem
-
-
-def patch(argument: npt.ArrayLike) -> FloatArray:
-    """Return sin(x)/x, the mean of cos over a patch of which x is half the phase."""
-    return np.asarray(np.sinc(np.asarray(argument) / np.pi))
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,12 +27,13 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import axial_position, wave_sets
-from coaxshell.solver.axial.point_forces import WallPoints, patch
+from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import motions_of, pair_count
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
 
 Numbers = TypeVar("Numbers", FloatArray, ComplexArray)
@@ -106,6 +107,7 @@ def point_layout(problem: Problem) -> PointLayout:
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([one.angle for one in listed]),
         parities=2,
+        surfaces=np.array([[one.inner_shell + side for one in carried] for side in (0, 1)], dtype=np.int64).reshape(2, len(carried)),
     )
     parts = [_wall_point(problem, one, one.inner_shell + side) for side in (0, 1) for one in listed]
     shell, angle, z, width = (np.array(column) for column in zip(*parts, strict=True))

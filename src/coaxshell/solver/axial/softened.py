@@ -20,7 +20,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial.families import WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.linked import PointSolution, PointStructure, point_law
-from coaxshell.solver.axial.point_forces import PointForces, patch
+from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PointLayout
 from coaxshell.solver.axial.samples import Sample, samples_of, spherical_samples
 from coaxshell.solver.axial.sampling import AxialSampling
@@ -28,6 +28,7 @@ from coaxshell.solver.axial.sums import amplitudes_of, mean_squares, motions_of
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.orders_left_out import mean_tangent
+from coaxshell.solver.point_forces import patch
 from coaxshell.solver.sampled_orders import NODES
 from coaxshell.solver.scaling import Problem
 

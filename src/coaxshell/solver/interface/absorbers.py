@@ -5,6 +5,9 @@ Absorber n links shell i to shell i + 1 at theta_n. On side j (0 the inner, 1 th
     f = c dD/dt + k_l D + k_nl D^3,  D = q - w_j(theta_n);      m d2q/dt2 = -f_0 - f_1         (Eqs. 6, 7)
 
 and a line force f at radius R is the modal pressure f cos(m theta_n)/(beta pi R), beta = 2 for m = 0, else 1 (sin of the sines).
+
+One that holds a wall over an arc of length b, its footprint, spreads f evenly over it and moves with the mean of w there: both carry the
+factor h_m = sin(x)/x, x = m b/2R. On a wall whose faces move differently it acts on the face that looks at the gap, at that radius.
 """
 
 from __future__ import annotations
@@ -19,7 +22,9 @@ import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.model.absorbers import Absorber
+from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
 
 Array = npt.NDArray[Any]
@@ -66,6 +71,10 @@ class AbsorberSet:
         Degrees, of all absorbers of the description.
     parities : int
         1 if only the cosines of the Fourier series are excited, else 2.
+    surfaces : ndarray of int, shape (2, N)
+        Numbers of the surfaces of the problem that they hold (:attr:`coaxshell.solver.scaling.Problem.surfaces`).
+    footprint : ndarray, shape (2, N), or None
+        Arcs of these that they hold, in units of a, 0 of a line; None where all are lines.
     """
 
     angle: FloatArray
@@ -78,6 +87,8 @@ class AbsorberSet:
     member: npt.NDArray[np.int64]
     every_angle: FloatArray
     parities: int
+    surfaces: npt.NDArray[np.int64]
+    footprint: FloatArray | None = None
 
     @property
     def count(self) -> int:
@@ -95,6 +106,20 @@ class AbsorberSet:
             rows = [modes.projection(float(angle), parity)[:, 0] for parity in range(self.parities) for angle in self.angle]
             self._shapes[modes.key] = np.array(rows).reshape(self.parities, self.count, modes.count)
         return self._shapes[modes.key]
+
+    @cached_property
+    def held_alike(self) -> list[npt.NDArray[np.int64]]:
+        """Numbers of the absorbers, those together that hold the same surfaces over the same arcs."""
+        footprint = np.zeros((2, self.count)) if self.footprint is None else self.footprint
+        _, kind = np.unique(np.concatenate([self.surfaces, footprint]), axis=1, return_inverse=True)
+        return [np.flatnonzero(kind.ravel() == one) for one in range(int(kind.max(initial=-1)) + 1)]
+
+    def means(self, problem: Problem, modes: Modes) -> FloatArray:
+        """Return h_m, the mean of cos m(theta - theta_n) over the arcs that they hold, shape (2, N, M + 1); 1 of lines."""
+        if self.footprint is None:
+            return np.ones((2, self.count, modes.count))
+        radius = np.array([one.radius for one in problem.surfaces])[self.surfaces]
+        return patch(np.multiply.outer(self.footprint / (2.0 * radius), modes.orders))
 
     @cached_property
     def _shapes(self) -> dict[Hashable, FloatArray]:
@@ -121,6 +146,7 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int
             multiplicity.append(1.0)
             found[key] = index
         member.append(index)
+    held = [[problem.surface_facing(a.inner_shell + side, 1 - side) for a in carried] for side in (0, 1)]
     return AbsorberSet(
         angle=np.array([a.angle for a in carried], dtype=np.float64),
         **properties(carried, problem.scales)._asdict(),
@@ -129,7 +155,22 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([a.angle for a in absorbers], dtype=np.float64),
         parities=1 if symmetric else 2,
+        surfaces=np.array(held, dtype=np.int64).reshape(2, len(carried)),
+        footprint=_footprints(problem, carried),
     )
+
+
+def _footprints(problem: Problem, absorbers: Sequence[Absorber]) -> FloatArray | None:
+    """Return the arcs that absorbers hold, (2, N), in a: unless given the thickness of walls with two faces, no arc of others."""
+    found = np.zeros((2, len(absorbers)))
+    for n, one in enumerate(absorbers):
+        for side in (0, 1):
+            wall, described = problem.shells[one.inner_shell + side], problem.system.shells[one.inner_shell + side]
+            if one.footprint is not None:
+                found[side, n] = one.footprint / problem.scales.length
+            elif not wall.faces_move_alike and isinstance(described, Shell):
+                found[side, n] = described.thickness / problem.scales.length
+    return found if found.any() else None
 
 
 def _place(absorber: Absorber, *, mirrored: bool) -> tuple[object, ...]:
@@ -155,26 +196,31 @@ def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, C
 
 
 class InterfacePoints:
-    """The 2N points at which absorbers touch shells, and the maps between them and the modes.
+    """The 2N places at which absorbers hold surfaces of walls, and the maps between them and the modes.
 
     Points are ordered by side, then absorber: 0..N-1 on the inner shells, N..2N-1 on the outer ones.
     """
 
     def __init__(self, problem: Problem, absorbers: AbsorberSet, modes: Modes) -> None:
-        self.shell = np.concatenate([absorbers.inner_shell, absorbers.inner_shell + 1])
-        self._groups = [(i, np.flatnonzero(self.shell == i)) for i in range(len(problem.shells))]
+        self.surface = absorbers.surfaces.ravel()
+        self._groups = [(i, np.flatnonzero(self.surface == i)) for i in range(len(problem.surfaces))]
         self._rows = [_span(points) for _, points in self._groups]
         shapes = absorbers.shapes(modes)
         self._evaluate = [np.ascontiguousarray(shapes[:, points % max(absorbers.count, 1)]) for _, points in self._groups]
         shares = problem.point_force_shares(absorbers, modes)
         self._project = [
-            np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.shells[i].radius) for i, points in self._groups
+            np.ascontiguousarray(shares[:, points % max(absorbers.count, 1)] / problem.surfaces[i].radius) for i, points in self._groups
         ]
-        self.count, self.shells = self.shell.size, len(problem.shells)
+        if absorbers.footprint is not None:
+            means = absorbers.means(problem, modes).reshape(self.surface.size, modes.count)
+            for (_, points), evaluate, project in zip(self._groups, self._evaluate, self._project, strict=True):
+                evaluate *= means[points]
+                project *= means[points]
+        self.count, self.surfaces = self.surface.size, len(problem.surfaces)
         self.parities, self.modes = shapes.shape[0], modes.count
 
     def evaluate(self, modal: Array) -> Array:
-        """Return the value at every point of modal amplitudes (shells, parities, M + 1[, T]): shape (points[, T])."""
+        """Return the value at every point of modal amplitudes (surfaces, parities, M + 1[, T]): shape (points[, T])."""
         values = np.empty((self.count, *modal.shape[3:]), modal.dtype)
         for (i, _), rows, shape in zip(self._groups, self._rows, self._evaluate, strict=True):
             total = shape[0] @ modal[i, 0]
@@ -185,7 +231,7 @@ class InterfacePoints:
         return values
 
     def project(self, forces: Array, orders: npt.NDArray[np.int64] | None = None) -> Array:
-        """Return the modal pressures (shells, parities, M + 1[, T]) of line forces at the points (points[, T]); of some orders if given."""
+        """Return the modal pressures (surfaces, parities, M + 1[, T]) of line forces (points[, T]); of some orders if given."""
         modes = self.modes if orders is None else orders.size
         modal = np.zeros((len(self._groups), self.parities, modes, *forces.shape[1:]), forces.dtype)
         for (i, points), shape in zip(self._groups, self._project, strict=True):
@@ -207,7 +253,7 @@ class InterfacePoints:
         return values
 
     def _spread(self, values: Array, shapes: list[FloatArray]) -> Array:
-        modal = np.zeros((self.shells, self.parities, self.modes, *values.shape[1:]), values.dtype)
+        modal = np.zeros((self.surfaces, self.parities, self.modes, *values.shape[1:]), values.dtype)
         for (i, _), rows, shape in zip(self._groups, self._rows, shapes, strict=True):
             for h, one in enumerate(shape):
                 modal[i, h] = one.T @ values[rows]
@@ -216,7 +262,7 @@ class InterfacePoints:
     def between(self, kernels: Array) -> Array:
         """Return the kernels from forces at the points to motion at the points, shape (points, points, T).
 
-        ``kernels`` are those of the modes, shape (shells, shells, M + 1, T), real or complex.
+        ``kernels`` are those of the modes, shape (surfaces, surfaces, M + 1, T), real or complex.
         """
         found = np.zeros((self.count, self.count, kernels.shape[-1]), kernels.dtype)
         for i, rows in self._groups:
@@ -230,7 +276,7 @@ class InterfacePoints:
     def immediate(self, present: FloatArray) -> FloatArray:
         """Return the velocities at the points per force there within the same step, shape (..., points, points).
 
-        ``present`` holds the kernels' weights at lag 0, shape (shells, shells, ..., M + 1): of one problem or of many.
+        ``present`` holds the kernels' weights at lag 0, shape (surfaces, surfaces, ..., M + 1): of one problem or of many.
         """
         matrix = np.zeros((*present.shape[2:-1], self.count, self.count))
         for i, rows in self._groups:
@@ -242,7 +288,7 @@ class InterfacePoints:
     def receptance(self, compliance: ComplexArray) -> ComplexArray:
         """Return the displacements at the points per unit force at the points, shape (nodes, points, points).
 
-        ``compliance`` is C_ij, shape (shells, shells, M + 1, nodes).
+        ``compliance`` is C_ij, shape (surfaces, surfaces, M + 1, nodes).
         """
         nodes = compliance.shape[-1]
         matrix = np.zeros((nodes, self.count, self.count), np.complex128)
@@ -262,13 +308,13 @@ def _span(numbers: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:
 
 
 class PointsAlone:
-    """Interface points whose kernels and motion are those of the points themselves: each is a shell of its own that has one mode.
+    """Interface points whose kernels and motion are those of the points themselves: each is a surface of its own that has one mode.
 
     What needs the motion of the points alone is marched so, with :meth:`InterfacePoints.between` as kernels.
     """
 
     def __init__(self, count: int) -> None:
-        self.count = self.shells = count
+        self.count = self.surfaces = count
         self.parities = self.modes = 1
 
     def evaluate(self, modal: Array) -> Array:

@@ -51,8 +51,13 @@ class LinearStructure(Protocol):
         ...
 
     @property
+    def surface_motion(self) -> ComplexArray:
+        """Displacements of the surfaces on which links act, without absorbers, shape (surfaces, parities, M + 1, nodes)."""
+        ...
+
+    @property
     def compliance(self) -> ComplexArray:
-        """C_ij, shape (shells, shells, M + 1, nodes)."""
+        """C_ij, shape (surfaces, surfaces, M + 1, nodes)."""
         ...
 
 
@@ -70,7 +75,7 @@ def solve_linear(
 ) -> LinearAbsorberSpectra:
     """Return the interface spectra of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.count
-    excited = points.evaluate(structure.normal)
+    excited = points.evaluate(structure.surface_motion)
     force = np.empty((2 * count, nodes.size), np.complex128)
     displacement = np.empty((count, nodes.size), np.complex128)
     width = max(4, BLOCK_BYTES // (16 * (2 * count) ** 2))

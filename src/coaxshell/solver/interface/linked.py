@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
@@ -14,7 +15,7 @@ from coaxshell.solver.interface.march import MarchResult, march
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.point_forces import point_force_shares
 from coaxshell.solver.solved_spectra import SolvedSpectra
-from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 
 
 def solve_linked(
@@ -38,25 +39,26 @@ def solve_linked(
         return _marched(structure, absorbers, result)
     if absorbers.count == 0:
         force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
-        return SolvedSpectra(structure, absorbers, structure.normal, structure.tangential, force, displacement)
+        moved = Moved(structure.normal, structure.tangential, structure.solid)
+        return SolvedSpectra(structure, absorbers, *moved, force, displacement)
     if absorbers.is_linear if exact is None else exact:
         if is_ring(absorbers) and structure.problem.point_force_shares is point_force_shares:
             found = solve_ring(structure, absorbers)
         else:
             found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.modes), progress)
-        normal, tangential = structure.forced_spectra(found.modal_pressure)
+        moved = structure.forced_spectra(found.modal_pressure)
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
         transforms = found.force, found.mass_displacement
-        return SolvedSpectra(structure, absorbers, normal, tangential, force, displacement, exact=transforms)
+        return SolvedSpectra(structure, absorbers, *moved, force, displacement, exact=transforms)
     return _marched(structure, absorbers, march(structure, absorbers, progress=progress))
 
 
 def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult) -> SolvedSpectra:
     """Return the answer of a structure to the forces of a march, without its feedback where actuators saturated."""
-    moved = structure if result.actuation is None else structure.open_loop
-    normal, tangential = moved.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
+    acting = structure if result.actuation is None else structure.open_loop
+    moved = acting.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
     force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
-    return SolvedSpectra(structure, absorbers, normal, tangential, force, displacement, result.actuation, result.iterations)
+    return SolvedSpectra(structure, absorbers, *moved, force, displacement, result.actuation, result.iterations)
 
 
 def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -84,7 +86,12 @@ def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: 
     force = solved.force[first].swapaxes(0, 1)
     stretch = np.zeros((2, 0, 0))
     if not absorbers.is_linear:
-        walls = InterfacePoints(solved.problem, absorbers, solved.modes).evaluate(normal)
+        surfaces = (
+            normal
+            if solved.solid is None
+            else solved.grid.invert(surface_motion(solved.problem, solved.normal, solved.solid.faces))[..., kept]
+        )
+        walls = InterfacePoints(solved.problem, absorbers, solved.modes).evaluate(surfaces)
         stretch = solved.displacement[first][:, kept] - walls.reshape(2, absorbers.count, -1)
     force = force.reshape(2 * absorbers.count, solved.grid.time.size)
     saturating = None if solved.actuation is None else solved.structure
@@ -97,6 +104,6 @@ def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:
 
 
 def modal_pressure_of(structure: StructureSpectra, absorbers: AbsorberSet, force: FloatArray) -> FloatArray:
-    """Return the modal pressures (shells, parities, M + 1, T) of stored absorber forces (N, 2, T)."""
+    """Return the modal pressures (surfaces, parities, M + 1, T) of stored absorber forces (N, 2, T)."""
     points = InterfacePoints(structure.problem, absorbers, structure.modes)
     return points.project(force[_representatives(absorbers)].swapaxes(0, 1).reshape(2 * absorbers.count, -1))

@@ -44,7 +44,7 @@ class MarchResult:
         Line forces at the interface points, positive inward.
     mass_displacement : ndarray, shape (N, T)
         Displacements q of the masses, positive inward.
-    modal_pressure : ndarray, shape (shells, parities, M + 1, T)
+    modal_pressure : ndarray, shape (surfaces, parities, M + 1, T)
         Pressure of links and saturating actuators together on every shell.
     actuation : ndarray, same shape, or None
         The actuators' share in that pressure, where they saturate.
@@ -71,7 +71,7 @@ class BlockOutput(NamedTuple):
     mass_displacement : ndarray, shape (steps, N)
     volts : ndarray, shape (steps, amplitudes)
         Voltages given, in units of the limits.
-    modal_pressure : ndarray, shape (shells, parities, M + 1, steps)
+    modal_pressure : ndarray, shape (surfaces, parities, M + 1, steps)
     """
 
     force: FloatArray
@@ -101,7 +101,7 @@ def march(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate: bool
     motion = motion_without(structure, absorbers, plan)
     steps, n = motion.steps, plan.count
     force, mass, volts = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, plan.actuators.amplitudes))
-    pressure = np.zeros((plan.points.shells, plan.points.parities, plan.points.modes, steps))
+    pressure = np.zeros((plan.points.surfaces, plan.points.parities, plan.points.modes, steps))
     state = MarchState.at_rest(plan)
     while state.step < steps:
         block = slice(state.step, min(state.step + plan.length, steps))
@@ -139,7 +139,7 @@ def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tu
     before, half = state.links, links.half_step
     integral = plan.integral[:count, :count]
     history_forcing = plan.kernels.forcing(state.history, count)
-    excited = plan.points.evaluate(history_forcing[: plan.points.shells]).T
+    excited = plan.points.evaluate(history_forcing[: plan.points.surfaces]).T
     free_w = integral @ excited
     excited, free_w = excited.reshape(count, 2, n), free_w.reshape(count, 2, n) + (before.displacement + half * before.velocity)
     free_u = before.mass_velocity - links.mobility * before.force.sum(axis=0)
@@ -148,7 +148,7 @@ def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tu
     drive = (links.damping * (free_u - motion.velocity - excited) + links.stiffness * free_stretch).reshape(count, -1)
     demanded = motion.demanded_voltage
     if plan.actuators.controlled:
-        demanded = demanded + plan.actuators.of_limits(history_forcing[plan.points.shells :]).reshape(-1, count).T
+        demanded = demanded + plan.actuators.of_limits(history_forcing[plan.points.surfaces :]).reshape(-1, count).T
     solved = _nonlinear_parts(plan, state, np.concatenate([free_stretch.reshape(count, -1), demanded], axis=1), drive)
     inputs = solved.nonlinear_part
     inputs[:, : 2 * n] += drive
@@ -161,7 +161,7 @@ def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tu
     if plan.actuators.controlled:
         pressure = pressure + plan.actuators.pressure(volts.T)
     history, own = plan.kernels.push(state.history, pressure)
-    moved = plan.points.evaluate(own[: plan.points.shells]).T.reshape(count, 2, n)
+    moved = plan.points.evaluate(own[: plan.points.surfaces]).T.reshape(count, 2, n)
     after = LinkState(force[-1], free_w[-1], excited[-1], mass[-1], free_u + u[-1]).moved(moved, plan.integral[count - 1, :count])
     iterations, saturated = state.iterations + solved.iterations, state.saturated or solved.saturated
     left = MarchState(state.step + count, after, history, solved.newton, solved.relaxed, iterations, saturated)

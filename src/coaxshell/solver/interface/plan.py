@@ -154,7 +154,7 @@ def march_plan(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate:
     table = structure.kernels_with_voltage if saturate else structure.kernels
     actuators = _actuators(structure, points, structure.controlled if saturate else [])
     length = _block_length(2 * absorbers.count + actuators.amplitudes)
-    kernels = table.kernels[: points.shells, ..., :length]
+    kernels = table.kernels[: points.surfaces, ..., :length]
     length = kernels.shape[-1]
     of_forces = np.stack([points.immediate(kernels[..., lag]) for lag in range(length)])
     links = LinkConstants.of(absorbers, np.diag(of_forces[0]), structure.grid.time_step)
@@ -213,7 +213,7 @@ def _block_length(unknowns: int) -> int:
 def _actuators(structure: StructureSpectra, points: InterfacePoints | PointsAlone, controlled: list[int]) -> Actuators:
     limits = np.array([voltage_limit(structure.problem, i) for i in controlled])
     full = np.array([structure.problem.shells[i].actuator_pressure for i in controlled]) * limits
-    return Actuators(points.shells, controlled, points.parities, points.modes, limits, full)
+    return Actuators(points.surfaces, controlled, points.parities, points.modes, limits, full)
 
 
 def _voltages(
@@ -227,7 +227,7 @@ def _voltages(
     pressures = [points.project(f) for f in force]
     pressures[0][..., columns - actuation.shape[-1] :] += actuation
     for lag in range(lags):
-        volts = sum(_answer(table.kernels[points.shells :, ..., k], pressures[lag - k]) for k in range(lag + 1))
+        volts = sum(_answer(table.kernels[points.surfaces :, ..., k], pressures[lag - k]) for k in range(lag + 1))
         found[lag] = actuators.of_limits(np.asarray(volts)).reshape(-1, columns)
     return found
 

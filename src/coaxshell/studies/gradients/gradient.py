@@ -12,6 +12,7 @@ from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.loading import SystemLike, as_system
+from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
 from coaxshell.numerics.identity import numerics
 from coaxshell.numerics.keywords import showing
@@ -109,6 +110,10 @@ def require_gradient(system: System, settings: Settings, power: float | None) ->
     """Refuse runs that have no gradient: InputError."""
     if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
         raise InputError("sea", "what surface and bottom reflect is not run backwards yet", "leave the sea out")
+    solid = any(isinstance(shell, Shell) and shell.theory == "elastic" for shell in system.shells)
+    if any(solid or one.footprint is not None for one in system.absorber_list):
+        remedy = 'hold them along lines, without footprint, of shells with theory = "thin"'
+        raise InputError("absorbers", "forces over arcs of the walls are not run backwards yet", remedy)
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} has no gradient", 'use engine="spectral"')
     if settings.dimensions != 2:

@@ -283,7 +283,7 @@ function listed(text, kind) {
 function quantity(schema, path, text, value, shared) {
   const unit = schema.unit ?? "";
   const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: editable(value, unit),
-    placeholder: schema.optional ? ({ field_limit: "material’s own", centre: "6 widths", footprint: "wall’s thickness", axial_modes: "as the orders", axial_period: "by causality" }[path.split(".").at(-1)] ?? "none") : null,
+    placeholder: schema.optional ? ({ field_limit: "material’s own", centre: "6 widths", footprint: "as the walls ask", axial_modes: "as the orders", axial_period: "by causality" }[path.split(".").at(-1)] ?? "none") : null,
     onchange: () => change(path, schema.optional && !input.value.trim() ? null : numeral(input.value)) });
   const field = el("div", { class: "field" }, text, input, path in MOST ? el("small", { class: "hint" }, MOST[path](world.limits)) : null);
   const range = rangeOf(path);

@@ -1,0 +1,131 @@
+"""What forces do on the surfaces of walls some of which have two faces: their compliance, all that they move, and the kernels of the march.
+
+A face answers a front by the impedance rho c_L of its layer, not by the mass of its wall, and echoes through the thickness come 2 h/c_L
+later, within a step or two. Neither a mass nor anything else that stays smooth could be taken out of such kernels in closed form; and what
+a face yields where it is held, w = C p, has no velocity between two steps. The trapezoidal rule (:mod:`coaxshell.solver.quadrature`) has
+both: its weight at lag 0 is s C(s) at s = 2/dt, which tends to 1/(rho c_L + rho_f c_f) as the step goes and to dt/2 over the mass as the
+wall does; and it keeps w = C p. It also moves frequencies, by (omega dt)^2/12: it is applied at a third of the step, whose weights are
+summed to forces that are linear between the steps of the march (an odd part, for which w = C p stays true). All of this keeps the positive
+real part of the kernels, so that the march cannot grow.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.convolution import summed_weights
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solid_spectra import FacedSystem, SolidSpectra, WallAnswer, band, make_shapes, nothing_moves
+from coaxshell.solver.spectral import map_node_blocks, node_blocks
+
+PARTS = 3
+"""Steps of the trapezoidal rule in one of the march; odd."""
+
+
+def surface_motion(problem: Problem, normal: ComplexArray, faces: ComplexArray) -> ComplexArray:
+    """Return the displacements of all surfaces, shape (surfaces, parities, M + 1, nodes).
+
+    Parameters
+    ----------
+    problem : Problem
+    normal : ndarray, shape (shells, parities, M + 1, nodes)
+        W of all walls.
+    faces : ndarray, shape (2, shells, parities, M + 1, nodes)
+        Displacements of their faces.
+    """
+    return np.stack([normal[i] if side is None else faces[side, i] for i, side, _ in problem.surfaces])
+
+
+def surfaces_of(problem: Problem, answers: list[WallAnswer]) -> ComplexArray:
+    """Return the displacements of all surfaces, shape (surfaces, orders, nodes), from what the walls do."""
+    faces = [answer.faces for answer in answers]
+    return np.stack([faces[i].inner if side == 0 else faces[i].outer for i, side, _ in problem.surfaces])
+
+
+def surface_compliance(
+    problem: Problem, grid: LaplaceGrid, s: ComplexArray, modes: Modes, progress: Progress | None = None
+) -> ComplexArray:
+    """Return the displacement of every surface per modal pressure on every other, shape (surfaces, surfaces, orders, nodes).
+
+    Parameters
+    ----------
+    problem : Problem
+        Its walls resolve the waves of the nodes.
+    grid : LaplaceGrid
+        As many nodes as *s* has, by which they are divided into blocks.
+    s : ndarray, shape (nodes,)
+    modes : Modes
+    progress : callable, optional
+    """
+    count = len(problem.surfaces)
+    found = np.empty((count, count, modes.count, s.size), np.complex128)
+    make_shapes(problem, modes, s)
+
+    def work(block: slice) -> None:
+        system = FacedSystem(problem, s[block], modes)
+        for j, surface in enumerate(problem.surfaces):
+            found[:, j, :, block] = surfaces_of(problem, system.under_force(surface, 1.0))
+
+    with one_blas_thread():
+        map_node_blocks(node_blocks(grid, modes.count), work, progress, "frequencies")
+    return found
+
+
+def moved_by_forces(
+    problem: Problem,
+    grid: LaplaceGrid,
+    modes: Modes,
+    pressure: ComplexArray,
+    nodes: slice = slice(None),
+    progress: Progress | None = None,
+) -> SolidSpectra:
+    """Return all that modal pressures on the surfaces move.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its walls resolve the waves of the grid.
+    grid : LaplaceGrid
+    modes : Modes
+    pressure : ndarray, shape (surfaces, parities, orders, nodes)
+        Transforms, positive inward.
+    nodes : slice
+        Of the grid, at which they are given.
+    progress : callable, optional
+    """
+    s = grid.nodes[nodes]
+    found = nothing_moves(problem, pressure.shape[1], modes.count, s.size)
+    acting = [(j, surface) for j, surface in enumerate(problem.surfaces) if pressure[j].any()]
+    make_shapes(problem, modes, s)
+
+    def work(block: slice) -> None:
+        system = FacedSystem(problem, s[block], modes)
+        for j, surface in acting:
+            for parity in range(pressure.shape[1]):
+                found.add(parity, block, system.under_force(surface, pressure[j, parity, :, block]))
+
+    with one_blas_thread():
+        blocks = [slice(0, s.size)] if s.size < grid.nodes.size else node_blocks(grid, modes.count)
+        map_node_blocks(blocks, work, progress, "motion by forces")
+    return found
+
+
+def march_weights(problem: Problem, grid: LaplaceGrid, modes: Modes, progress: Progress | None = None) -> FloatArray:
+    """Return the step weights of modal pressures in the velocities of the surfaces, shape (surfaces, surfaces, orders, T).
+
+    The velocity of surface i at t_n is sum_k weights[i, j, :, k] p_j(t_(n - k)); ``grid`` is that of the march.
+    """
+    fine = LaplaceGrid(grid.time_step / PARTS, grid.steps * PARTS)
+    s = np.asarray((2.0 / fine.time_step) * np.tanh(0.5 * fine.time_step * fine.nodes), dtype=np.complex128)
+    spectrum = surface_compliance(problem.resolving(band(fine)), fine, s, modes, progress)
+    count, whole = len(problem.surfaces), np.ones(s.size)
+    found = np.empty((count, count, modes.count, grid.time.size))
+    for i in range(count):
+        for j in range(count):
+            found[i, j] = summed_weights(fine.invert(spectrum[i, j] * s, whole) * fine.time_step, PARTS, grid.time.size)
+    return found
