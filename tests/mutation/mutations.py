@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from elastic_mutations import ELASTIC
 from electrode_mutations import ELECTRODES
+from feedback_mutations import FEEDBACK
 from gradient_mutations import GRADIENTS
 from loss_mutations import LOSSES
 from reading_mutations import READING
@@ -493,5 +494,6 @@ MUTATIONS = (
     *READING,
     *ELASTIC,
     *ELECTRODES,
+    *FEEDBACK,
     *LOSSES,
 )

@@ -2,7 +2,7 @@
 
 The modal determinants with and without feedback, D_m and D0_m, have the same leading behaviour, and D0_m has no zero in the
 right half plane. By the argument principle the number of unstable poles of order m is minus the change of arg(D_m/D0_m) along
-s = sigma_0 + i omega, omega from 0 to infinity, divided by pi.
+s = sigma_0 + i omega, omega from 0 to infinity, divided by pi. Orders whose walls stay passive with their feedback need no count.
 
 D_m is that of V and W of all shells. Where V is eliminated first, of a shell with feedback H P S' (:mod:`.electroded_wall`) its entry of
 the tridiagonal matrix of W, times the relative stiffness along the hoop that feedback leaves, 1 - H P_v S_v/A_vv, is
@@ -16,7 +16,7 @@ An unstable loop cannot be seen in its answer: the inverse transform of poles ri
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
@@ -32,6 +32,7 @@ from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.winding import turning
 from coaxshell.solver.coupling import ModalSystem, determinant
+from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.structure.control_law import ControlGains
@@ -119,21 +120,38 @@ def highest_frequency(problem: Problem, max_order: int, wavenumber: float | Comp
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
-def _contour(problem: Problem, modes: Modes, least: float) -> ComplexArray:
-    """Return sigma_0 + i omega: evenly spaced as far as shells resonate, then by a growing step to where feedback fades.
+class _Contour(NamedTuple):
+    """Where Re s = shift is walked: at an even step as far as each order resonates, then by a growing one to where feedback fades."""
 
-    sigma_0 is the *least* growth that counts, or more where as many nodes cannot tell it from none.
-    """
-    ends = Modes(np.array([1.0, modes.max_order]), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
-    resonance = max(float(np.hypot(*wall.highest_frequency(ends))) for wall in problem.shells)
-    dense, fades = 1.2 * resonance, highest_frequency(problem, modes.max_order, modes.wavenumber)
-    shift = max(least, dense / (_SPACING * _MAX_NODES))
-    even = np.arange(0.0, dense + _SPACING * shift, _SPACING * shift)
-    beyond = np.geomspace(even[-1], max(fades, 1.02 * even[-1]), 200)
-    delay = max((wall.gains.delay for wall in problem.shells if wall.gains is not None), default=0.0)
-    if delay > 0.0:  # it turns the feedback once in 2 pi/delay
-        beyond = np.union1d(beyond, np.arange(even[-1], beyond[-1], _SPACING / delay))
-    return np.asarray(shift + 1j * np.concatenate([even, beyond[1:]]), dtype=np.complex128)
+    shift: float
+    even: FloatArray
+    limits: FloatArray
+    fades: float
+    delay: float
+
+    @classmethod
+    def of(cls, problem: Problem, modes: Modes, least: float) -> _Contour:
+        """Return it for some orders; the shift is the *least* growth that counts, or more where as many nodes cannot tell it from none."""
+        first = Modes(np.ones(1), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
+        limits = np.stack([1.2 * np.hypot(wall.highest_frequency(modes), wall.highest_frequency(first)) for wall in problem.shells])
+        limits = limits.max(axis=0)
+        shift = max(least, float(limits.max()) / (_SPACING * _MAX_NODES))
+        even = np.arange(0.0, limits.max() + _SPACING * shift, _SPACING * shift)
+        delay = max((wall.gains.delay for wall in problem.shells if wall.gains is not None), default=0.0)
+        return cls(shift, even, limits, highest_frequency(problem, modes.max_order, modes.wavenumber), delay)
+
+    def blocks(self) -> Iterator[ComplexArray]:
+        """Yield the nodes with an even step by blocks, each of which shares a node with the next."""
+        for start in range(0, self.even.size - 1, _BLOCK):
+            yield np.asarray(self.shift + 1j * self.even[start : start + _BLOCK + 1], dtype=np.complex128)
+
+    def beyond(self, *starts: float) -> ComplexArray:
+        """Return the nodes from the lowest of some frequencies, all among them, to where feedback fades; a delay turns it in 2 pi/delay."""
+        last = max(self.fades, 1.02 * max(starts))
+        nodes = np.union1d(starts, np.geomspace(min(starts), last, 200)[1:])
+        if self.delay > 0.0:
+            nodes = np.union1d(nodes, np.arange(min(starts), last, _SPACING / self.delay))
+        return np.asarray(self.shift + 1j * nodes, dtype=np.complex128)
 
 
 def unstable_poles(
@@ -144,25 +162,45 @@ def unstable_poles(
 
 
 def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedParts | None = None) -> UnstablePoles:
-    """Return the orders with poles that grow by more than a rate per transit."""
-    contour = _contour(problem, modes, least)
+    """Return the orders with poles that grow by more than a rate per transit.
+
+    Those are counted whose walls the feedback may make give energy (:mod:`coaxshell.solver.passivity`); no other order has any.
+    """
+    doubtful = modes.orders[~passive_orders(problem, modes, least)]
+    if not doubtful.size:
+        return UnstablePoles(doubtful, np.zeros(0))
+    modes = Modes(doubtful, modes.wavenumber, modes.sparse or 2 * doubtful.size < modes.count)
+    counts = np.rint(-_turned(problem, modes, _Contour.of(problem, modes, least), shared) / np.pi)
+    return UnstablePoles(doubtful[counts > 0], counts[counts > 0])
+
+
+def _turned(problem: Problem, modes: Modes, contour: _Contour, shared: SharedParts | None) -> FloatArray:
+    """Return how far D_m/D0_m turns along a contour, of each order."""
+    turned, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
+    for block in contour.blocks():
+        some = Modes(modes.orders[left], modes.wavenumber, modes.sparse)
+        turned[left] += turning(_ratio(problem, block, some, shared))
+        reached[left] = block[-1].imag
+        left = left[contour.limits[left] > block[-1].imag]
+        if not left.size:
+            break
+    ends = np.unique(reached)
+    nodes = contour.beyond(*ends.tolist())
+    ratio = _ratio(problem, nodes, modes, shared)
+    for end in ends:
+        turned[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
+    return turned + np.angle(1.0 / ratio[:, -1])  # beyond the last node it tends to 1 without turning
+
+
+def _ratio(problem: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None) -> ComplexArray:
+    """Return D_m/D0_m at some nodes; what is the same for all gains is found among the shared parts, or left there."""
+    make = partial(OpenLoop.of, problem, nodes, modes, shared)
+    if shared is None:
+        return make().closed(problem, nodes, modes)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
     known = (problem.open_loop.shells, controlled, problem.fluids, problem.scales, modes.key)
-    orders = modes.orders
-    turned = np.zeros(orders.size)
-    for start in range(0, contour.size, _BLOCK):
-        block = contour[start : start + _BLOCK + 1]  # shares a node with the next
-        make = partial(OpenLoop.of, problem, block, modes, shared)
-        if shared is not None:
-            open_loop = shared.get_or_make(("open loop", *known, block.tobytes()), make)
-        else:
-            open_loop = make()
-        ratio = open_loop.closed(problem, block, modes)
-        turned += turning(ratio)
-    turned += np.angle(1.0 / ratio[:, -1])  # beyond the last node the ratio tends to 1 without turning
-    counts = np.rint(-turned / np.pi)
-    found = counts > 0
-    return UnstablePoles(orders[found], counts[found])
+    open_loop: OpenLoop = shared.get_or_make(("open loop", *known, nodes.tobytes()), make)
+    return open_loop.closed(problem, nodes, modes)
 
 
 class Growth(NamedTuple):
@@ -200,7 +238,8 @@ def _pole(problem: Problem, modes: Modes, least: float) -> complex:
         here, ahead = (OpenLoop.of(problem, x, modes, None).closed(problem, x, modes)[0] for x in (s, s + step))
         return np.asarray(here * step / np.where(ahead == here, 1e-300, ahead - here))
 
-    contour = _contour(problem, modes, least)
+    walk = _Contour.of(problem, modes, least)
+    contour = np.concatenate([walk.shift + 1j * walk.even[:-1], walk.beyond(float(walk.even[-1]))])
     s = contour[[int(np.abs(newton(contour)).argmin())]]  # the pole is nearer to the contour than any that does not grow
     for _ in range(_ITERATIONS):
         change = newton(s)
@@ -261,8 +300,14 @@ def _shown(gain: float | tuple[float, ...]) -> str:
 def _remedy(problem: Problem) -> str:
     """Return what makes a loop stable: signs and sizes, and with electrodes where sensors and actuators are."""
     system = problem.system
-    assert system.control is not None
-    if system.control.transducers == "paper":
+    control = system.control
+    assert control is not None
+    if isinstance(control, Feedback) and control.delay:
+        return (
+            "answer sooner, use less gain, feed fewer orders back (control.weights) or give the walls a loss_factor: "
+            "without losses of the walls any delay is fatal to some order"
+        )
+    if control.transducers == "paper":
         return "use a smaller magnitude or the other sign (negative gains stiffen and damp)"
     other = "use a smaller magnitude or the other sign (positive gains stiffen and damp)"
     for number in system.controlled_shells:

@@ -51,6 +51,11 @@ class ControlLaw(ABC):
         """Whether nothing is fed back."""
         return False
 
+    @property
+    def resonances(self) -> tuple[tuple[float, float], ...]:
+        """Frequency and width of each pole of the law beside the axis."""
+        return ()
+
 
 @dataclass(frozen=True)
 class ControlGains(ControlLaw):
@@ -178,6 +183,12 @@ class RationalLaw(ControlLaw):
         """Whether the numerator or all weights are 0."""
         none = not isinstance(self.weights, int) and self.weights is not None and not any(self.weights)
         return none or not any(self.numerator)
+
+    @property
+    def resonances(self) -> tuple[tuple[float, float], ...]:
+        """Imaginary part and minus the real part of each pole, pairs once."""
+        poles = np.roots(self.denominator) if len(self.denominator) > 1 else np.zeros(0)
+        return tuple((float(pole.imag), float(-pole.real)) for pole in poles if pole.imag >= 0.0)
 
     def _reach(self, size: FloatArray, share: float) -> FloatArray:
         """Return the highest frequency of each size at which |H| size reaches a share of omega^2, found to 2 per cent, from above."""

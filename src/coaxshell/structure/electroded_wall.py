@@ -43,6 +43,15 @@ class ElectrodedWall(ThinWall):
         normal = inertia + k.ww - law * (push.w * read.w)
         return WallOperator(normal + (k.vw - law * (push.w * read.v)) * tangential, tangential)
 
+    def resistance(self, modes: Modes, s: ComplexArray) -> FloatArray:
+        """Return the lesser of Re A_vv/s and Re Z/s with feedback: where V alone gives energy, Z tells nothing."""
+        whole = super().resistance(modes, s)
+        if self.gains is None:
+            return whole
+        push, read = self.drive(modes).columns, self.sensor_gain(modes).columns
+        along = self.mass * s * s + self.dynamic_stiffness(modes, s).vv - self.gains.at(s, modes) * (push.v * read.v)
+        return np.minimum(whole, np.where(modes.column == 0, np.inf, (along / s).real))
+
     def leading(self, modes: Modes) -> Leading:
         """Return mass and damping at once, that of derivative feedback on W included."""
         if self.gains is None:

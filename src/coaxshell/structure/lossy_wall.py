@@ -147,7 +147,12 @@ def _stored(section: Section, strength: float, motion: WallMotion) -> FloatArray
 
 
 def _summed(rows: FloatArray, factors: ComplexArray) -> ComplexArray:
-    """Return sum over factors of g(s) times rows (factors, entries, orders) or (..., nodes): (entries, orders, nodes)."""
+    """Return sum over factors of g(s) times rows (factors, entries, orders) or (..., nodes): (entries, orders, nodes).
+
+    Nodes may be those of each order, factors (factors, orders, nodes).
+    """
+    if factors.ndim == 3:
+        return np.asarray(np.einsum("fem,fmn->emn", rows, factors))
     if rows.ndim == 4 or np.iscomplexobj(rows):
         return np.asarray(np.einsum("fe...n,fn->e...n", rows if rows.ndim == 4 else rows[..., None], factors))
     flat = rows.reshape(len(rows), -1).T @ np.ascontiguousarray(factors).view(np.float64)

@@ -305,6 +305,10 @@ class ShellModel(ABC):
             found.impedance -= self.gains.at(s, modes) * self.fed_back(modes, found)
         return found
 
+    def resistance(self, modes: Modes, s: ComplexArray) -> FloatArray:
+        """Return Re Z/s with feedback, how much energy its motion loses in it, at nodes of shape (nodes,) or (orders, nodes)."""
+        return np.asarray((self.operator(modes, s).impedance / s).real)
+
     def leading(self, modes: Modes) -> Leading:
         """Return mass and damping at once: its own, and what derivative feedback adds."""
         if self.gains is None:

@@ -1,0 +1,82 @@
+"""Orders whose feedback cannot make a loop unstable, found without the fluids: walls that stay passive with it.
+
+Fluids take energy from a wall and never give any: the load that they add to its normal motion, over s, has a positive real part wherever
+Re s > 0. A wall whose own impedance with feedback, Z(s)/s, has one too on all of Re s = sigma_0 has it everywhere to the right (a harmonic
+function is least on the boundary), and then no fluid and no other such wall can make their determinant zero there. Where feedback acts
+on V as well, V alone has to be passive first, so that Z has no poles.
+
+The line is walked at nodes as far from each other as the functions bend: beside each resonance of V and of the law at distances that grow
+from sigma_0, and by a growing step in between. A delay turns the feedback between nodes: where by more than half a radian, its phase
+counts at its worst.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.scaling import FluidRegion, Problem
+from coaxshell.structure.shell_model import ShellModel
+
+Orders = npt.NDArray[np.bool_]
+"""Of each order, whether."""
+
+_LOWEST, _HIGHEST = 1e-2, 1e8
+_DECADE = 6
+"""Nodes to a decade where nothing resonates."""
+_BESIDE = 0.35
+"""Nodes beside a resonance of width sigma lie at sigma sinh(0.35 k)."""
+_TURNED = 0.5
+"""Radians by which a delay may turn between nodes that are taken as they are."""
+_LATE = 400
+"""Nodes by which a delay is followed."""
+_SURE = 0.25
+"""Share of the wall's own damping, M sigma_0, that has to be left: what lies between the nodes is smooth to better than that."""
+
+
+def passive_orders(problem: Problem, modes: Modes, least: float) -> Orders:
+    """Return which orders no feedback of the problem can make grow by more than a rate per transit; True only where that is certain."""
+    known = modes.two_dimensional and all(fluid is None or type(fluid) is FluidRegion for fluid in problem.fluids)
+    found = np.full(modes.count, known)
+    for wall in problem.shells:
+        if wall.gains is not None and found.any():
+            found[found] = _passive(wall, Modes(modes.orders[found], sparse=modes.sparse), least)
+    return found
+
+
+def _passive(wall: ShellModel, modes: Modes, least: float) -> Orders:
+    """Return for which orders a wall is passive with its feedback on Re s = *least*."""
+    assert wall.gains is not None
+    fed = np.asarray(wall.gains.weight(modes.orders)) * np.ones(modes.count) != 0.0
+    if not fed.any():
+        return np.ones_like(fed)
+    some = Modes(modes.orders[fed], sparse=modes.sparse)
+    s = np.asarray(least + 1j * _frequencies(wall, some, least), dtype=np.complex128)
+    resistance = wall.resistance(some, s)
+    if wall.gains.delay:
+        gaps = np.diff(s.imag, axis=1)
+        turns = wall.gains.delay * np.maximum(gaps, np.roll(gaps, 1, axis=1)) > _TURNED
+        worst = np.concatenate([turns[:, :1], turns], axis=1)
+        whole, alone = (np.asarray(one.operator(some, s).impedance) for one in (wall, wall.with_gains(None)))
+        fed_back = np.abs((whole - alone) / s)
+        resistance = np.where(worst, np.minimum(resistance, wall.mass * least - fed_back), resistance)
+    passive = np.ones(modes.count, dtype=np.bool_)
+    passive[fed] = (resistance > _SURE * wall.mass * least).all(axis=1)
+    return passive
+
+
+def _frequencies(wall: ShellModel, modes: Modes, least: float) -> FloatArray:
+    """Return where the line of Re s = *least* is looked at, ascending, shape (orders, nodes)."""
+    assert wall.gains is not None
+    common: list[FloatArray] = [np.zeros(1), np.geomspace(_LOWEST, _HIGHEST, int(_DECADE * np.log10(_HIGHEST / _LOWEST)))]
+    far = np.arcsinh(1e4 / least)
+    beside = np.sinh(np.linspace(-far, far, int(2 * far / _BESIDE)))
+    common += [np.asarray(np.abs(frequency + max(width, least) * beside)) for frequency, width in wall.gains.resonances]
+    if wall.gains.delay:
+        common.append(np.arange(0.0, _LATE) * (_TURNED / wall.gains.delay))
+    own = {x.tobytes(): x for x in (wall.with_gains(None).highest_frequency(modes), wall.highest_frequency(modes))}
+    each = [np.abs(x[:, None] + least * beside) for x in own.values()]
+    rows = [np.broadcast_to(x, (modes.count, x.size)) for x in common]
+    return np.sort(np.concatenate([*rows, *each], axis=1), axis=1)
