@@ -101,6 +101,13 @@ def test_saturation_is_refused_where_it_is_reached():
         cx.gradient(system, metric="inner.rms_stress", variables="control.derivative", **SETTINGS)
 
 
+def test_voltages_of_a_law_that_remembers_have_no_gradient():
+    law = cx.Feedback(numerator=[-2e-4], denominator=[1e-4, 1.0])
+    system = cx.presets.load("active").replace(control=law)
+    with pytest.raises(cx.InputError, match="remembers earlier instants"):
+        cx.gradient(system, metric="inner.peak_actuator_voltage", variables="shells[0].radius", **SETTINGS)
+
+
 def test_the_end_of_a_range_has_no_gradient():
     with pytest.raises(cx.InputError, match="end of what is allowed"):
         cx.gradient(BARE, metric="inner.rms_stress", variables="source.delay", **SETTINGS)

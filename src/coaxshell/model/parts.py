@@ -110,7 +110,7 @@ class SystemParts(Described):
         name: str = "",
         **unknown: Any,
     ) -> None:
-        given = {"name": name, "shells": shells, "fluids": fluids, "source": source}
+        given: dict[str, Any] = {"name": name, "shells": shells, "fluids": fluids, "source": source}
         given |= {"absorbers": absorbers, "control": control, "sea": sea}
         super().__init__(**stated(given), **unknown)
 

@@ -155,7 +155,8 @@ class LaplaceGrid:
         """
         grown = histories * np.exp(self.shift * self.time)
         spectrum: ComplexArray = fft.rfft(grown, self.samples, axis=-1, workers=WORKERS)
-        return np.conjugate(spectrum, out=spectrum) * (self.taper() * self._counts / self.period)
+        spectrum *= self.taper() * self._counts / self.period
+        return spectrum.conj()
 
     def transform_linear_transposed(self, spectrum: ComplexArray) -> FloatArray:
         """Return the transpose of :meth:`transform_linear`: x with sum_n x_n y_n = Re sum_k X_k transform_linear(y)_k for every y."""

@@ -70,7 +70,7 @@ def sent_back(solved: SolvedSpectra, slope: ComplexArray) -> ComplexArray:
     assert planes is not None
     outer = solved.face_motion.outer[-1]
     images = causal_images(planes, problem.head, float(grid.time[-1]))
-    load = np.zeros_like(outer)
+    load: ComplexArray = np.zeros_like(outer)
 
     def work(block: slice) -> None:
         surface = RadialBasis(structure.modes, grid.nodes[block])(1.0, problem.head)

@@ -19,6 +19,7 @@ from coaxshell.solver.electrodes import segment_length
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.shell_model import Gain
 from coaxshell.studies.gradients.norms import Norm, power_mean, root_mean_square
 from coaxshell.studies.metrics import Metric
@@ -136,6 +137,9 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
             share = share / actuator_limit(run, shell).volts
         if gains is None:
             return scaled(sensor, 0.0 * share), None  # type: ignore[return-value]
+        if not isinstance(gains, ControlGains):
+            remedy = "use its sensor's voltage, or a PDControl"
+            raise InputError("metric", f"{metric.name!r} has no gradient: a law H(s) remembers earlier instants", remedy)
         return scaled(sensor, gains.proportional * share), scaled(sensor, gains.derivative * share)  # type: ignore[return-value]
 
     parts, where = (of_voltage, "anywhere") if entry is None else (of_table, entry[1])
