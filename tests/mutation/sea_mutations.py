@@ -38,6 +38,14 @@ SEA = (
         "solver/test_sea.py",
     ),
     Mutation(
+        "weight-of-the-water",
+        "model/sea.py",
+        "weight * (self.depth - height)",
+        "weight * (self.depth + height)",
+        "water higher up stands under less",
+        "model/test_sea.py",
+    ),
+    Mutation(
         "mirrored-flow",
         "response/fields/mirrored.py",
         "along = -along if place.image.mirrored else along",

@@ -7,6 +7,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
+from coaxshell.model.sea import ATMOSPHERE, GRAVITY, VAPOUR_PRESSURE
 
 BARE = cx.presets.load("bare")
 SMOOTH = cx.Gaussian(peak_pressure=2.5e4, width=8e-5)
@@ -70,3 +71,58 @@ def test_three_dimensions() -> None:
     np.testing.assert_allclose(run.pressure(z=[0.0, 0.3], **place)[1], run.pressure(z=0.3, **place), rtol=1e-3)
     with pytest.raises(InputError, match="when what the shells scatter is back"):
         run.pressure_rms("exterior", 1.5, time=1.3)
+
+
+def test_water_at_a_depth_cavitates_where_its_absolute_pressure_is_that_of_vapour() -> None:
+    """A smooth wave from below meets the surface: tension below it, sooner and over more of the water the nearer it is."""
+    source = cx.PlaneWave(angle=270.0, pulse=cx.Gaussian(peak_pressure="1.5 MPa", width="0.15 ms"))
+    system = BARE.replace(source=source, sea=cx.Sea(depth=3.0))
+    run = cx.simulate(system, duration=6.0, time_step=2e-2, modes=12)
+    x, y = np.linspace(-2.0, 2.0, 9), np.linspace(-2.0, 2.9, 15)
+    times = run.time[::4]
+    found = run.cavitation(x, y, time=times)
+    rest = ATMOSPHERE + 1000.0 * GRAVITY * (3.0 - y[None, :, None])
+    absolute = run.pressure(x=x, y=y, time=times) + rest
+    outside = np.hypot(x, y[:, None]) >= 1.0
+    np.testing.assert_allclose(found.lowest_pressure.values[outside], absolute.min("time").values[outside], rtol=1e-9)
+    below = absolute.values < VAPOUR_PRESSURE
+    when = np.where(below.any(axis=0), np.asarray(times)[below.argmax(axis=0)] * BARE.transit_time, np.nan)
+    np.testing.assert_allclose(found["first"].values[outside], when[outside])
+    assert np.isnan(found["first"].values[~outside]).all()
+    assert found.attrs["first_time"] == pytest.approx(np.nanmin(when[outside]))
+    assert found.attrs["area"] > 1.0
+    (text,) = [text for text in run.warnings if "of vapour" in text]
+    for words in ("outer shell: the absolute pressure of the fluid outside", "2.339 kPa", "first at t = ", "response.cavitation()"):
+        assert words in text
+    deep = cx.simulate(system.replace(sea=cx.Sea(depth=900.0)), duration=6.0, time_step=2e-2, modes=12)
+    assert not [text for text in deep.warnings if "of vapour" in text]
+    nothing = deep.cavitation(radius=[1.5], angle=[0.0, 90.0])
+    assert (nothing.attrs["first_time"], nothing.attrs["first_place"]) == ("never", "nowhere")
+
+
+def test_cavitation_needs_a_depth() -> None:
+    run = cx.simulate(BARE, duration=0.5, time_step=2e-2, modes=4)
+    with pytest.raises(InputError, match="the pressure at rest is unknown"):
+        run.cavitation()
+
+
+def test_pictures_show_surface_bottom_and_cavitation() -> None:
+    from coaxshell.plotting.frames import FieldView
+    from coaxshell.plotting.sea import cavitating, draw_cavitation, draw_planes, rim
+    from coaxshell.plotting.style import new_figure
+
+    view, system = FieldView(pixels=60), BARE.replace(sea=cx.Sea(depth=2.0, bottom=1.5))
+    pressure = np.zeros((60, 60), np.float32)
+    pressure[40:50, 5:20] = -3e5
+    pressure[30, :] = -3e5  # thin as the rise of a front
+    left = cavitating(system, pressure, view)
+    torn = left < 0.0
+    assert torn.sum() == 10 * 15
+    assert torn[40:50, 5:20].all()
+    assert rim(left).sum() < torn.sum()
+    assert cavitating(BARE, pressure, view) is None
+    ax = new_figure(3.0, 3.0).add_subplot()
+    draw_planes(ax, system, view)
+    draw_cavitation(ax, system, pressure, view)
+    assert len(ax.patches) == 2
+    assert len(ax.collections) == 1

@@ -7,7 +7,8 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.response import PreparedSystem
-from coaxshell.solver.tension import AMBIENT, HARMLESS, spectra_of_motion, tensions, wall_pressures
+from coaxshell.solver.cavitation import AMBIENT
+from coaxshell.solver.tension import HARMLESS, spectra_of_motion, tensions, wall_pressures
 
 QUICK = {"duration": 3.0, "time_step": 0.01, "modes": 24}
 LOUD = {"source": cx.PlaneWave(pulse=cx.Gaussian(peak_pressure="2 MPa", width="0.15 ms"))}  # smooth: what 24 orders resolve

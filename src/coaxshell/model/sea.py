@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
 from coaxshell.model.units import Angle, Length
+from coaxshell.numerics.arrays import FloatArray
+
+Heights = TypeVar("Heights", float, FloatArray)
 
 ATMOSPHERE = 101_325.0
 """Pressure of the standard atmosphere, Pa (ISO 2533)."""
@@ -34,17 +38,18 @@ class Sea(Described):
     hydrostatic: bool = True
     """Whether the weight of the water adds to the pressure at rest; without, it is that of the atmosphere everywhere."""
 
-    def at_rest(self, height: float, density: float) -> float:
+    def at_rest(self, height: Heights, density: float) -> Heights:
         """Return the pressure of the water at rest, Pa: p_atm + rho g (depth - height).
 
         Parameters
         ----------
-        height : float
+        height : float or ndarray
             Above the axis, in the direction *up*, m.
         density : float
             Of the water, kg/m^3.
         """
-        return ATMOSPHERE + (density * GRAVITY * (self.depth - height) if self.hydrostatic else 0.0)
+        weight = density * GRAVITY if self.hydrostatic else 0.0
+        return ATMOSPHERE + weight * (self.depth - height)
 
     def height_of(self, distance: float | None, angle: float) -> float:
         """Return the height of a point above the axis, m: distance cos(angle - up).

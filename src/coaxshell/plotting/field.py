@@ -18,6 +18,7 @@ from coaxshell.plotting.field_scales import (
     stress_unit,
 )
 from coaxshell.plotting.frames import WALL_ANGLES, FieldView, Frames, field_frames, gathered
+from coaxshell.plotting.sea import draw_cavitation, draw_planes
 from coaxshell.plotting.style import new_figure, style
 
 if TYPE_CHECKING:
@@ -96,12 +97,15 @@ def plot_field(
 def draw_frame(
     ax: Axes, system: System, frames: Frames, index: int, view: FieldView, scales: FieldScales, *, absorbers: bool = True
 ) -> None:
-    """Draw one frame into axes: pressure as an image, stress on the shells, absorbers as dots."""
+    """Draw one frame into axes: pressure as an image, stress on the shells, absorbers as dots; the sea's planes and cavitation."""
     edge = view.half_width
     image: Any = mappable(scales.pressure, PRESSURE_COLOURS)
     ax.imshow(
         frames.field(index), extent=(-edge, edge, -edge, edge), origin="lower", cmap=image.cmap, norm=image.norm, interpolation="auto"
     )
+    if system.sea is not None:
+        draw_cavitation(ax, system, frames.field(index), view)
+        draw_planes(ax, system, view)
     for band, around in zip(wall_bands(system), frames.stress, strict=True):
         _wall(ax, band, None if around is None else around[index], scales.stress)
     if absorbers and system.absorber_list:

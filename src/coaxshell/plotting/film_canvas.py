@@ -21,6 +21,7 @@ from coaxshell.plotting.field_scales import (
 )
 from coaxshell.plotting.frames import FieldView, Frames
 from coaxshell.plotting.panels import Band, Panel
+from coaxshell.plotting.sea import CAVITATION_COLOUR, rim
 from coaxshell.plotting.style import literal, style
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ Bytes = npt.NDArray[np.uint8]
 _DPI = 100
 _MARGIN, _GAP, _TOP, _BAR, _LABELS = 10, 12, 34, 14, 58  # at 450 pixels a panel; they grow with it
 _LEVELS = 1024
+_CAVITATION = np.array([int(CAVITATION_COLOUR[i : i + 2], 16) for i in (1, 3, 5)], dtype=np.uint8)
 _FRAME = 60  # dark grey
 _LONGEST = 28
 _FEWEST_WITH_AXES = 240  # pixels of a panel: figures on smaller ones could not be read
@@ -57,6 +59,7 @@ class Canvas:
         self.view, self.scales = view, scales
         self._zoom = view.pixels / 450.0
         panels = [panel for run in runs for panel in run.panels]
+        self._panels = panels
         count, side = len(panels), view.pixels
         self._top = self._px(_TOP)
         self._left = [self._px(_MARGIN) + i * (side + self._px(_GAP)) for i in range(count)]
@@ -73,9 +76,12 @@ class Canvas:
     def frame(self, parts: Sequence[Frames], index: int) -> Bytes:
         """Return one frame, shape (height, width, 3), from the same index of each panel's frames."""
         picture = self._background.copy()
-        for left, part, bands, overlay in zip(self._left, parts, self._bands, self._overlays, strict=True):
+        for left, part, bands, overlay, source in zip(self._left, parts, self._bands, self._overlays, self._panels, strict=True):
             panel = picture[self._top : self._top + self.view.pixels, left : left + self.view.pixels]
             panel[:] = coloured(compressed(part.field(index)[::-1] / np.float32(self.scales.pressure)), 1.0, self._colours)
+            left_over = source.cavitating(part.field(index), self.view)
+            if left_over is not None:
+                panel[rim(left_over)[::-1]] = _CAVITATION
             for band, stress in zip(bands, part.stress, strict=True):
                 if stress is not None and band is not None:
                     _blend(panel, band, coloured(stress[index], self.scales.stress, self._stress_colours))

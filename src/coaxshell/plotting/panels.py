@@ -13,6 +13,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.field import ABSORBER_COLOUR, WALL_COLOUR, absorber_places, draw_frame, wall_bands
 from coaxshell.plotting.field_scales import PRESSURE_COLOURS, STRESS_COLOURS, FieldScales, mappable
 from coaxshell.plotting.frames import FieldView, Frames
+from coaxshell.plotting.sea import cavitating, draw_planes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,6 +55,10 @@ class Panel(Protocol):
         """Draw walls and absorbers; *zoom* is the panel's size as a multiple of 450 pixels."""
         ...
 
+    def cavitating(self, pressure: npt.NDArray[np.floating], view: FieldView) -> npt.NDArray[np.floating] | None:
+        """Return the absolute pressure less that of vapour, Pa, rows from the lowest y upward, None where no sea tells."""
+        ...
+
     def draw(self, ax: Axes, frames: Frames, index: int, view: FieldView, scales: FieldScales, *, absorbers: bool = True) -> None:
         """Draw a frame into axes of a figure."""
         ...
@@ -91,12 +96,17 @@ class Section:
         """Draw the edges of the walls, and absorbers as dots."""
         from matplotlib.patches import Circle
 
+        draw_planes(ax, self.system, view, zoom)
         for edges in wall_bands(self.system):
             for edge in edges:
                 ax.add_patch(Circle((0, 0), edge, fill=False, edgecolor=WALL_COLOUR, linewidth=0.6 * zoom))
         if self.system.absorber_list:
             x, y = absorber_places(self.system)
             ax.plot(x, y, linestyle="none", marker="o", markersize=2.4 * zoom, color=ABSORBER_COLOUR, markeredgewidth=0)
+
+    def cavitating(self, pressure: npt.NDArray[np.floating], view: FieldView) -> npt.NDArray[np.floating] | None:
+        """Return the absolute pressure less that of vapour, Pa, rows from the lowest y upward, None where no sea tells."""
+        return cavitating(self.system, pressure, view)
 
     def draw(self, ax: Axes, frames: Frames, index: int, view: FieldView, scales: FieldScales, *, absorbers: bool = True) -> None:
         """Draw a frame into axes of a figure."""
@@ -146,6 +156,10 @@ class AlongAxis:
     def outline(self, ax: Axes, view: FieldView, zoom: float) -> None:
         """Draw the edges of the walls where they show their stress, a line each where they do not."""
         self._lines(ax, view, 0.6 * zoom, 1.3 * zoom)
+
+    def cavitating(self, pressure: npt.NDArray[np.floating], view: FieldView) -> npt.NDArray[np.floating] | None:
+        """Return None: what cavitates is told in cross-sections."""
+        return None
 
     def _lines(self, ax: Axes, view: FieldView, thin: float, thick: float) -> None:
         edge, ends = view.half_width, self.ends or (0.0, 0.0)

@@ -364,6 +364,16 @@ class Response:
         """
         return fields.pressure_rms(self._spectra, region, radius, **options)
 
+    def cavitation(
+        self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.CavitationOptions]
+    ) -> xr.Dataset:
+        """Return where the water outside falls below the pressure of vapour: when first, how low, how long; the system needs a sea.
+
+        Options are *radius* and *angle* instead of x and y, *time* and *vapour_pressure*; see
+        :func:`coaxshell.response.fields.cavitation.cavitation`.
+        """
+        return fields.cavitation(self._spectra, x, y, **options)
+
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read of the motion of the walls; two dimensions have no stations."""
         ((_, motion),) = self.stations_read(station)

@@ -17,11 +17,13 @@ from coaxshell.model.plausibility import remarks
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.records.measures import energy_above, share_below
+from coaxshell.model.sea import VAPOUR_PRESSURE
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver import wetted_surfaces
+from coaxshell.solver.cavitation import AMBIENT
 from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import InterfacePoints
@@ -32,7 +34,7 @@ from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.slice_error import slice_error
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
-from coaxshell.solver.tension import AMBIENT, Tension
+from coaxshell.solver.tension import Tension
 from coaxshell.solver.thin_error import thin_errors
 
 TRUNCATION_LIMIT = 1e-2
@@ -354,6 +356,9 @@ def tension(problem: Problem, found: Iterable[Tension]) -> list[str]:
     for low in found:
         fluid = region_phrase(low.region, count)
         when = f"t = {low.time:.3g} ({engineering(low.time * problem.scales.time, 's')}), {low.angle:.0f} degrees"
+        if low.region == count and problem.system.sea is not None:
+            warnings.append(_cavitation(problem, low, fluid))
+            continue
         extent = f"over up to {low.width:.0f} degrees at once, for {engineering(low.lasting * problem.scales.time, 's')} in all"
         warnings.append(
             f"{shell_phrase(low.shell, count)}: the total pressure of {fluid} on it falls to {engineering(low.pressure, 'Pa')} at {when}, "
@@ -361,3 +366,17 @@ def tension(problem: Problem, found: Iterable[Tension]) -> list[str]:
             "a depth, which would prevent it, is not part of the model; lower the source's pressure, or take what follows with care"
         )
     return warnings
+
+
+def _cavitation(problem: Problem, low: Tension, fluid: str) -> str:
+    """Return the warning that water at a known depth cavitates on a wall."""
+    transit, count = problem.scales.time, len(problem.shells)
+    absolute, vapour = low.pressure - low.least + VAPOUR_PRESSURE, engineering(VAPOUR_PRESSURE, "Pa")
+    first = f"t = {low.first:.3g} ({engineering(low.first * transit, 's')}) at {low.first_angle:.0f} degrees"
+    worst = f"{engineering(absolute, 'Pa')} at t = {low.time:.3g}, {low.angle:.0f} degrees"
+    extent = f"up to {low.width:.0f} degrees at once, for {engineering(low.lasting * transit, 's')} in all"
+    return (
+        f"{shell_phrase(low.shell, count)}: the absolute pressure of {fluid} on it falls below that of vapour, {vapour}, first at {first}, "
+        f"over {extent}; it would be {worst}. Water cavitates there, which no run knows: read what follows as linear acoustics, lower the "
+        "source's pressure or lay the axis deeper; response.cavitation() maps it"
+    )

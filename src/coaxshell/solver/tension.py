@@ -1,7 +1,7 @@
 """Where the total pressure on a wetted surface falls so low that real water would cavitate.
 
 The model's pressures are those of the shock alone: water at rest has p = 0 here. At the surface of the sea it stands under 0.1 MPa, so
-p < -0.1 MPa is tension there; at a depth of h metres another 0.01 MPa h would have to be overcome, which the description does not know.
+p < -0.1 MPa is tension there. A system with a sea has a depth, whose pressure must be overcome first (:mod:`coaxshell.solver.cavitation`).
 
 On the walls the transforms of the pressure follow from those of W by the fluids' operators. A part of the band and of the orders tells
 "about 0.1 MPa" well enough, at a few hundredths of the run's cost.
@@ -20,15 +20,16 @@ from coaxshell.acoustics.operators import annulus
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.circle import circle_angles, on_circle
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.solver.cavitation import AMBIENT, least_on_wall
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.scaling import Problem
 
-AMBIENT = 0.1e6
-"""Pressure at the surface of the sea, Pa."""
 HARMLESS = 0.25
 """Largest sum of the sources' peaks, in ambient pressures, for which nothing is looked at: it would take tension four times as large."""
 _RESOLUTION = 0.01
 _MOST_ORDERS = 60
+_LASTING = 4
+"""Instants of _RESOLUTION that a place cavitates at least for the beginning to be told."""
 
 
 class Tension(NamedTuple):
@@ -43,7 +44,11 @@ class Tension(NamedTuple):
     time, angle : float
         When (transits) and where (degrees from theta = 0).
     width, lasting : float
-        Degrees of the circumference that are below -AMBIENT at once at most, and transits during which any are.
+        Degrees of the circumference that cavitate at once at most, and transits during which any do.
+    least : float
+        Pressure below which the water cavitates at that angle, Pa, negative.
+    first, first_angle : float
+        When (transits) and where (degrees) it does so first.
     """
 
     region: int
@@ -53,6 +58,9 @@ class Tension(NamedTuple):
     angle: float
     width: float
     lasting: float
+    least: float = -AMBIENT
+    first: float = 0.0
+    first_angle: float = 0.0
 
 
 def watched(problem: Problem) -> bool:
@@ -63,7 +71,7 @@ def watched(problem: Problem) -> bool:
 def tensions(
     problem: Problem, grid: LaplaceGrid, normal: ComplexArray, outer: ComplexArray | None = None, returned: ComplexArray | None = None
 ) -> list[Tension]:
-    """Return the wetted surfaces on which the total pressure falls below -AMBIENT within the run.
+    """Return the wetted surfaces on which the total pressure falls so low within the run that the water cavitates.
 
     Parameters
     ----------
@@ -85,7 +93,7 @@ def tensions(
     found = []
     for region, shell, spectra in wall_pressures(problem, coarse, few, few_outer, returned):
         modal = problem.scales.pressure * coarse.invert(spectra, window)[..., within]
-        lowest = _lowest(modal, coarse.time[within])
+        lowest = _lowest(problem, region, modal, coarse.time[within])
         if lowest is not None:
             found.append(Tension(region, shell, *lowest))
     return found
@@ -167,15 +175,24 @@ def _first_nodes(grid: LaplaceGrid) -> LaplaceGrid:
     return grid
 
 
-def _lowest(modal: np.ndarray, time: np.ndarray) -> tuple[float, float, float, float, float] | None:
-    """Return (pressure, time, angle, width, lasting) where a surface is below -AMBIENT; None if it never is."""
+def _lowest(problem: Problem, region: int, modal: np.ndarray, time: np.ndarray) -> tuple[float, ...] | None:
+    """Return (pressure, time, angle, width, lasting, least, first, first angle) where a surface cavitates; None if it never does."""
     field = on_circle(modal)
-    low = field < -AMBIENT
+    angles = circle_angles(modal.shape[1], modal.shape[0])
+    least = least_on_wall(problem, region, np.asarray(angles))
+    excess = field - least[:, None]
+    low = excess < 0.0
     if not low.any():
         return None
-    place, instant = np.unravel_index(int(field.argmin()), field.shape)
-    angles = circle_angles(modal.shape[1], modal.shape[0])
+    place, instant = np.unravel_index(int(excess.argmin()), field.shape)
+    lasting_low = low.copy()  # not what a front's band leaves before and behind it
+    for later in range(1, _LASTING):
+        lasting_low[:, :-later] &= low[:, later:]
+        lasting_low[:, -later:] = False
+    start = int(lasting_low.any(axis=0).argmax()) if lasting_low.any() else int(instant)
+    where = int(np.where(lasting_low[:, start], excess[:, start], 0.0).argmin()) if lasting_low.any() else int(place)
     around = 360.0 / len(angles) if modal.shape[0] == 2 else 360.0 / (len(angles) - 1)
     width = min(360.0, float(low.sum(axis=0).max()) * around)
     lasting = float(low.any(axis=0).sum()) * float(time[1] - time[0])
-    return float(field[place, instant]), float(time[instant]), float(angles[place]), width, lasting
+    lowest = float(field[place, instant]), float(time[instant]), float(angles[place])
+    return *lowest, width, lasting, float(least[place]), float(time[start]), float(angles[where])

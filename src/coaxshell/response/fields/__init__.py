@@ -1,5 +1,6 @@
 """Acoustic fields of a finished run: pressure, particle velocity and intensity on grids, and their means over a region."""
 
+from coaxshell.response.fields.cavitation import CavitationOptions, cavitation
 from coaxshell.response.fields.evaluate import intensity, pressure, velocity
 from coaxshell.response.fields.request import FieldOptions, PartOptions, PressureOptions, RmsOptions
 from coaxshell.response.fields.rms import pressure_rms
@@ -14,6 +15,7 @@ from coaxshell.response.fields.spatial_pressure import (
 from coaxshell.response.fields.spatial_rms import SpatialRmsOptions, spatial_pressure_rms
 
 __all__ = [
+    "CavitationOptions",
     "FieldOptions",
     "PartOptions",
     "PressureOptions",
@@ -22,6 +24,7 @@ __all__ = [
     "SpatialPartOptions",
     "SpatialPressureOptions",
     "SpatialRmsOptions",
+    "cavitation",
     "intensity",
     "pressure",
     "pressure_rms",

@@ -207,6 +207,14 @@ def pressure(
     )
 
 
+def pressure_at(spectra: SolvedSpectra, grid: Grid, when: FloatArray) -> FloatArray:
+    """Return the total pressure on a grid at some instants, Pa, (instants, points)."""
+    asked = request(part="total", filter=None, time_resolution=None, memory=1e9, progress=None, step=spectra.grid.time_step)
+    (values,) = evaluate(spectra, settled(spectra, asked, grid), grid, when, ("pressure",))
+    values *= spectra.problem.scales.pressure
+    return values
+
+
 OUTWARD = "components along increasing radius and angle"
 ALONG_AXES = "components along x and y"
 

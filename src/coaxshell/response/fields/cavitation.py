@@ -1,0 +1,135 @@
+"""Where, when and how deeply the water around the shells would cavitate, at points outside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.errors import InputError
+from coaxshell.model.sea import VAPOUR_PRESSURE
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import xarray as xr
+from coaxshell.response.fields.evaluate import pressure_at
+from coaxshell.response.fields.grids import Grid, coordinates, grid_of
+from coaxshell.response.fields.mirrored import in_water
+from coaxshell.response.fields.request import positive, when_of
+from coaxshell.solver.cavitation import least_pressure
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solved_spectra import SolvedSpectra
+
+
+class CavitationOptions(TypedDict, total=False):
+    """Keyword arguments of a map of cavitation beside x and y."""
+
+    radius: npt.ArrayLike | None
+    angle: npt.ArrayLike | None
+    time: npt.ArrayLike | None
+    vapour_pressure: float
+
+
+INSTANTS = 200
+"""Default number of instants, at most."""
+SIDE = 81
+"""Points along a side of the default grid."""
+REACH = 3.0
+"""Half the side of the default grid, in a."""
+_BLOCK = 25
+"""Instants whose fields are solved at a time."""
+
+
+def cavitation(
+    spectra: SolvedSpectra,
+    x: npt.ArrayLike | None = None,
+    y: npt.ArrayLike | None = None,
+    *,
+    radius: npt.ArrayLike | None = None,
+    angle: npt.ArrayLike | None = None,
+    time: npt.ArrayLike | None = None,
+    vapour_pressure: float = VAPOUR_PRESSURE,
+) -> xr.Dataset:
+    """Return where the absolute pressure of the water outside falls below that of its vapour, as the linear run has it.
+
+    p_atm + rho g (d - h) + p < p_vapour, h the height above the axis; beyond the first such instant a run overstates tension, because
+    water that cavitates bears none.
+
+    Parameters
+    ----------
+    spectra : SolvedSpectra
+        Of a run whose system has a sea.
+    x, y, radius, angle : array_like, optional
+        A Cartesian or a polar grid as for the pressure, in units of a; by default a square of 6 by 6 of 81 by 81 points.
+    time : array_like, optional
+        Instants in transits; by default up to 200 of the run.
+    vapour_pressure : float
+        Pa.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``first`` (s, the first instant, NaN where there is none), ``lowest_pressure`` (absolute, Pa), ``lasting`` (s, how long in all); NaN
+        where there is no water outside. Attributes ``first_time`` (s), ``first_place`` (m, x and y, or a text that there is none), ``area``
+        (m^2, of all that ever cavitates, of Cartesian grids) and ``vapour_pressure``.
+
+    Raises
+    ------
+    InputError
+        The system has no sea, or an argument is not allowed.
+    """
+    problem, run_time = spectra.problem, spectra.grid.time
+    if problem.system.sea is None:
+        raise InputError("sea", "is not described: the pressure at rest is unknown", "give the system one, sea=cx.Sea(depth=...)")
+    vapour = positive("vapour_pressure", vapour_pressure, "Pa")
+    if x is None and y is None and radius is None and angle is None:
+        x = y = np.linspace(-REACH, REACH, SIDE)
+    grid = grid_of(x, y, radius, angle)
+    step = max(1, -(-(run_time.size - 1) // INSTANTS))
+    when = np.atleast_1d(when_of(run_time[::step] if time is None else time, float(run_time[-1]), problem.scales))
+    if when.size < 2 or np.any(np.diff(when) <= 0.0):
+        raise InputError("time", "needs two or more instants that follow each other", "leave it out, or give several")
+    turn = np.radians(grid.angle)
+    least = least_pressure(problem, grid.radius * np.cos(turn), grid.radius * np.sin(turn), vapour)
+    wet = (grid.radius >= problem.head) & in_water(problem, grid.radius, grid.angle)
+    lowest, first, lasting = np.full(wet.size, np.inf), np.full(wet.size, np.nan), np.zeros(wet.size)
+    duration = np.gradient(when)
+    for block in _blocks(when.size):
+        excess = pressure_at(spectra, grid, when[block]) - least
+        below = excess < 0.0
+        lasting += duration[block] @ below
+        new = np.isnan(first) & below.any(axis=0)
+        first[new] = when[block][below[:, new].argmax(axis=0)]
+        lowest = np.minimum(lowest, excess.min(axis=0) + vapour)
+    return _labelled(problem, grid, vapour, wet, (first, lowest, lasting))
+
+
+def _blocks(count: int) -> Iterator[slice]:
+    return (slice(start, min(start + _BLOCK, count)) for start in range(0, count, _BLOCK))
+
+
+def _labelled(
+    problem: Problem, grid: Grid, vapour: float, wet: np.ndarray, values: tuple[FloatArray, FloatArray, FloatArray]
+) -> xr.Dataset:
+    scales, shape = problem.scales, tuple(axis.size for axis in grid.along)
+    first, lowest, lasting = (np.where(wet, one, np.nan) for one in values)
+    texts = {
+        "first": ("first instant below the pressure of vapour", "s", first * scales.time),
+        "lowest_pressure": ("lowest absolute pressure", "Pa", lowest),
+        "lasting": ("time below the pressure of vapour", "s", lasting * scales.time),
+    }
+    variables = {
+        name: xr.Variable(grid.dims, found.reshape(shape), {"long_name": text, "units": unit})
+        for name, (text, unit, found) in texts.items()
+    }
+    told: dict[str, object] = {"vapour_pressure": vapour, "first_time": "never", "first_place": "nowhere"}
+    torn = np.isfinite(first)
+    if torn.any():
+        at = int(np.nanargmin(first))
+        turn = np.radians(grid.angle[at])
+        told["first_time"] = float(first[at] * scales.time)
+        told["first_place"] = [float(scales.length * grid.radius[at] * part) for part in (np.cos(turn), np.sin(turn))]
+    if not grid.polar and all(axis.size > 1 for axis in grid.axes):
+        told["area"] = float(torn.sum() * np.prod([np.ptp(axis) / (axis.size - 1) * scales.length for axis in grid.axes]))
+    places = {name: variable for name, variable in coordinates(scales, grid, np.zeros(())).items() if not name.startswith("time")}
+    return xr.Dataset(variables, places, told)
