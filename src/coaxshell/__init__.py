@@ -145,7 +145,7 @@ __all__ = [
 
 
 keep_old_names()
-supply(figure_curves="coaxshell.plotting.curves")
+supply(figure_curves="coaxshell.plotting.curves", report="coaxshell.apps.report")
 
 
 def __getattr__(name: str) -> Any:

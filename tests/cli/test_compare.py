@@ -7,8 +7,8 @@ import re
 import pytest
 
 import coaxshell as cx
-from coaxshell.apps.cli.comparison import comparison_rows, labels
 from coaxshell.apps.cli.running import load_reference
+from coaxshell.response.run_comparison import comparison_rows, labels
 
 COARSE = {"modes": 6, "time_step": 0.02, "duration": 1}
 

@@ -25,6 +25,7 @@ FLOORS = (
     "export",
     "apps.verification",
     "apps.paper",
+    "apps.report",
     "apps.studio",
     "apps.cli",
 )

@@ -125,6 +125,16 @@ def test_similitude_scales_with_the_cube_root_of_mass() -> None:
     assert not cx.UnderwaterExplosion(charge_mass=1, stand_off=200).within_fit
 
 
+def test_shock_factors_of_a_charge() -> None:
+    """One pound at one foot is a hull shock factor of 1 lb^(1/2)/ft; straight below the keel feels all of it, abeam half, above none."""
+    pound = cx.UnderwaterExplosion(charge_mass=0.45359237, stand_off=0.3048)
+    assert 0.4526 * pound.hull_shock_factor == pytest.approx(1.0, rel=1e-4)
+    shares = {90.0: 0.0, 0.0: 0.5, 180.0: 0.5, -90.0: 1.0, -30.0: 0.75}
+    for angle, share in shares.items():
+        assert pound.replace(angle=angle).keel_shock_factor() == pytest.approx(share * pound.hull_shock_factor, abs=1e-15)
+    assert pound.keel_shock_factor(up=180.0) == pound.hull_shock_factor
+
+
 def test_sampled_history_reads_what_people_write(tmp_path: Path) -> None:
     expected = cx.Sampled(time=(0.0, 1e-3), pressure=(1.0, -2.0))
     for number, text in enumerate(

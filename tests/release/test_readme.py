@@ -25,6 +25,7 @@ SMALLER = {
     "modes": ["--order", "2"],
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
+    "report": [*COARSE, "--without", "energy", "--without", "fields"],
     "animate": ["--frames", "2", "--size", "80", "--quiet"],
     "record": ["--force"],
     "export": ["--points", "11", "--quiet"],

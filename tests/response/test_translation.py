@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.apps.cli.comparison import comparison_rows
 from coaxshell.response import Response
+from coaxshell.response.run_comparison import comparison_rows
 from coaxshell.response.translation import still_grows
 from coaxshell.solver.solution import ModalSolution
 

@@ -9,6 +9,7 @@ are parallel to the axis, and plane waves, whose front may be inclined.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -160,6 +161,28 @@ class UnderwaterExplosion(_Placed, _Directed):
     def pulse(self) -> Exponential:
         """The exponential history at the head point; the similitude holds for about one decay time."""
         return Exponential(peak_pressure=self.peak_pressure, decay_time=self.decay_time)
+
+    @property
+    def hull_shock_factor(self) -> float:
+        """Hull shock factor sqrt(W)/S (kg^(1/2)/m): W the mass of the charge as it is, S its distance from the head point.
+
+        Reid, The Response of Surface Ships to Underwater Explosions, DSTO-GD-0109 (1996). Factors in lb^(1/2)/ft are 0.4526 times as
+        large; of an explosive other than TNT custom takes the mass of TNT that is its equal, which is not done here.
+        """
+        return float(math.sqrt(self.charge_mass) / self.stand_off)
+
+    def keel_shock_factor(self, up: float = 90.0) -> float:
+        """Return the keel shock factor, sqrt(W)/S (1 + sin beta)/2 (kg^(1/2)/m), beta the angle of the charge below the horizontal.
+
+        As large as the hull shock factor for a charge straight below, half of it for one abeam (Reid, as above).
+
+        Parameters
+        ----------
+        up : float
+            Direction of the surface seen from the axis, degrees as those of the source.
+        """
+        below = -math.cos(math.radians(self.angle - up))
+        return self.hull_shock_factor * (1.0 + below) / 2.0
 
     @property
     def within_fit(self) -> bool:

@@ -13,6 +13,7 @@ from coaxshell.plotting.film import check_film, save_film
 from coaxshell.plotting.film_files import FILM_SUFFIXES
 from coaxshell.plotting.frames import FieldView
 from coaxshell.plotting.histories import QUANTITIES, PlottedQuantity, mark_peak, plot_history
+from coaxshell.plotting.loads import figure_loads
 from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
 from coaxshell.plotting.natural_frequencies import figure_natural_frequencies, plot_mode_shape, plot_natural_frequencies
 from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_front, plot_parallel
@@ -21,11 +22,12 @@ from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
 from coaxshell.plotting.sensitivity import figure_sensitivity, plot_distribution, plot_sensitivity
 from coaxshell.plotting.shock_spectra import figure_shock_spectra, plot_four_coordinates
 from coaxshell.plotting.snapshots import COMPARISON_TIMES, SNAPSHOT_TIMES, figure_snapshots
+from coaxshell.plotting.strokes import figure_strokes
 from coaxshell.plotting.style import COLOURS, style
 from coaxshell.plotting.sweep import figure_sweep, plot_sweep
 from coaxshell.plotting.unrolled import plot_unrolled
 from coaxshell.plotting.wall_film import save_wall_film
-from coaxshell.plotting.wall_stress import plot_wall_stress
+from coaxshell.plotting.wall_stress import figure_wall_stress, plot_wall_stress
 
 __all__ = [
     "COLOURS",
@@ -45,6 +47,7 @@ __all__ = [
     "figure_curves",
     "figure_cuts",
     "figure_energy",
+    "figure_loads",
     "figure_named_curves",
     "figure_natural_frequencies",
     "figure_optimum",
@@ -52,7 +55,9 @@ __all__ = [
     "figure_sensitivity",
     "figure_shock_spectra",
     "figure_snapshots",
+    "figure_strokes",
     "figure_sweep",
+    "figure_wall_stress",
     "mark_peak",
     "plot_comparison",
     "plot_convergence",

@@ -20,6 +20,7 @@ from coaxshell.response import absorbers, arguments, errors, histories, storage,
 from coaxshell.response.history_spectrum import history_spectrum
 from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
 from coaxshell.response.solid_histories import displacement_at_depth
+from coaxshell.response.strokes import absorber_stroke
 from coaxshell.response.summary import Summary, response_card, summarise
 from coaxshell.response.tables import history_table
 from coaxshell.response.thinning import thinned
@@ -391,6 +392,10 @@ class Response:
         """Return the forces of the absorbers on their shells, N/m, positive inward, dims (absorber, side, time)."""
         return absorbers.absorber_force(self.solution)
 
+    def absorber_stroke(self) -> xr.DataArray:
+        """Return how far the absorbers' masses move relative to the shells they link, m, dims (absorber, side, time); two dimensions."""
+        return absorber_stroke(self.solution)
+
     def energy(self, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
         """Return every store, flow and loss of energy and the closure residual, J per metre of length, at every so many instants.
 
@@ -431,6 +436,15 @@ class Response:
         Show it as the last line of a cell, or ``figure.savefig(path)``. See :func:`coaxshell.plotting.figure_curves`.
         """
         return supplied("figure_curves")(self, quantity, shell, arguments.angles(angle))
+
+    def report(self, path: str | Path, compare: Response | None = None, **options: Any) -> Path:
+        """Write a report that can be handed on, one HTML file of ten A4 pages at most when printed, and return its path.
+
+        A second run is shown beside the first; *without* ("spectra", "energy", "fields") leaves out what takes long, *progress* is told
+        how far it is. See :func:`coaxshell.apps.report.report`.
+        """
+        written: Path = supplied("report")(self, path, compare, **options)
+        return written
 
     def to_dataframe(self) -> Any:
         """Return all histories at head and tail as a pandas DataFrame, one row an instant, indexed by time in transits.

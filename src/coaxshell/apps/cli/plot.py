@@ -43,9 +43,9 @@ def plot(
     The run is a saved one, or a preset or a .toml file that is solved; with --compare, two of them. Runs in three dimensions are drawn at
     --stations, at most four, and may stand beside one in two. The paper's own figures: coaxshell figure.
     """
-    from coaxshell.apps.cli.comparison import run_labels
     from coaxshell.plotting import FIGURE_SUFFIXES, QUANTITIES, figure_curves
     from coaxshell.response.arguments import one_of
+    from coaxshell.response.run_comparison import run_labels
 
     chosen = one_of("--quantity", quantity.replace("-", "_"), QUANTITIES)
     target = Outputs(force).file(output or Path(f"{chosen}.png"), "--output", FIGURE_SUFFIXES)

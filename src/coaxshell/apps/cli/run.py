@@ -11,7 +11,7 @@ import typer
 from coaxshell.apps.cli import options
 from coaxshell.apps.cli.documents import arrays_document, runs_document
 from coaxshell.apps.cli.options import named_as_options
-from coaxshell.apps.cli.output import Outputs, echo, print_document, write_figure
+from coaxshell.apps.cli.output import Outputs, echo, print_document, tell_warnings, write_figure
 from coaxshell.apps.cli.running import Request, WorkRequest, with_options
 from coaxshell.errors import InputError
 
@@ -60,10 +60,11 @@ def run(
     --output saves the first run. With --dimensions 3 the shells answer at --stations to the true spherical shock; beside a saved run in
     two dimensions the first station is compared; --workers and --dask share the work out, --store keeps it for --resume.
     """
-    from coaxshell.apps.cli.comparison import compared, print_comparison, run_labels
-    from coaxshell.apps.cli.output import print_summary, tell_warnings
+    from coaxshell.apps.cli.comparison import print_comparison
+    from coaxshell.apps.cli.output import print_summary
     from coaxshell.apps.cli.running import is_saved, load_reference, load_system
     from coaxshell.response import load_response
+    from coaxshell.response.run_comparison import compared, run_labels
 
     outputs = Outputs(force)
     if output is not None:
@@ -84,16 +85,14 @@ def run(
     responses = [*(request.solve(system, quiet=quiet, execution=execution) for system in systems), *saved]
     names = run_labels(*responses) if compare is not None else (systems[0].name or scenario,)
     named = dict(zip(names, responses, strict=True))
-    shown = compared(named) if compare is not None else named
+    with named_as_options(compare="compare"):
+        shown = compared(named) if compare is not None else named
     if output is not None:
         with named_as_options(path="output"):
             responses[0].save(output)
     balance = _draw(shown, figure, energy, quiet=quiet)
     if as_json:
-        document = runs_document(named, [response.summary() for response in responses])
-        print_document(document | ({} if balance is None else {"energy": arrays_document(balance)}))
-        for response in responses:
-            tell_warnings(response.warnings)
+        _tell_programs(named, balance)
     elif compare is not None:
         print_comparison(shown)
     else:
@@ -101,6 +100,14 @@ def run(
     for word, path in (("saved", output), ("wrote", figure), ("wrote", energy)):
         if path is not None:
             echo(f"{word} {path}", aside=as_json)
+
+
+def _tell_programs(named: Mapping[str, Response], balance: xr.Dataset | None) -> None:
+    """Print the document of some runs, with the energy of the first if that is known, and their warnings."""
+    document = runs_document(named, [response.summary() for response in named.values()])
+    print_document(document | ({} if balance is None else {"energy": arrays_document(balance)}))
+    for response in named.values():
+        tell_warnings(response.warnings)
 
 
 def _draw(named: Mapping[str, Response], figure: Path | None, energy: Path | None, *, quiet: bool) -> xr.Dataset | None:

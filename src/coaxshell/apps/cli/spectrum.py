@@ -45,11 +45,11 @@ def spectrum(
     largest all around, on four-coordinate paper. The run is a saved one, or a preset or a .toml file that is solved; with --compare,
     two of them. A .csv and --json hold displacement, pseudo-velocity and acceleration; --json writes a file only where --output names one.
     """
-    from coaxshell.apps.cli.comparison import run_labels
     from coaxshell.apps.cli.documents import spectra_document
     from coaxshell.export import export_spectra_csv
     from coaxshell.export.spectra import spectra_of
     from coaxshell.plotting import FIGURE_SUFFIXES, figure_shock_spectra
+    from coaxshell.response.run_comparison import run_labels
     from coaxshell.response.shock_spectrum import frequencies_of, quality_of
 
     target = None if as_json and output is None else output or Path("spectrum.png")
