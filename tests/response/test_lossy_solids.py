@@ -10,6 +10,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.response import Response
 from coaxshell.response.spatial import SpatialResponse
+from coaxshell.structure import lossy_solid
 
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=210e9, poisson_ratio=0.3)
 WATER = cx.Fluid(density=1000, sound_speed=1400)
@@ -102,6 +103,25 @@ def test_the_largest_stress_anywhere_is_no_less_than_at_its_depths():
     peak = response.peak_stress("inner")
     for depth in ("inner", "outer", 0.0):
         assert peak.value > 0.999 * float(np.abs(response.stress("inner", depth=depth, component="von_mises")).max())
+
+
+def test_a_soft_layer_without_losses_needs_no_mesh_and_is_remarked_on(monkeypatch):
+    """The same to 1e-9 as by shapes of a degree above 64, energies too, and no heat."""
+    soft = cx.Elastic(name="gum", density=1100, youngs_modulus=3e6, poisson_ratio=0.45)
+    inner = cx.Shell(radius=0.5, layers=[cx.Layer(STEEL, 2e-2), cx.Layer(soft, 3e-2)], theory="elastic")
+    walls, runs, told = system(0.0).replace(shells=[inner, system(0.0).shells[1]]), [], []
+    for most in (lossy_solid.SOFT_DEGREE, 1000):
+        monkeypatch.setattr(lossy_solid, "SOFT_DEGREE", most)
+        runs.append(cx.simulate(walls, duration=0.72, time_step=2.4e-2, modes=2))
+        told.append([text for text in runs[-1].solution.warnings if "gum" in text])
+    pieces, shapes = (np.asarray(found.stress("inner", [20, 90], depth="outer", component="von_mises")) for found in runs)
+    np.testing.assert_allclose(pieces, shapes, rtol=0, atol=1e-9 * np.abs(shapes).max())
+    assert [len(each) for each in told] == [1, 0]
+    assert "inner shell: layer 2, gum, has no losses" in told[0][0]
+    assert "30.67 m/s, 1.314 mm long" in told[0][0]  # at 0.8 pi/dt
+    energy = runs[0].energy(every=15)
+    assert float(np.abs(energy["closure_relative"]).max()) < 1e-5
+    assert "inner_dissipation" not in energy
 
 
 # Three dimensions

@@ -22,7 +22,7 @@ from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import ROLL_OFF, LaplaceGrid
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver import wetted_surfaces
+from coaxshell.solver import soft_layers, wetted_surfaces
 from coaxshell.solver.cavitation import AMBIENT
 from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.electrodes import largest_demand
@@ -32,6 +32,7 @@ from coaxshell.solver.rounds import rounds
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.slice_error import slice_error
+from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.solution import QUANTITIES, Estimates, ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.tension import Tension
@@ -64,6 +65,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         cut(problem, float(grid.time[-1]))
         + [f"{shell_phrase(i, len(problem.shells))}: {one}" for i, wall in enumerate(problem.shells) for one in wall.remarks()]
         + wetted_surfaces.remarks(problem)
+        + soft_layers.remarks(problem, band(grid))
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)

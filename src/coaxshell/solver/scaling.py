@@ -30,7 +30,7 @@ from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
 from coaxshell.structure.electrodes import with_plane_stress
 from coaxshell.structure.losses import USUAL_BAND, Band
-from coaxshell.structure.lossy_solid import LossySolidWall
+from coaxshell.structure.lossy_solid import LossySolidWall, resolved
 from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
@@ -180,7 +180,7 @@ class Problem:
 
     def resolving(self, frequency: float) -> Problem:
         """Return the problem with walls that resolve waves up to a frequency, radians per transit: itself where none has such a choice."""
-        shells = tuple(wall.resolving(frequency) for wall in self.shells)
+        shells = tuple(resolved(wall, frequency) if isinstance(wall, ElasticWall) else wall.resolving(frequency) for wall in self.shells)
         return replace(self, shells=shells) if self.two_faced else self
 
     @property

@@ -17,16 +17,32 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.elastic_basis import OrdersBasis
 from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES
+from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
 from coaxshell.structure.shell_model import FaceReceptance
 from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_chain import PieceChain, WallReading
 from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, Place, pieces
 
+SOFT_DEGREE = 64
+"""A wall without losses of which a layer needs a higher degree at the top of the band answers by pieces too."""
+
+
+def is_soft(layer: SolidLayer, frequency: float) -> bool:
+    """Return whether shear waves in an isotropic layer are so short that it had better answer by its potentials."""
+    return layer.isotropic and degree(layer, 0.0, 0.0, frequency) > SOFT_DEGREE
+
+
+def resolved(wall: ElasticWall, frequency: float) -> ElasticWall:
+    """Return a wall that resolves waves up to a frequency, radians per transit: by pieces if a layer is too soft for shapes."""
+    if not isinstance(wall, LossySolidWall) and any(is_soft(layer, frequency) for layer in wall.layers):
+        return LossySolidWall.of(wall.layers, wall.core).resolving(frequency)
+    return wall.resolving(frequency)
+
 
 @dataclass(frozen=True, kw_only=True)
 class LossySolidWall(ElasticWall):
-    """A wall of solid layers with losses."""
+    """A wall of solid layers with losses, or with layers too soft for shapes."""
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
@@ -39,8 +55,13 @@ class LossySolidWall(ElasticWall):
         return ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
 
     def degree_of(self, layer: SolidLayer, order: float, wavenumber: float = 0.0) -> int:
-        """Return the degree for the waves of a layer that are worth a search: those of soft layers die within it as they become short."""
-        return min(super().degree_of(layer, order, wavenumber), MOST_DEGREE)
+        """Return the degree for the waves of a layer that are worth a search: with losses they die within it as they become short."""
+        return min(super().degree_of(layer, order, wavenumber), SOFT_DEGREE if layer.factor is None else MOST_DEGREE)
+
+    def shape_count(self, order: float, wavenumber: float) -> int:
+        """Return how many shapes there are in a wave along the axis: of the layers that have shapes."""
+        counted = (layer for piece in self.pieces if not piece.by_potentials for layer in piece.layers)
+        return 3 * (1 + sum(degree(layer, order, wavenumber, self.frequency) for layer in counted))
 
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Refuse: its pieces have shapes, some of them."""
@@ -107,8 +128,8 @@ class LossySolidWall(ElasticWall):
 
     @property
     def dissipates(self) -> bool:
-        """True."""
-        return True
+        """Whether any layer has losses."""
+        return any(layer.factor is not None for layer in self.layers)
 
 
 def _receptance(chain: PieceChain) -> FaceReceptance:

@@ -32,7 +32,7 @@ from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_potentials import Potentials
 
 MOST_DEGREE = 24
-"""A layer with losses that needs a higher degree at the top of the band answers by its potentials."""
+"""A layer of a wall in pieces that needs a higher degree at the top of the band answers by its potentials."""
 
 
 class Place(NamedTuple):
@@ -96,7 +96,7 @@ class Piece:
 
 
 def by_potentials(layer: SolidLayer, frequency: float) -> bool:
-    """Return whether a layer answers by its potentials in a wall with losses."""
+    """Return whether a layer answers by its potentials in a wall in pieces."""
     return layer.isotropic and (layer.shear_alone or degree(layer, 0.0, 0.0, frequency) > MOST_DEGREE)
 
 

@@ -57,16 +57,19 @@ class _Tally(NamedTuple):
         return cls(kept, kept, kept, all_instants)
 
 
-def lossy_solid_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArray]:
-    """Return the energies of a wall of solids with losses and the heat in it, at the kept instants."""
+def lossy_solid_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArray | None]:
+    """Return the energies of a wall of solids in pieces and the heat in it, None without losses, at the kept instants."""
     wall = motion.problem.shells[shell]
     assert isinstance(wall, LossySolidWall)
     forces = _forces(motion, wall, shell)
     total = _Tally.none(motion)
     for piece, given in zip(wall.pieces, forces, strict=True):
         total = total.plus((_of_potentials if piece.by_potentials else _of_shapes)(motion, piece, given))
+    energy = WallEnergy(total.kinetic, total.strain, total.electric)
+    if not wall.dissipates:
+        return energy, None
     heat = integrate.cumulative_simpson(total.power, dx=motion.grid.time_step, initial=0.0)[motion.kept]
-    return WallEnergy(total.kinetic, total.strain, total.electric), np.asarray(heat)
+    return energy, np.asarray(heat)
 
 
 def _forces(motion: Motion, wall: LossySolidWall, shell: int) -> ComplexArray:
@@ -174,7 +177,8 @@ def _of_amplitudes(motion: Motion, piece: Piece, squares: FloatArray, rows: Floa
 def _of_potentials(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally:
     """Return what an isotropic layer holds by its fields at Gauss's points."""
     (layer,) = piece.layers
-    count = min(MOST_POINTS, degree(layer.stiffest, motion.modes.max_order, 0.0, piece.frequency))
+    count = degree(layer.stiffest, motion.modes.max_order, motion.wavenumber, piece.frequency)
+    count = count if layer.factor is None else min(MOST_POINTS, count)
     points, weights = np.polynomial.legendre.leggauss(count)
     half, total = layer.thickness / 2.0, _Tally.none(motion)
     radii = layer.inner + half * (1.0 + points)

@@ -10,6 +10,7 @@ from coaxshell.response.energy.lossy_solids import lossy_solid_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solids import solid_energy
 from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.shell_model import WallEnergy, WallMotion
 
 
@@ -20,7 +21,7 @@ def shell_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArray | N
     """
     wall, kept, step = motion.problem.shells[shell], motion.kept, motion.grid.time_step
     if not wall.faces_move_alike:
-        return lossy_solid_energy(motion, shell) if wall.dissipates else (solid_energy(motion, shell), None)
+        return lossy_solid_energy(motion, shell) if isinstance(wall, LossySolidWall) else (solid_energy(motion, shell), None)
     energy = wall.energy(_of_wall(motion, shell, kept))
     if not wall.dissipates:
         return energy, None
