@@ -46,6 +46,14 @@ GRADIENTS = (
         "solver/test_adjoint.py",
     ),
     Mutation(
+        "gradient-limits",
+        "studies/optimisation/by_gradient.py",
+        "slopes.append(scale * (exact / mean if mean else 1.0) * by * stretch)",
+        "slopes.append(-scale * (exact / mean if mean else 1.0) * by * stretch)",
+        "slope of a limit in a search by gradients",
+        "studies/test_optimisation_methods.py",
+    ),
+    Mutation(
         "gradient-count",
         "numerics/laplace_grid.py",
         "counts = np.full(self.nodes.size, 2.0)",

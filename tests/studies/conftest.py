@@ -8,8 +8,10 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.solver.settings import Settings
 from coaxshell.studies.evaluation import Outcome, failure
+from coaxshell.studies.gradients.slopes import SlopeMetric
 from coaxshell.studies.optimisation import optimising
 from coaxshell.studies.reading import DesignReading
+from coaxshell.studies.varied_fields import field_of, varied
 
 QUICK = {"duration": 1.0, "time_step": 0.02, "modes": 6}
 
@@ -54,8 +56,22 @@ class AnalyticCrew:
     def _outcome(self, system, metrics):
         if isinstance(system, InputError):
             return failure(metrics, str(system))
-        reading = DesignReading(system)
-        return Outcome(tuple(m(reading) if m.of_design else float(self.functions[m.name](system)) for m in metrics))
+        return Outcome(tuple(self._number(metric, system) for metric in metrics))
+
+    def _number(self, metric, system):
+        if isinstance(metric, SlopeMetric):
+            return self._slope(metric, system) if metric.fields else self._number(metric.of, system)
+        return metric(DesignReading(system)) if metric.of_design else float(self.functions[metric.name](system))
+
+    def _slope(self, metric, system):
+        """What a variable changes, by central differences of the function."""
+        total = 0.0
+        for path, moved in metric.fields:
+            present = field_of(system, path).present
+            step = 1e-5 * abs(present)
+            ends = [self._number(metric.of, varied(system, {path: present + sign * step})) for sign in (1, -1)]
+            total += moved * (ends[0] - ends[1]) / (2 * step)
+        return total
 
 
 @pytest.fixture

@@ -12,6 +12,7 @@ import coaxshell as cx
 from coaxshell.studies.optimisation.targets import energy
 
 SINGLE = ["cma-es", "differential-evolution"]
+EACH = [*SINGLE, "gradient"]
 THREE = {
     "absorbers.mass": cx.Range("1 kg", "20 kg"),
     "absorbers.damping": cx.Range(1e4, 1e8, "log"),
@@ -31,7 +32,7 @@ def bowl(system):
     return 3.0 + (x + y) ** 2 + 10.0 * (x - y) ** 2 + (z - x) ** 2
 
 
-@pytest.mark.parametrize("method", SINGLE)
+@pytest.mark.parametrize("method", EACH)
 @pytest.mark.parametrize("seed", [0, 3])
 def test_the_smallest_value_is_found(analytic, method, seed):
     analytic(inner=bowl)
@@ -43,7 +44,7 @@ def test_the_smallest_value_is_found(analytic, method, seed):
     assert len(found.history) == 700
 
 
-@pytest.mark.parametrize("method", SINGLE)
+@pytest.mark.parametrize("method", EACH)
 def test_a_maximum_is_found(analytic, method):
     goal = cx.Objective("inner.peak_stress", maximise=True)
     analytic(inner=lambda system: 10.0 - bowl(system))
@@ -51,7 +52,7 @@ def test_a_maximum_is_found(analytic, method):
     assert_allclose(found.best.targets["inner.peak_stress"], 7.0, rtol=2e-6)
 
 
-@pytest.mark.parametrize("method", SINGLE)
+@pytest.mark.parametrize("method", EACH)
 def test_an_active_limit_of_a_run_is_met_from_inside(analytic, method):
     """min x^2 + y^2 where x + y >= 1: 1/2, at x = y = 1/2 (x, y are mass/10 and damping/1e6)."""
     x, y = (lambda s: s.absorbers.mass / 10.0), (lambda s: s.absorbers.damping / 1e6)

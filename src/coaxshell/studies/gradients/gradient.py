@@ -80,7 +80,8 @@ def gradient(
     settings = Settings.asked(system, keywords)
     asked = _metric(metric, system)
     fields = fields_of(system, variables)
-    require_gradient(system, settings, power := power_of(smooth))
+    power = power_of(smooth)
+    require_gradient(system, settings)
     response = None if asked.of_design else simulate(system, settings=settings, progress=progress)
     run = MetricSensitivity(system, asked, power, response)
     return _labelled(run, asked, fields, settings)
@@ -106,7 +107,7 @@ def power_of(smooth: float | None) -> float | None:
     return float(power)
 
 
-def require_gradient(system: System, settings: Settings, power: float | None) -> None:
+def require_gradient(system: System, settings: Settings) -> None:
     """Refuse runs that have no gradient: InputError."""
     if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
         raise InputError("sea", "what surface and bottom reflect is not run backwards yet", "leave the sea out")

@@ -21,7 +21,7 @@ from coaxshell.studies.optimisation.targets import energy
 Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """From points, shape (K, n), to objectives, shape (K, objectives), and violations, shape (K,)."""
 
-METHODS = ("auto", "cma-es", "differential-evolution", "nsga2")
+METHODS = ("auto", "cma-es", "differential-evolution", "nsga2", "gradient")
 
 SPREAD = 1e-5
 """Standard deviation in the unit cube at which a run of CMA-ES has arrived."""
@@ -65,7 +65,7 @@ def chosen(method: str, setting: Setting) -> str:
 
 
 def search(method: str, evaluate: Evaluate, setting: Setting) -> None:
-    """Search until *evaluate* raises."""
+    """Search until *evaluate* raises; gradients need more than its numbers (:mod:`coaxshell.studies.optimisation.by_gradient`)."""
     {"cma-es": _cma_es, "differential-evolution": _differential_evolution, "nsga2": _nsga2}[method](evaluate, setting)
 
 

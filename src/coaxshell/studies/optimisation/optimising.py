@@ -17,7 +17,9 @@ from coaxshell.numerics.scalars import plain
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solvable import require_solvable
 from coaxshell.studies.execution import Execution, StudyKeywords, asked
+from coaxshell.studies.gradients.gradient import require_gradient
 from coaxshell.studies.metrics import ANYWHERE, require_readable
+from coaxshell.studies.optimisation.by_gradient import Slopes, search_by_gradient
 from coaxshell.studies.optimisation.confirmation import Confirmation, confirmed, finer
 from coaxshell.studies.optimisation.feasibility import require_possible
 from coaxshell.studies.optimisation.methods import Setting, chosen, search
@@ -104,11 +106,12 @@ def optimise(
     uncertain : mapping of path to distribution, optional
         As for :func:`robustness`; every design is run at the same *samples* points of it.
     method : str
-        "cma-es", "differential-evolution", "nsga2", or "auto": NSGA-II for several objectives, else CMA-ES.
+        "cma-es", "differential-evolution", "nsga2", "gradient" (for metrics of :func:`gradient` and ranges, many variables above all), or
+        "auto": NSGA-II for several objectives, else CMA-ES.
     evaluations : int
         How many designs are tried.
     population : int, optional
-        Designs in a generation; the method's own choice unless given.
+        Designs in a generation, of "gradient" starts side by side; the method's own choice unless given.
     start : str
         "auto" begins at the system's own values where they are inside their ranges; "system" insists on it.
     seed : int
@@ -161,7 +164,11 @@ def problem_of(
     """
     (uncertain, samples), (method, evaluations, population, start, seed) = chance, search_by
     samples, evaluations, population, seed = map(plain, (samples, evaluations, population, seed))
-    for name, number, least in (("evaluations", evaluations, 1), ("population", population, 4), ("seed", seed, 0)):
+    for name, number, least in (
+        ("evaluations", evaluations, 1),
+        ("population", population, 1 if method == "gradient" else 4),
+        ("seed", seed, 0),
+    ):
         if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < least):
             raise InputError(name, f"{number!r} is not allowed", f"give a whole number of {least} or more")
     if start not in ("auto", "system"):
@@ -177,9 +184,11 @@ def problem_of(
     properties = uncertain_of(space.base, uncertain or {}, samples, seed)
     setting = Setting(tuple(len(v.levels) for v in space.variables), space.start(), population, seed, len(targets.goals))
     require_possible(space, targets, insist=start == "system")
-    return Problem(
-        space, targets, resolution, properties, chosen(method, setting), setting, evaluations, finer(system, resolution, confirm)
-    )
+    method = chosen(method, setting)
+    if method == "gradient":
+        require_gradient(space.base, resolution)
+        targets = Slopes.of(space, targets, {one.field.path for one in properties.coordinates}).targets
+    return Problem(space, targets, resolution, properties, method, setting, evaluations, finer(system, resolution, confirm))
 
 
 def optimise_problem(problem: Problem, execution: Execution) -> Optimum:
@@ -198,11 +207,17 @@ def searched(problem: Problem, run: Run, progress: Progress | None = None) -> Op
     def told(candidates: list[Candidate]) -> None:
         report(len(candidates) / problem.evaluations, f"optimising: {best_so_far(problem.targets, candidates)}")
 
-    evaluations = Evaluations(problem.space, problem.targets, samples, problem.resolution, run, problem.evaluations, told)
+    by_gradient = problem.method == "gradient"
+    asked_for = (problem.space, problem.targets, samples, problem.resolution, run, problem.evaluations, told)
+    evaluations = Evaluations(*asked_for, slopes=by_gradient)
     baseline, complete = evaluations.baseline(), True
     confirmations: tuple[Confirmation, ...] = ()
     try:
-        search(problem.method, evaluations, problem.setting)
+        if by_gradient:
+            setting, slopes = problem.setting, Slopes(problem.targets, problem.space.variables)
+            search_by_gradient(evaluations.tables, slopes, setting.start, setting.population, setting.seed)
+        else:
+            search(problem.method, evaluations, problem.setting)
     except EnoughError:
         pass
     except KeyboardInterrupt:

@@ -23,6 +23,9 @@ Run = Callable[[Sequence[System | InputError], Settings], list[Outcome]]
 """Runs systems at a resolution: a :class:`coaxshell.studies.running.WorkerPool`, or a program with workers of its own."""
 
 
+_Evaluated = tuple[dict[str, float], str, FloatArray | None]
+
+
 class EnoughError(Exception):
     """All evaluations asked for are made."""
 
@@ -79,6 +82,8 @@ class Evaluations:
     budget : int
     told : callable
         Called with all candidates after every generation.
+    slopes : bool
+        Whether the metrics hold slopes, which the search wants of designs that break limits too.
     """
 
     def __init__(
@@ -90,18 +95,24 @@ class Evaluations:
         run: Run,
         budget: int,
         told: Callable[[list[Candidate]], None],
+        *,
+        slopes: bool = False,
     ) -> None:
         self.space, self.targets, self.scenarios, self.resolution = space, targets, scenarios, resolution
-        self.run, self.budget, self.told = run, budget, told
+        self.run, self.budget, self.told, self._slopes = run, budget, told, slopes
         self.candidates: list[Candidate] = []
         self._known: dict[tuple[Any, ...], Candidate] = {}
+        self._tables: dict[tuple[Any, ...], FloatArray] = {}
         self._generation = 0
 
     def __call__(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return objectives (K, objectives) and violations (K,) of a generation; EnoughError when the budget is spent with it."""
         asked = [self.space.values(point) for point in points[: self.budget - len(self.candidates)]]
         fresh = list(dict.fromkeys(values for values in asked if values not in self._known))
-        for values, (targets, reason) in zip(fresh, self._evaluated([self.space.system(values) for values in fresh]), strict=True):
+        found = self._evaluated([self.space.system(values) for values in fresh], refuse=not self._slopes)
+        for values, (targets, reason, table) in zip(fresh, found, strict=True):
+            if table is not None and self._slopes:
+                self._tables[values] = table
             self._known[values] = self._judged(values, targets, reason)
         for values in asked:
             first = self._known[values]
@@ -115,14 +126,19 @@ class Evaluations:
         latest = self.candidates[-len(asked) :]
         return np.array([one.objectives for one in latest]), np.array([one.violation for one in latest])
 
+    def tables(self, points: FloatArray) -> list[FloatArray | None]:
+        """Return the metrics of a generation, each of shape (samples, metrics), None for a design that could not be run; as a call."""
+        self(points)
+        return [self._tables.get(self.space.values(point)) for point in points]
+
     def baseline(self) -> Candidate:
         """Return the base system, run whether it keeps the limits or not, and outside the count."""
-        ((targets, reason),) = self._evaluated([self.space.base], refuse=False)
+        ((targets, reason, _),) = self._evaluated([self.space.base], refuse=False)
         return self._judged(self.space.present(), targets, reason)
 
-    def _evaluated(self, systems: Sequence[System | InputError], refuse: bool = True) -> list[tuple[dict[str, float], str]]:
-        """Return the targets of each design (what could be computed) and the reason if that is not all."""
-        found: list[tuple[dict[str, float], str] | None] = [self._of_design(system) if refuse else None for system in systems]
+    def _evaluated(self, systems: Sequence[System | InputError], refuse: bool = True) -> list[_Evaluated]:
+        """Return the targets of each design (what could be computed), the reason if that is not all, and its metrics if it was run."""
+        found: list[_Evaluated | None] = [self._of_design(system) if refuse else None for system in systems]
         waiting = [(k, system) for k, system in enumerate(systems) if found[k] is None and isinstance(system, System)]
         samples = [list(self.scenarios(system)) for _, system in waiting]
         flat = [one for several in samples for one in several]
@@ -131,20 +147,21 @@ class Evaluations:
             mine = [next(outcomes) for _ in several]
             failed = next((outcome for outcome in mine if outcome.failed), None)
             if failed is not None:
-                found[k] = ({}, failed.reason)
+                found[k] = ({}, failed.reason, None)
             else:
-                found[k] = (self.targets.values(np.array([outcome.values for outcome in mine], dtype=np.float64)), "")
+                table = np.array([outcome.values for outcome in mine], dtype=np.float64)
+                found[k] = (self.targets.values(table), "", table)
         return [one for one in found if one is not None]
 
-    def _of_design(self, system: System | InputError) -> tuple[dict[str, float], str] | None:
+    def _of_design(self, system: System | InputError) -> _Evaluated | None:
         """Return the broken limits of a design that needs no run to be refused; None if it has to be run."""
         if isinstance(system, InputError):
-            return {}, str(system)
+            return {}, str(system), None
         reading = DesignReading(system)
         limits = [limit for limit in self.targets.limits if limit.target.metric.of_design and not limit.target.statistic]
         values = {limit.target.name: limit.target.metric(reading) for limit in limits}
         broken = [limit.text for limit in limits if limit.excess(values[limit.target.name]) > 0]
-        return (values, f"not run: breaks {' and '.join(broken)}") if broken else None
+        return (values, f"not run: breaks {' and '.join(broken)}", None) if broken else None
 
     def _judged(self, values: tuple[Any, ...], targets: dict[str, float], reason: str) -> Candidate:
         violation = self.targets.violation(targets)

@@ -32,7 +32,7 @@ class OptimisationStudy(Study):
     samples: int = 32
     """Points at which the uncertain properties are sampled."""
     method: str = "auto"
-    """"auto", "cma-es", "differential-evolution" or "nsga2"."""
+    """"auto", "cma-es", "differential-evolution", "nsga2" or "gradient"."""
     evaluations: int = 1000
     """How many designs are tried."""
     population: int | None = None

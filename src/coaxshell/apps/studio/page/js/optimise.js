@@ -10,7 +10,7 @@ export const show = showOptimum;
 
 const GOALS = [{ value: "min", label: "as small as possible" }, { value: "max", label: "as large as possible" }];
 const SIGNS = [{ value: "<=", label: "at most (≤)" }, { value: ">=", label: "at least (≥)" }];
-const METHODS = [["auto", "automatic"], ["cma-es", "CMA-ES"], ["differential-evolution", "differential evolution"], ["nsga2", "NSGA-II"]].map(([value, label]) => ({ value, label }));
+const METHODS = [["auto", "automatic"], ["cma-es", "CMA-ES"], ["differential-evolution", "differential evolution"], ["nsga2", "NSGA-II"], ["gradient", "gradients"]].map(([value, label]) => ({ value, label }));
 const EACH = [{ value: "mirror", label: "mirror images" }, { value: "single", label: "none" }];
 const FIRST = ["absorbers.mass", "absorbers.damping", "control.proportional"];
 let described, form;

@@ -7,7 +7,7 @@ import { colour } from "./theme.js";
 import { inComparison, percent, prefixed, show as text } from "./units.js";
 import { told } from "./words.js";
 
-const NAMES = { "cma-es": "CMA-ES", "differential-evolution": "differential evolution", nsga2: "NSGA-II" };
+const NAMES = { "cma-es": "CMA-ES", "differential-evolution": "differential evolution", nsga2: "NSGA-II", gradient: "gradients" };
 
 export function show(result, box, { id, opened }) {
   const { targets, variables, front, feasible, best } = result;

@@ -1,0 +1,231 @@
+"""Search by gradients: sequential quadratic programming from several starts side by side.
+
+Every evaluation is a run forwards and one backwards for each metric, whatever the number of variables. A peak is searched as a mean of
+a power (:mod:`coaxshell.studies.gradients.norms`), which is smooth; designs are compared by the peak itself. Limits on peaks hold the
+peak itself, with the slope of the mean in proportion (C. Le et al., Stress-based topology optimization for continua, Struct. Multidisc.
+Optim. 41 (2010) 605-620). The starts take their steps together, so that their runs share all workers and nothing depends on who is
+faster; one that has arrived begins anew elsewhere.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from queue import Queue
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.stats import qmc
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.studies.gradients.slopes import slope_metrics
+from coaxshell.studies.optimisation.targets import Target, Targets
+from coaxshell.studies.optimisation.variables import Space, Variable
+
+POWER = 64.0
+"""Power of the mean that stands for a peak in the search."""
+STARTS = 4
+"""Starts side by side, unless told otherwise."""
+_STATISTICS = ("", "mean", "worst")
+_PRECISION = 1e-8
+_UNSOLVED = 10.0
+"""What a design that cannot be run is worse by than the last one, in units of the first: the step towards it is shortened."""
+_INSIDE = 1e-7
+"""Relative distance from a limit at which the search stays: a design on the limit keeps it then, whatever is rounded."""
+
+Tables = Callable[[FloatArray], list[FloatArray | None]]
+"""From points, shape (K, n), to the metrics of each, shape (samples, metrics); None for a design that could not be run."""
+
+
+class Linear(NamedTuple):
+    """A design's searched objective and limits (at least 0 where kept), with their slopes in the unit cube."""
+
+    objective: float
+    slope: FloatArray
+    limits: FloatArray
+    limit_slopes: FloatArray
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """What a search by gradients reads from the metrics of a design.
+
+    Attributes
+    ----------
+    targets : Targets
+        With the metrics that hold slopes.
+    variables : tuple of Variable
+    """
+
+    targets: Targets
+    variables: tuple[Variable, ...]
+
+    @classmethod
+    def of(cls, space: Space, targets: Targets, uncertain: set[str]) -> Slopes:
+        """Return them for an optimisation; *uncertain* are the paths of properties that vary by themselves.
+
+        Raises
+        ------
+        InputError
+            A variable takes steps, is uncertain too, or a metric or a statistic has no gradient.
+        """
+        for variable in space.variables:
+            if variable.levels:
+                problem = f'"gradient" takes variables that vary continuously, and {variable.name} has {len(variable.levels)} values'
+                raise InputError("method", problem, 'use method="cma-es", or a range of a property that is no count')
+            paths = (*variable.paths, *variable.mirrored)
+            both = uncertain & {*paths, *(f"absorbers.{path.split('.')[-1]}" for path in paths if path.startswith("absorbers"))}
+            if both:
+                raise InputError("method", f'"gradient" cannot vary what is uncertain too: {min(both)}', 'use method="cma-es"')
+        wrong = next((target.name for target in targets.all if target.statistic not in _STATISTICS), None)
+        if wrong is not None:
+            raise InputError("method", f'"gradient" knows mean and worst of uncertain properties, not {wrong}', 'use method="cma-es"')
+        moved = [(*((path, 1.0) for path in one.paths), *((path, -1.0) for path in one.mirrored)) for one in space.variables]
+        more = tuple(slope for metric in targets.metrics for slope in slope_metrics(metric, POWER, moved))
+        return cls(replace(targets, metrics=(*targets.metrics, *more)), space.variables)
+
+    def __call__(self, table: FloatArray, point: FloatArray) -> Linear:
+        """Return a design to first order.
+
+        Parameters
+        ----------
+        table : ndarray, shape (samples, metrics)
+        point : ndarray, shape (n,)
+            Its place in the unit cube.
+        """
+        stretch = np.array([_stretch(one, float(share)) for one, share in zip(self.variables, point, strict=True)])
+        goal = self.targets.goals[0]
+        searched, slope, _ = self._target(table, goal.target)
+        sign = -1.0 if goal.maximise else 1.0
+        limits, slopes = [], []
+        for limit in self.targets.limits:
+            mean, by, exact = self._target(table, limit.target)
+            scale = (1.0 if limit.least else -1.0) / (abs(limit.limit) or 1.0)
+            limits.append(scale * (exact - limit.limit) - _INSIDE)
+            slopes.append(scale * (exact / mean if mean else 1.0) * by * stretch)
+        return Linear(
+            sign * searched,
+            sign * slope * stretch,
+            np.array(limits),
+            np.array(slopes).reshape(len(limits), len(stretch)),
+        )
+
+    def _target(self, table: FloatArray, target: Target) -> tuple[float, FloatArray, float]:
+        """Return a target as it is searched, its slopes by the variables in SI, and its exact value."""
+        columns, n = {metric.name: k for k, metric in enumerate(self.targets.metrics)}, len(self.variables)
+        exact = target.value(table[:, columns[target.metric.name]])
+        first = columns[f"{target.metric.name} as searched"]
+        means, slopes = table[:, first], table[:, first + 1 : first + 1 + n]
+        if not target.statistic:
+            return float(means[0]), slopes[0], exact
+        if target.statistic == "mean":
+            return float(means[1:].mean()), slopes[1:].mean(axis=0), exact
+        worst = 1 + int(np.argmax(means[1:]))
+        return float(means[worst]), slopes[worst], exact
+
+
+def _stretch(variable: Variable, share: float) -> float:
+    """Return what a variable changes by per unit of its place in the unit cube."""
+    if variable.log:
+        return float(np.log(variable.high / variable.low) * variable.at(share))
+    return variable.high - variable.low
+
+
+class _StoppedError(Exception):
+    """The search has ended."""
+
+
+class _Start(threading.Thread):
+    """One descent after another in a thread, which asks for designs and waits for them."""
+
+    def __init__(self, number: int, first: FloatArray, slopes: Slopes, seed: int) -> None:
+        super().__init__(daemon=True, name=f"start {number}")
+        self.asked: Queue[FloatArray | BaseException] = Queue()
+        self.answer: Queue[FloatArray | None] = Queue()
+        self.stopped = False
+        self._first, self._slopes, self._rng = first, slopes, np.random.default_rng([seed, number])
+        self._at: FloatArray | None = None
+        self._linear: Linear | None = None
+
+    def run(self) -> None:
+        """Descend until the search ends; an error is handed to whoever waits."""
+        point = self._first
+        try:
+            while True:
+                self._descend(point)
+                point = self._rng.random(point.size)
+        except _StoppedError:
+            pass
+        except BaseException as error:  # noqa: BLE001 - raised again in the thread that waits
+            self.asked.put(error)
+
+    def _descend(self, point: FloatArray) -> None:
+        from scipy.optimize import minimize
+
+        self._linear, self._size = None, 1.0
+        self._size = abs(self._at_point(np.asarray(point)).objective) or 1.0
+        constraints: Any = []
+        if self._slopes.targets.limits:
+            constraints = {"type": "ineq", "fun": lambda x: self._at_point(x).limits, "jac": lambda x: self._at_point(x).limit_slopes}
+        keywords: Any = {
+            "jac": lambda x: self._at_point(x).slope / self._size,
+            "bounds": [(0.0, 1.0)] * point.size,
+            "constraints": constraints,
+            "options": {"ftol": _PRECISION, "maxiter": 10_000},
+        }
+        objective: Any = lambda x: self._at_point(x).objective / self._size  # noqa: E731 - the library's types want another kind of function
+        minimize(objective, point, method="SLSQP", **keywords)
+
+    def _at_point(self, x: FloatArray) -> Linear:
+        point = np.clip(x, 0.0, 1.0)
+        if self._linear is None or self._at is None or not np.array_equal(point, self._at):
+            self.asked.put(point.copy())
+            table = self.answer.get()
+            if self.stopped:
+                raise _StoppedError
+            self._linear = self._slopes(table, point) if table is not None else self._worse(point)
+            self._at = point.copy()
+        return self._linear
+
+    def _worse(self, point: FloatArray) -> Linear:
+        """Return something in the place of a design that could not be run."""
+        last = self._linear
+        limits = np.zeros(len(self._slopes.targets.limits)) if last is None else last.limits
+        objective = 0.0 if last is None else last.objective + _UNSOLVED * self._size
+        return Linear(objective, np.zeros(point.size), limits, np.zeros((limits.size, point.size)))
+
+
+def search_by_gradient(tables: Tables, slopes: Slopes, start: FloatArray, starts: int | None, seed: int) -> None:
+    """Search until *tables* raises.
+
+    Parameters
+    ----------
+    tables : callable
+    slopes : Slopes
+    start : ndarray, shape (n,)
+        The base system's place, where the first start begins; the others in a Latin hypercube.
+    starts : int or None
+    seed : int
+    """
+    count = starts or STARTS
+    points = qmc.LatinHypercube(start.size, rng=seed).random(count)
+    points[0] = start
+    runners = [_Start(number, point, slopes, seed) for number, point in enumerate(points)]
+    for runner in runners:
+        runner.start()
+    try:
+        while True:
+            asked = [runner.asked.get() for runner in runners]
+            for one in asked:
+                if isinstance(one, BaseException):
+                    raise one
+            for runner, table in zip(runners, tables(np.array(asked)), strict=True):
+                runner.answer.put(table)
+    finally:
+        for runner in runners:
+            runner.stopped = True
+            runner.answer.put(None)
+        for runner in runners:
+            runner.join()
