@@ -46,6 +46,14 @@ SEA = (
         "model/test_sea.py",
     ),
     Mutation(
+        "bubble-gas",
+        "model/bubble.py",
+        "change = -3.0 * EXPONENT",
+        "change = 3.0 * EXPONENT",
+        "a collapsing bubble loses energy by radiation",
+        "model/test_bubble.py",
+    ),
+    Mutation(
         "mirrored-flow",
         "response/fields/mirrored.py",
         "along = -along if place.image.mirrored else along",

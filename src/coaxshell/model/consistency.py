@@ -14,6 +14,9 @@ from coaxshell.model.sea import require_possible
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
 
+_SAME_DEPTH = 0.02
+"""Share of a depth by which two statements of it may differ."""
+
 
 def check(system: SystemParts) -> None:
     """Check the whole; InputError on the first thing that does not fit."""
@@ -79,6 +82,12 @@ def _sea(system: SystemParts) -> None:
         for number, (source, distance) in enumerate(zip(system.sources, system.source_distances, strict=True))
     ]
     require_possible(system.sea, system.shells[-1].outer_radius, placed)
+    for (where, distance, angle, _), source in zip(placed, system.sources, strict=True):
+        depth = getattr(source, "charge_depth", None)
+        below = system.sea.depth - system.sea.height_of(distance, angle)
+        if depth is not None and abs(depth - below) > _SAME_DEPTH * below:
+            found = f"{depth:g} m, but with the sea's depth, its stand-off and its angle it lies {below:.4g} m below the surface"
+            raise InputError(f"{where}.charge_depth", found, f"give {below:.4g} m, or change the others")
 
 
 def _absorbers(system: SystemParts) -> None:

@@ -11,6 +11,8 @@ class Explosive:
 
     p = peak_factor (W^(1/3)/S)^peak_exponent and theta = decay_factor W^(1/3) (W^(1/3)/S)^decay_exponent, with the
     charge mass W in kg and the stand-off S in m; *lowest* and *highest* bound the peak pressures (Pa) that the fit covers.
+    Of the bubble, with Z = depth + 10 m, the period is bubble_period W^(1/3)/Z^(5/6) (s), the largest radius bubble_radius (W/Z)^(1/3)
+    (m); None where no sourced constants are at hand.
     """
 
     name: str
@@ -21,6 +23,8 @@ class Explosive:
     lowest: float
     highest: float
     reference: str
+    bubble_period: float | None = None
+    bubble_radius: float | None = None
 
 
 _SWISDAK = "Swisdak, Explosion Effects and Properties, Part II: Explosion Effects in Water, NSWC/WOL TR 76-116 (1978)"
@@ -30,9 +34,9 @@ _COLE = "Cole, Underwater Explosions, Princeton University Press (1948), ch. 7, 
 EXPLOSIVES: dict[str, Explosive] = {
     explosive.name: explosive
     for explosive in (
-        Explosive("TNT", 52.4e6, 1.13, 0.084e-3, -0.23, 3.4e6, 138e6, _SWISDAK),
+        Explosive("TNT", 52.4e6, 1.13, 0.084e-3, -0.23, 3.4e6, 138e6, _SWISDAK, 2.11, 3.50),
         Explosive("pentolite", 56.5e6, 1.14, 0.084e-3, -0.23, 3.4e6, 138e6, _SWISDAK),
         Explosive("HBX-1", 56.7e6, 1.15, 0.083e-3, -0.29, 3.4e6, 60e6, _SWISDAK),
-        Explosive("TNT-Cole", 52.4e6, 1.13, 0.0925e-3, -0.22, 3.4e6, 138e6, _COLE),
+        Explosive("TNT-Cole", 52.4e6, 1.13, 0.0925e-3, -0.22, 3.4e6, 138e6, _COLE, 2.11, 3.36),
     )
 }

@@ -11,16 +11,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal, get_args
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, get_args
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field, model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described, shown
+from coaxshell.model.bubble import largest_radius, similitude_period, whole_pulse
 from coaxshell.model.explosives import EXPLOSIVES, Explosive
 from coaxshell.model.naming import lookup
-from coaxshell.model.pulses import AnyPulse, Exponential
-from coaxshell.model.units import Angle, Delay, Inclination, Length, Mass, Position, Pressure, Time
+from coaxshell.model.pulses import AnyPulse, Exponential, Sampled
+from coaxshell.model.units import Angle, Delay, Inclination, Length, Mass, Position, Pressure, Time, whole
 
 Geometry = Literal["spherical", "plane", "line"]
 OFF_THE_PLANE = ("z", "inclination")
@@ -125,11 +127,26 @@ def as_explosive(name: Any) -> str:
     return lookup(EXPLOSIVES, str(name), "explosive").name
 
 
+class Bubble(NamedTuple):
+    """The bubble of a charge by similitude: its largest radius (m) and the time to its first pulse (s)."""
+
+    largest_radius: float
+    period: float
+
+
+@lru_cache(maxsize=64)
+def _with_bubble(*shock_and_bubble: Any) -> Sampled:
+    """Return the history of a shock wave and its bubble, see :func:`coaxshell.model.bubble.whole_pulse`; kept, as its transforms are."""
+    time, pressure = whole_pulse(*shock_and_bubble)
+    return Sampled(time=time, pressure=pressure, reference="shock wave and bubble by similitude")
+
+
 class UnderwaterExplosion(_Placed, _Directed):
     """Describe the shock of an underwater charge by similitude: p = K1 (W^(1/3)/S)^A1, theta = K2 W^(1/3) (W^(1/3)/S)^A2.
 
-    W is *charge_mass* (kg) and S *stand_off* (m). The distance from the axis needs the outermost radius: ask
-    :func:`source_distance` or ``System.source_distances``.
+    W is *charge_mass* (kg) and S *stand_off* (m). With *bubble_pulses* the oscillating bubble follows
+    (:mod:`coaxshell.model.bubble`). The distance from the axis needs the outermost radius: ask :func:`source_distance` or
+    ``System.source_distances``.
     """
 
     geometry: ClassVar[Geometry] = "spherical"
@@ -141,6 +158,39 @@ class UnderwaterExplosion(_Placed, _Directed):
     """Distance of the charge from the head point of the outermost shell (m)."""
     explosive: Annotated[str, BeforeValidator(as_explosive)] = "TNT"
     """Name of the explosive."""
+    bubble_pulses: Annotated[int, Field(ge=0, le=10), BeforeValidator(whole)] = 0
+    """Pulses of the oscillating bubble that follow the shock wave; 0 leaves the bubble out. TNT alone has the constants."""
+    charge_depth: Length | None = None
+    """Depth of the charge below the surface (m), of which the bubble depends."""
+
+    @model_validator(mode="after")
+    def _bubble(self) -> Self:
+        if self.bubble_pulses == 0:
+            if self.charge_depth is not None:
+                raise InputError("charge_depth", "has no effect without a bubble", "give bubble_pulses, or leave it out")
+            return self
+        if self.charge_depth is None:
+            raise InputError("charge_depth", "is missing: a bubble depends on it", "give the depth of the charge below the surface (m)")
+        if self.constants.bubble_radius is None:
+            known = " or ".join(repr(name) for name, one in EXPLOSIVES.items() if one.bubble_radius is not None)
+            raise InputError(
+                "bubble_pulses", f"{self.explosive} has no sourced constants of its bubble", f"use {known}, or bubble_pulses = 0"
+            )
+        largest = largest_radius(self.charge_mass, self.charge_depth, self.constants.bubble_radius)
+        if largest >= self.charge_depth:
+            problem = f"{self.charge_depth:g} m lets the bubble, of up to {largest:.3g} m radius, break through the surface"
+            raise InputError("charge_depth", problem, "lay the charge deeper, or leave the bubble out")
+        return self
+
+    @property
+    def bubble(self) -> Bubble | None:
+        """Largest radius (m) and period (s) of the bubble by similitude; None without one."""
+        radius, period = self.constants.bubble_radius, self.constants.bubble_period
+        if self.bubble_pulses == 0 or self.charge_depth is None or radius is None or period is None:
+            return None
+        return Bubble(
+            largest_radius(self.charge_mass, self.charge_depth, radius), similitude_period(self.charge_mass, self.charge_depth, period)
+        )
 
     @property
     def constants(self) -> Explosive:
@@ -158,9 +208,13 @@ class UnderwaterExplosion(_Placed, _Directed):
         return float(self.constants.decay_factor * self._scale * (self._scale / self.stand_off) ** self.constants.decay_exponent)
 
     @property
-    def pulse(self) -> Exponential:
-        """The exponential history at the head point; the similitude holds for about one decay time."""
-        return Exponential(peak_pressure=self.peak_pressure, decay_time=self.decay_time)
+    def pulse(self) -> Exponential | Sampled:
+        """The exponential history at the head point, for about one decay time of the similitude; with bubble pulses a sampled one."""
+        factor = self.constants.bubble_radius
+        if self.bubble_pulses == 0 or self.charge_depth is None or factor is None:
+            return Exponential(peak_pressure=self.peak_pressure, decay_time=self.decay_time)
+        shock = self.peak_pressure, self.decay_time, self.stand_off
+        return _with_bubble(*shock, self.charge_mass, self.charge_depth, factor, self.bubble_pulses)
 
     @property
     def hull_shock_factor(self) -> float:

@@ -321,7 +321,7 @@ def _unresolved_records(problem: Problem, grid: LaplaceGrid, max_order: int) -> 
     hertz = 1.0 / (2.0 * np.pi * problem.scales.time)
     orders, step = max_order * hertz, (1.0 - ROLL_OFF) * grid.nyquist * hertz
     lowest, warnings = min(orders, step), []
-    for pulse in (source.pulse for source in problem.system.sources):
+    for pulse in (source.pulse for source in problem.system.sources if not isinstance(source, UnderwaterExplosion)):
         if not isinstance(pulse, Sampled) or (share := energy_above(*pulse.spectrum, lowest)) <= UNRESOLVED_LIMIT:
             continue
         needed = share_below(*pulse.spectrum, 1.0 - UNRESOLVED_LIMIT) / hertz

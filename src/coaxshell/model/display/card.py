@@ -15,7 +15,7 @@ from coaxshell.model.places import region_side, shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.sea import Sea
 from coaxshell.model.shells import RigidShell, Shell
-from coaxshell.model.sources import Source
+from coaxshell.model.sources import Source, UnderwaterExplosion
 
 Cells = Sequence[str]
 
@@ -151,7 +151,9 @@ def _source(system: SystemParts, source: Source) -> str:
     turned = f" at {source.angle:g}°," if source.angle else ""
     z, inclination = getattr(source, "z", 0.0), getattr(source, "inclination", 0.0)
     turned += (f" at z = {_length(z)}," if z else "") + (f" inclined by {inclination:g}°," if inclination else "")
-    return f"{source.type.replace('-', ' ')},{where}{turned} peak {_pressure(abs(source.pulse.peak))}"
+    bubble = source.bubble if isinstance(source, UnderwaterExplosion) else None
+    after = "" if bubble is None else f", bubble of {_length(bubble.largest_radius)}, first pulse after {engineering(bubble.period, 's')}"
+    return f"{source.type.replace('-', ' ')},{where}{turned} peak {_pressure(abs(source.pulse.peak))}{after}"
 
 
 def _point_absorbers(system: SystemParts) -> str:
