@@ -26,6 +26,7 @@ COMMANDS = (
         "record",
         "spectrum",
         "modes",
+        "response",
         "figure",
         "snapshots",
         "animate",
@@ -82,7 +83,7 @@ def test_version(run):
 def test_unknown_command(refused):
     message = refused("solve")
     assert "'solve'" in message
-    assert "allowed: run, presets, init, info, record, plot, spectrum, modes, figure" in message
+    assert "allowed: run, presets, init, info, record, plot, spectrum, modes, response, figure" in message
 
 
 def test_unknown_option(refused):

@@ -23,6 +23,7 @@ SMALLER = {
     "plot": COARSE,
     "spectrum": COARSE,
     "modes": ["--order", "2"],
+    "response": ["--frequency", "100,200", "--modes", "8"],
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
     "report": [*COARSE, "--without", "energy", "--without", "fields"],

@@ -12,6 +12,12 @@ from coaxshell.plotting.field_scales import PRESSURE_UNITS, check_units
 from coaxshell.plotting.film import check_film, save_film
 from coaxshell.plotting.film_files import FILM_SUFFIXES
 from coaxshell.plotting.frames import FieldView
+from coaxshell.plotting.frequency_response import (
+    figure_directivity,
+    figure_frequency_response,
+    plot_directivity,
+    plot_frequency_response,
+)
 from coaxshell.plotting.histories import QUANTITIES, PlottedQuantity, mark_peak, plot_history
 from coaxshell.plotting.loads import figure_loads
 from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
@@ -46,7 +52,9 @@ __all__ = [
     "figure_comparison",
     "figure_curves",
     "figure_cuts",
+    "figure_directivity",
     "figure_energy",
+    "figure_frequency_response",
     "figure_loads",
     "figure_named_curves",
     "figure_natural_frequencies",
@@ -62,10 +70,12 @@ __all__ = [
     "plot_comparison",
     "plot_convergence",
     "plot_curves",
+    "plot_directivity",
     "plot_distribution",
     "plot_energy",
     "plot_field",
     "plot_four_coordinates",
+    "plot_frequency_response",
     "plot_front",
     "plot_history",
     "plot_mode_shape",

@@ -51,6 +51,24 @@ def _compared(runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     return {"first_over_second": {name: value / second[name] for name, value in first.items() if second.get(name)}}
 
 
+def frequency_document(found: Mapping[str, xr.DataArray]) -> dict[str, Any]:
+    """Return answers at given frequencies by their systems: of each place its levels, or magnitudes and phases (degrees)."""
+    import numpy as np
+
+    from coaxshell.response.frequency.curves import curves_of, is_level
+
+    answers: list[dict[str, Any]] = []
+    for system, answer in found.items():
+        told, curves = answer.attrs.get("warnings", ""), []
+        for label, values in curves_of(answer):
+            parts = {"values": values} if is_level(answer) else {"magnitude": np.abs(values), "phase": np.degrees(np.angle(values))}
+            curves.append({"place": label, **{name: part.tolist() for name, part in parts.items()}})
+        entry = {"system": system, "quantity": str(answer.name), "frequency": answer["frequency"].values.tolist(), "curves": curves}
+        answers.append({**entry, "modes": answer.attrs["modes"], "warnings": told.split("\n") if told else []})
+    units = {answer["quantity"]: str(array.attrs["units"]) for answer, array in zip(answers, found.values(), strict=True)}
+    return {"answers": answers, "units": {"frequency": "Hz", "phase": "degree", **units}}
+
+
 def arrays_document(dataset: xr.Dataset) -> dict[str, Any]:
     """Return a dataset as lists under the names of its coordinates and variables, with their units, and what each means."""
     named = {str(name): dataset[name] for name in (*dataset.coords, *dataset.data_vars)}

@@ -50,7 +50,7 @@ def modes(
     ratio = options.number("--most-damped", most_damped)
     renamed = {"order": "order", "axial_half_wavelength": "axial-half-wavelength", "up_to": "up-to", "most_damped": "most-damped"}
     with options.named_as_options(**renamed):
-        found = natural_frequencies(system, _orders(order), lengths, up_to=up_to, most_damped=ratio)
+        found = natural_frequencies(system, orders_of(order), lengths, up_to=up_to, most_damped=ratio)
     rows = list(rows_of(found))
     if as_json:
         print_document({"system": system.name, "absorbers": "left out", "modes": rows})
@@ -66,13 +66,13 @@ def modes(
         echo(f"wrote {target}", aside=as_json)
 
 
-def _orders(text: str) -> list[int]:
+def orders_of(text: str, option: str = "--order") -> list[int]:
     """Return the orders of "0-12", "2,3,8" or both mixed."""
     found: list[int] = []
     for item in text.split(","):
         first, dash, last = item.strip().partition("-")
         if not first.isdecimal() or (dash and not (last.isdecimal() and int(first) <= int(last) < 10_000)):
-            raise InputError("--order", f"{item.strip()!r} is not an order, nor a range of them", "write them as in 0-12 or 2,3,8")
+            raise InputError(option, f"{item.strip()!r} is not an order, nor a range of them", "write them as in 0-12 or 2,3,8")
         found += range(int(first), int(last) + 1) if dash else [int(first)]
     return found
 
