@@ -306,3 +306,24 @@ def test_a_law_with_delay_filter_and_weights_answers_by_its_own_h():
     s = 2j * np.pi * frequency
     expected = 2e-4 / (1.0 + 1e-4 * s) * np.exp(-1e-6 * s) / (1.0 + s / (2.0 * np.pi * 20e3))
     np.testing.assert_allclose(volts, expected[:, None] * sensed.values, rtol=1e-9)
+
+
+def test_a_rational_law_with_delay_has_its_voltages_and_takes_its_power():
+    law = cx.Feedback(numerator=[2e-4, 0.2], denominator=[1e-5, 1.0], delay=1e-6, transducers="electrodes")
+    system = cx.presets.load("electrodes").replace(control=law)
+    f = np.array([150.0, 900.0])
+    volts, sensed = (
+        cx.frequency_response(system, f, f"{which}_voltage", shell="inner", angle=0.0, modes=12) for which in ("actuator", "sensor")
+    )
+    s = 2j * np.pi * f
+    np.testing.assert_allclose(volts, (2e-4 * s + 0.2) / (1e-5 * s + 1.0) * np.exp(-1e-6 * s) * sensed, rtol=1e-8)
+    assert np.all(cx.frequency_response(system, f, "absorption_width", modes=12).values > 1e-6)
+
+
+@pytest.mark.parametrize(("theory", "wetted"), [("thin", "faces"), ("elastic", "mid-surface")])
+def test_walls_without_losses_scatter_all_that_the_wave_loses(theory, wetted):
+    layers = [cx.Layer(STEEL, 0.03)]
+    shells = [cx.Shell(radius=r, layers=layers, theory=theory, wetted=wetted) for r in (0.6, 1.0)]
+    system = cx.System(shells=shells, fluids=[cx.VACUUM, WATER, WATER], source=WAVE)
+    lost, scattered = (cx.frequency_response(system, hertz([0.7, 5.2]), name) for name in ("extinction_width", "scattering_width"))
+    np.testing.assert_allclose(lost, scattered, rtol=1e-8)

@@ -82,3 +82,17 @@ def test_frequencies_are_chosen_below_the_roll_off(ringing):
 def test_bad_arguments_are_refused_by_name(ringing, arguments, told):
     with pytest.raises(InputError, match=told):
         ringing.spectrum(**arguments)
+
+
+@FEW
+def test_an_inclined_wave_has_the_spectrum_of_its_run_at_every_station():
+    shell = cx.Shell(radius=1.0, layers=[cx.Layer(PLASTIC, 0.05)])
+    pulse = cx.Gaussian(peak_pressure=1e5, width=6e-4, centre=4e-3)
+    system = cx.System(shells=[shell], fluids=[cx.VACUUM, WATER], source=cx.PlaneWave(pulse=pulse, inclination=20.0))
+    run = cx.simulate(system, duration=800.0, time_step=0.1, modes=1, dimensions=3, stations=[0.0, 0.5])
+    hertz = np.array([100.0, 250.0])
+    found = run.spectrum("shell_velocity", "outer", [0.0, 70.0], hertz, per="incident")
+    expected = cx.frequency_response(system, hertz, "shell_velocity", angle=[0.0, 70.0], modes=1, dimensions=3)
+    along = np.exp(-2j * np.pi * hertz / 1400.0 * np.sin(np.radians(20.0)) * 0.5)[:, None]
+    np.testing.assert_allclose(found.isel(station=0), expected, rtol=1e-3)
+    np.testing.assert_allclose(found.isel(station=1), expected * along, rtol=1e-3)

@@ -7,29 +7,24 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import h1vp, hankel1, jv, jvp
 
-from coaxshell.acoustics.basis import Modes
 from coaxshell.acoustics.operators import all_orders
-from coaxshell.acoustics.radial_fields import outgoing
-from coaxshell.acoustics.sources import PlaneGeometry
 from coaxshell.apps.verification.bench import Bench
 from coaxshell.apps.verification.independent.walls import Wall
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Curve, Finding, Panel, Sheet, within
 from coaxshell.apps.verification.systems import evacuated, thin_shell
+from coaxshell.model.shells import RigidShell
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.coupling import ModalSystem
-from coaxshell.solver.scaling import dimensionless
+from coaxshell.response import frequency_response
 
 ORDERS = all_orders(60)
 M = ORDERS[:, None]
-FAR, SHIFT = 1e7, 1e-10
 SOURCE = "theory 10; classical series, SciPy's Hankel functions"
 
 
 @check("form-function", "Steady backscatter: form functions")
 def form_function(bench: Bench) -> Iterator[Finding]:
-    """Compare the far field at s -> i omega with the classical series in Hankel functions, |f| = 2/sqrt(pi ka) |sum eps_m (-1)^m b_m|.
+    """Compare the far field at s = i omega with the classical series in Hankel functions, |f| = 2/sqrt(pi ka) |sum eps_m (-1)^m b_m|.
 
     b_m = J_m'/H_m' for the rigid cylinder; for the shell with the wall's modal stiffness worked out by hand.
     """
@@ -53,16 +48,12 @@ def form_function(bench: Bench) -> Iterator[Finding]:
 
 
 def _ours(ka: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return |f| of the rigid cylinder and of the shell from the package's own operators, far away and next to the imaginary axis."""
-    s = np.asarray(SHIFT + 1j * ka, dtype=np.complex128)
-    problem = dimensionless(evacuated())
-    modal = ModalSystem(problem, s, Modes(ORDERS))
-    surface = modal.radial.surface
-    load = PlaneGeometry().prepare(LaplaceGrid(0.1, 8), modal.modes)(modal.radial, slice(None))
-    slope = load / (surface.disc - surface.exterior)  # of the incident wave
-    moved = s * s * modal.solve_outside(load)[0]
-    away = surface.exterior * outgoing(modal.radial(1.0, FAR), surface) * (np.sqrt(2 * FAR) * np.exp(SHIFT * FAR))
-    return np.abs((-slope * away).sum(axis=0)), np.abs(((moved - slope) * away).sum(axis=0))
+    """Return |f| of the rigid cylinder and of the shell as the package gives them."""
+    shell = evacuated()
+    rigid = shell.replace(shells=[RigidShell(radius=1.0)])
+    hertz = ka * shell.exterior.sound_speed / (2.0 * np.pi)
+    found = [np.abs(frequency_response(system, hertz, "form_function").to_numpy()) for system in (rigid, shell)]
+    return found[0], found[1]
 
 
 def _series(ka: FloatArray, wall: Wall | None) -> FloatArray:
