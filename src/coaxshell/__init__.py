@@ -54,6 +54,7 @@ if TYPE_CHECKING:
         Viscoelastic,
         absorber_ring,
         fluids,
+        laws,
         materials,
         presets,
     )
@@ -130,6 +131,7 @@ __all__ = [
     "fluids",
     "frequency_response",
     "gradient",
+    "laws",
     "load_response",
     "materials",
     "natural_frequencies",

@@ -8,8 +8,8 @@ import pytest
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
-from coaxshell.solver.interface.linear import admittance, solve_linear
+from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set, admittance
+from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra

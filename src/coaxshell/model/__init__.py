@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from coaxshell.model import fluids, materials, presets
+from coaxshell.model import fluids, laws, materials, presets
 from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber, absorber_ring
 from coaxshell.model.base import Described
 from coaxshell.model.control import PDControl
@@ -64,6 +64,7 @@ __all__ = [
     "Viscoelastic",
     "absorber_ring",
     "fluids",
+    "laws",
     "materials",
     "presets",
     "source_distance",

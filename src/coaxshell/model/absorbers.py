@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from typing import Annotated, Any, Self, overload
+from typing import Annotated, Any, Literal, Self, overload
 
 from pydantic import model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.limits import RING
 from coaxshell.model.base import Described, shown
+from coaxshell.model.laws import AnyLaw
 from coaxshell.model.units import Angle, Count, Length, Position, quantity
 from coaxshell.numerics.scalars import plain
 
@@ -29,8 +30,29 @@ PointStiffness = Annotated[float, quantity("stiffness", least=0)]
 PointCubicStiffness = Annotated[float, quantity("cubic stiffness", least=0)]
 
 
+Links = Literal["both", "inner", "outer"]
+
+
+def _require_determined(one: _Link | PointAbsorber, unit: str) -> None:
+    """Raise InputError if nothing determines where the mass is, or what it holds."""
+    if one.grounded and one.links == "both":
+        raise InputError("grounded", "true beside links = 'both' leaves no link for the core", 'must go with links = "inner" or "outer"')
+    loose = not (one.damping or one.linear_stiffness or one.cubic_stiffness)
+    if one.mass == 0 and loose and one.law is None:
+        raise InputError(
+            "mass",
+            f"0.0 {unit} with neither damping nor stiffness leaves the absorber undetermined",
+            "must be greater than 0, or give it a stiffness",
+        )
+    if one.mass == 0 and (one.law is not None or one.inertance) and not (one.damping or one.linear_stiffness):
+        problem = f"0.0 {unit} with a law or an inertance alone leaves the absorber undetermined"
+        raise InputError("mass", problem, "must be greater than 0, or give it damping or linear_stiffness, however small")
+    if one.mass == 0 and one.links != "both" and not one.grounded:
+        raise InputError("mass", f"0.0 {unit} on one shell alone does nothing", "must be greater than 0")
+
+
 class _Link(Described):
-    """Hold the law of one absorber: f = c dD/dt + k_l D + k_nl D^3 on each side, D the stretch; all per metre of length."""
+    """Hold one absorber: f = c dD/dt + k_l D + k_nl D^3 on each side, D the stretch, and what a law adds; all per metre of length."""
 
     mass: LineMass
     """Moving mass (kg per metre of length); 0 leaves two links in series."""
@@ -44,15 +66,18 @@ class _Link(Described):
     """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
     footprint: Length | None = None
     """Arc of each wall that it holds (m), in two dimensions; unless given the wall's thickness on exact walls, a line on thin ones."""
+    links: Links = "both"
+    """Which shells it holds: "both", or its mass hangs on the "inner" or the "outer" one alone, as a tuned mass damper."""
+    grounded: bool = False
+    """Of a mass on one shell: whether its other link holds a rigid core, which does not move, instead of nothing."""
+    law: AnyLaw | None = None
+    """What each link exerts besides: linear, cubic, bistable, polynomial, gap, friction, maxwell, table; parallel; sides."""
+    inertance: LineMass = 0.0
+    """Inertance b of each link (kg per metre of length): f = b d^2D/dt^2 besides, of an inerter."""
 
     @model_validator(mode="after")
     def _determined(self) -> Self:
-        if self.mass == 0 and not (self.damping or self.linear_stiffness or self.cubic_stiffness):
-            raise InputError(
-                "mass",
-                "0.0 kg/m with neither damping nor stiffness leaves the absorber undetermined",
-                "must be greater than 0, or give it a stiffness",
-            )
+        _require_determined(self, "kg/m")
         return self
 
 
@@ -79,6 +104,14 @@ class PointAbsorber(Described):
     """Cubic stiffness k_nl of each link (N/m^3)."""
     inner_shell: Count = 0
     """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
+    links: Links = "both"
+    """Which shells it holds: "both", or its mass hangs on the "inner" or the "outer" one alone, as a tuned mass damper."""
+    grounded: bool = False
+    """Of a mass on one shell: whether its other link holds a rigid core, which does not move, instead of nothing."""
+    law: AnyLaw | None = None
+    """What each link exerts besides: linear, cubic, bistable, polynomial, gap, friction, maxwell, table; parallel; sides."""
+    inertance: PointMass = 0.0
+    """Inertance b of each link (kg): f = b d^2D/dt^2 besides, of an inerter."""
     angle: Angle = 0.0
     """Where it sits, from the direction theta = 0 (degrees)."""
     z: Position
@@ -88,12 +121,7 @@ class PointAbsorber(Described):
 
     @model_validator(mode="after")
     def _determined(self) -> Self:
-        if self.mass == 0 and not (self.damping or self.linear_stiffness or self.cubic_stiffness):
-            raise InputError(
-                "mass",
-                "0.0 kg with neither damping nor stiffness leaves the absorber undetermined",
-                "must be greater than 0, or give it a stiffness",
-            )
+        _require_determined(self, "kg")
         return self
 
 

@@ -99,18 +99,22 @@ def _absorbers(system: SystemParts) -> None:
         return  # an empty ring fits any system
     for number, absorber in enumerate(listed):
         where = f"absorbers[{number}]" if single else "absorbers"
-        if len(system.shells) < 2:
-            raise InputError(where, "an absorber links two shells, and this system has 1", "add a shell or leave the absorbers out")
-        inner = absorber.inner_shell
-        if inner > len(system.shells) - 2:
+        alone = len(system.shells) < 2
+        if alone and absorber.links == "both":
+            remedy = 'add a shell, give links = "outer" for a mass on this one alone, or leave the absorbers out'
+            raise InputError(where, "an absorber links two shells, and this system has 1", remedy)
+        inner, most = absorber.inner_shell, max(len(system.shells) - 2, 0)
+        if inner > most:
             raise InputError(
                 f"{where}.inner_shell",
                 f"{inner} has no shell outside it",
-                f"must be at most {len(system.shells) - 2} in a system of {len(system.shells)} shells",
+                f"must be at most {most} in a system of {len(system.shells)} shells",
             )
-        for end in (inner, inner + 1):
-            if isinstance(system.shells[end], RigidShell):
-                raise InputError(f"{where}.inner_shell", f"{inner} links shells[{end}], which is rigid", "must link two elastic shells")
+        ends = {"both": [inner, inner + 1], "inner": [inner], "outer": [inner if alone else inner + 1]}[absorber.links]
+        if all(isinstance(system.shells[end], RigidShell) for end in ends):
+            found = " and ".join(f"shells[{end}]" for end in ends)
+            are = "are" if len(ends) > 1 else "is"
+            raise InputError(f"{where}.inner_shell", f"{inner} links {found}, which {are} rigid", "must link an elastic shell")
         if absorber.footprint is not None:
             around = 2.0 * math.pi * system.shells[inner].radius
             if absorber.footprint > around:

@@ -133,7 +133,16 @@ def _source(source: Source, beside: Path | None, *, hashed: bool = False) -> dic
     return {**data, "pulse": storing.table(source.pulse, *(storing.write(source.pulse, beside) if beside is not None else ()))}
 
 
-_USUAL: dict[str, Any] = {"absorbers": [], "wetted": "mid-surface", "theory": "thin", "transducers": "paper", "bubble_pulses": 0}
+_USUAL: dict[str, Any] = {
+    "absorbers": [],
+    "wetted": "mid-surface",
+    "theory": "thin",
+    "transducers": "paper",
+    "bubble_pulses": 0,
+    "links": "both",
+    "grounded": False,
+    "inertance": 0.0,
+}
 """What descriptions leave out where it is as usual, so that they are written as before there was anything else."""
 
 

@@ -42,6 +42,7 @@ USUAL: dict[str, dict[str, float]] = {
     "N/m": {"N/m": 1.0},
     "N/m^4": {"N/m^4": 1.0},
     "N/m^3": {"N/m^3": 1.0},
+    "N": {"N": 1.0, "kN": 1000.0, "MN": 1e6},
 }
 """Unit in SI: factors of units as they are typed."""
 
@@ -78,6 +79,11 @@ DIMENSIONS: dict[str, Dimension] = {
     "damping": Dimension("a damping", "N*s/m", "1e5 N*s/m"),
     "stiffness": Dimension("a stiffness", "N/m", "1 MN/m"),
     "cubic stiffness": Dimension("a cubic stiffness", "N/m^3", "1e18 N/m^3"),
+    # Laws of links serve absorbers at points and, per metre of length, those that are lines.
+    "link force": Dimension("a force", "N", "10 kN", ("N/m",)),
+    "link damping": Dimension("a damping", "N*s/m", "1e5 N*s/m", ("N*s/m^2",)),
+    "link stiffness": Dimension("a stiffness", "N/m", "1 MN/m", ("N/m^2",)),
+    "link cubic stiffness": Dimension("a cubic stiffness", "N/m^3", "1e18 N/m^3", ("N/m^4",)),
     "number": Dimension("a plain number", "", "0.3"),
 }
 

@@ -119,6 +119,8 @@ def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
     links, step = solved.absorbers, solved.grid.time_step
     if not solved.marched or links.count == 0:
         return []  # solved exactly, or none
+    if solved.laws is not None:
+        return _of_laws(solved.laws.angle, step, refinement)
     points = InterfacePoints(solved.problem, links, solved.modes)
     present = _masses(solved.problem, step, solved.modes) if solved.problem.two_faced else solved.passive.kernels.present
     local = 2.0 / step * np.diag(points.immediate(present)).reshape(2, links.count).max(axis=0)
@@ -142,6 +144,17 @@ def _masses(problem: Problem, step: float, modes: Modes) -> FloatArray:
     """Return the weights at lag 0 of surfaces that bear the mass of their walls alone: what a face yields at once does not vibrate."""
     mobility = [0.5 * step / problem.shells[surface.shell].mass for surface in problem.surfaces]
     return np.asarray(np.diag(mobility)[:, :, None] * np.ones(modes.count))
+
+
+def _of_laws(angle: float, step: float, refinement: int) -> list[str]:
+    """Return the warning about laws of links on which something swings by more than the step resolves; *angle* in radians a step."""
+    if angle <= RESOLVED_ANGLE:
+        return []
+    factor = refinement * int(np.ceil(angle / RESOLVED_ANGLE))
+    return [
+        f"absorbers: on the stiffest law of a link something swings by {angle:.2g} radians a step, more than {RESOLVED_ANGLE:g}; "
+        f"use time_step = {refinement * step * RESOLVED_ANGLE / angle:.2g} or refinement = {factor}"
+    ]
 
 
 def actuators(*motions: ModalSolution) -> list[str]:

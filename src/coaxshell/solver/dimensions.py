@@ -5,6 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.layers import Shell
+from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
@@ -66,6 +67,18 @@ def _require_plane_electrodes(system: System, dimensions: int) -> None:
     if system.control.saturation:
         problem = "electrodes push along the wall too, where no limit of the voltage is marched yet"
         raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {paper}")
+
+
+def require_cubic_springs(system: System, what: str, remedy: str) -> None:
+    """Raise InputError if absorbers have more than two links of dampers, linear and cubic springs, all that *what* knows."""
+    for number, one in enumerate(system.absorber_list):
+        where = f"absorbers[{number}]" if isinstance(system.absorbers, tuple) else "absorbers"
+        core = any(isinstance(system.shells[i], RigidShell) for i in (one.inner_shell, one.inner_shell + 1) if i < len(system.shells))
+        besides = {"law": one.law is not None, "inertance": one.inertance != 0.0, "links": one.links != "both", "inner_shell": core}
+        for name, given in besides.items():
+            if given:
+                problem = f"is not known to {what}, which knows absorbers of two dampers, linear and cubic springs"
+                raise InputError(f"{where}.{name}", problem, remedy)
 
 
 def require_mid_surfaces(system: System) -> None:

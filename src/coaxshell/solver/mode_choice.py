@@ -77,13 +77,14 @@ def _free_forces(sampled: SampledOrders, links: AbsorberSet, grid: LaplaceGrid) 
     """Return linear absorbers instead, the walls' motion without them and their forces, (2, N, nodes), phases drawn at random."""
     phase = np.exp(2j * np.pi * np.random.default_rng(0).random((2, links.count, sampled.nodes.size)))
     motion = phase * np.sqrt(sampled.motion(links))
-    linear = replace(links, cubic=np.zeros_like(links.cubic))
+    linear = links.linear_part()
     mobility = sampled.mobility(links)
     force = each_alone(linear, sampled.nodes, mobility, motion)
     mean = 2.0 * grid.shift * NODES.step * grid.frequency_step / np.pi  # of squares over the time that the contour weighs
-    for _ in range(0 if links.is_linear else _LINEARISATIONS):
+    for _ in range(0 if not links.cubic.any() else _LINEARISATIONS):
         law = linear.damping[:, None] * sampled.nodes + linear.linear[:, None]
-        stretch = mean * (np.abs(force / law) ** 2).sum(axis=-1).max(axis=0)
+        moved = np.divide(force, law, out=np.zeros_like(force), where=np.broadcast_to(law != 0.0, force.shape))
+        stretch = mean * (np.abs(moved) ** 2).sum(axis=-1).max(axis=0)
         spring = links.linear + 3.0 * links.cubic * stretch
         linear = replace(linear, linear=np.sqrt(spring * linear.linear) if np.all(linear.linear > 0) else spring)  # between: no swinging
         force = each_alone(linear, sampled.nodes, mobility, motion)

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, side_admittance
 from coaxshell.solver.limited_orders import actuators_of, asked_above, moved_above, moved_below, softened
 from coaxshell.solver.sampled_orders import NODES, SampledOrders, each_alone, mobility_at
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -55,6 +55,8 @@ class Interface:
         With its feedback, where actuators acted as forces on the structure without.
     asked : ndarray, shape (shells, parities, M + 1, instants), or None
         Modal pressures that the control law asked for, at the instants of the run, where actuators saturated.
+    linear : AbsorberSet or None
+        Springs and dampers that stand for laws in the estimates; None where cubic springs alone are nonlinear.
     """
 
     links: AbsorberSet
@@ -64,6 +66,11 @@ class Interface:
     marched: bool
     saturating: StructureSpectra | None = None
     asked: FloatArray | None = None
+    linear: AbsorberSet | None = None
+
+    def linear_links(self) -> AbsorberSet:
+        """Return linear absorbers that do about the same in this run."""
+        return mean_tangent(self.links, self.stretch) if self.linear is None else self.linear
 
 
 def surface_norms(normal: npt.NDArray[np.number], tangential: npt.NDArray[np.number]) -> FloatArray:
@@ -171,13 +178,14 @@ def against(
         for b in (0, 1):
             if soft is not None:
                 receptance[:, a * count + index, b * count + index] += soft[a, b].T
-    own, other, _ = admittance(links, nodes)
+    law = side_admittance(links, nodes)
+    own, other = np.stack([law.inner, law.outer], axis=1), law.other
     by_side = receptance.reshape(nodes.size, 2 * count, 2, count)
-    followed = by_side * own[:, None, None] + by_side[:, :, ::-1] * other[:, None, None]  # of the walls, through the forces
+    followed = by_side * own[:, None] + by_side[:, :, ::-1] * other[:, None, None]  # of the walls, through the forces
     followed = followed.reshape(receptance.shape)
     followed[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
     wall = np.linalg.solve(followed, moved.reshape(2 * count, -1).T[:, :, None]).reshape(nodes.size, 2, count)
-    return np.asarray(-(wall * own[:, None] + wall[:, ::-1] * other[:, None]).transpose(1, 2, 0))
+    return np.asarray(-(wall * own + wall[:, ::-1] * other[:, None]).transpose(1, 2, 0))
 
 
 def moved_by(structure: StructureSpectra, links: AbsorberSet, force: ComplexArray) -> FloatArray:
@@ -214,7 +222,7 @@ def left_out(
     changed = np.zeros_like(along)
     links = force = None
     if interface is not None and interface.links.count:
-        links = mean_tangent(interface.links, interface.stretch)
+        links = interface.linear_links()
         force = grid.transform_linear(interface.force)[:, NODES].reshape(2, links.count, -1)
 
     def moving(above: SampledOrders) -> tuple[FloatArray, ComplexArray | None]:

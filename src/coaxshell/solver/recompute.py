@@ -18,8 +18,9 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.actuation import pressure_given, saturated
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.excitation import source_parities
-from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
 from coaxshell.solver.interface.linked import modal_pressure_of, solve_linked
+from coaxshell.solver.links.histories import LawHistories, middles_transform
 from coaxshell.solver.reflections import reflected
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
@@ -46,7 +47,7 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
     kept, refinement = solution.spectra, solution.settings.refinement
     structure = _structure(solution) if kept is None else kept.structure
     links, actuation = _links(solution), pressure_given(solution)
-    if refinement == 1 and (actuation is not None or not links.is_linear):
+    if refinement == 1 and (actuation is not None or not links.is_linear) and not links.of_any_law:
         force, displacement = solution.absorber_force, solution.absorber_displacement
         if force is None or displacement is None:
             force, displacement = np.zeros((0, 2, solution.time.size)), np.zeros((0, solution.time.size))
@@ -57,7 +58,7 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
             require_room(structure.problem, solution.settings)  # a saved run may come from a larger machine
         kept = reflected(structure, lambda one: solve_linked(one, links, saturate=actuation is not None))
     if continued and kept.marched:
-        return _of_forces(kept.structure, links, kept.force, kept.displacement, kept.actuation, continued)
+        return _of_forces(kept.structure, links, kept.force, kept.displacement, kept.actuation, continued, kept.laws)
     return kept
 
 
@@ -82,18 +83,21 @@ def _of_forces(
     displacement: FloatArray,
     actuation: FloatArray | None,
     continued: bool,
+    laws: LawHistories | None = None,
 ) -> SolvedSpectra:
     """Return the answer to forces that were marched, the absorbers' and the actuators'."""
     grid, pressure = structure.grid, np.asarray(0.0 if actuation is None else actuation)
-    if links.count:
+    if laws is not None:
+        pressure = InterfacePoints(structure.problem, links, structure.modes).project(laws.force)
+    elif links.count:
         pressure = pressure + modal_pressure_of(structure, links, force)
-    spectrum = grid.transform_linear(pressure)
+    spectrum = grid.transform_linear(pressure) if laws is None else middles_transform(grid, pressure)
     if continued:
         value, slope = _beyond_end(grid)
         rate = 3.0 * pressure[..., -1:] - 4.0 * pressure[..., -2:-1] + pressure[..., -3:-2]
         spectrum += pressure[..., -1:] * value + rate / (2.0 * grid.time_step) * slope
     moved = (structure if actuation is None else structure.open_loop).forced_spectra(spectrum)
-    return SolvedSpectra(structure, links, *moved, force, displacement, actuation)
+    return SolvedSpectra(structure, links, *moved, force, displacement, actuation, laws=laws)
 
 
 def _beyond_end(grid: LaplaceGrid) -> tuple[ComplexArray, ComplexArray]:

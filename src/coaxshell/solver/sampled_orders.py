@@ -19,7 +19,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.faced_forces import surfaces_of
-from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, side_admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES
 from coaxshell.solver.shared_parts import SharedParts
@@ -197,14 +197,15 @@ class SampledOrders:
         """
         share = np.where(self.orders > above, self.weight, 0.0) * np.where(self.orders == 0, 1.0, 0.5)
         if links.footprint is None:
-            return np.asarray(np.einsum("imk,m->ik", self.surface_excited, share)[links.surfaces])
+            found = np.asarray(np.einsum("imk,m->ik", self.surface_excited, share)[links.surfaces])
+            return found if links.elements is None else found * links.held[:, :, None]
         weight = links.means(self.problem, self._modes) ** 2 * share
         found = np.empty((2, links.count, self.nodes.size))
         for side in (0, 1):
             for members in links.held_alike:
                 first = members[0]
                 found[side, members] = weight[side, first] @ self.surface_excited[links.surfaces[side, first]]
-        return found
+        return found * links.held[:, :, None]
 
 
 def _by_surface(problem: Problem, links: AbsorberSet, members: npt.NDArray[np.int64], means: FloatArray) -> FloatArray:
@@ -224,8 +225,12 @@ def force_density(problem: Problem, links: AbsorberSet, force: ComplexArray, mem
     some = np.ones(links.count, dtype=bool) if members is None else np.isin(np.arange(links.count), members)
     for first in np.unique(inner[some]):
         here = (inner == first) & some
-        pair, sides = slice(first, first + 2), force[:, here]  # surfaces that look at one gap stand next to each other
-        density[pair, pair] += np.einsum("ank,bnk,n->abk", sides, np.conj(sides), links.multiplicity[here])
+        sides = force[:, here] if links.elements is None else force[:, here] * links.held[:, here, None]
+        both = np.einsum("ank,bnk,n->abk", sides, np.conj(sides), links.multiplicity[here])
+        of_sides = links.surfaces[:, np.argmax(here)]
+        for a in (0, 1):
+            for b in (0, 1):
+                density[of_sides[a], of_sides[b]] += both[a, b]
     return density
 
 
@@ -248,8 +253,10 @@ def mobility_at(problem: Problem, links: AbsorberSet, modes: Modes, compliance: 
 
     ``share`` as in :func:`mobility_of`; a footprint weighs it by h_m of both.
     """
+    between = links.held[:, None] * links.held
     if links.footprint is None:
-        return mobility_of(problem, compliance, share)[links.surfaces[:, None], links.surfaces]
+        found = mobility_of(problem, compliance, share)[links.surfaces[:, None], links.surfaces]
+        return found if links.elements is None else found * between[..., None]
     means = links.means(problem, modes)
     found = np.empty((2, 2, links.count, compliance.shape[-1]), np.complex128)
     for members in links.held_alike:
@@ -257,7 +264,7 @@ def mobility_at(problem: Problem, links: AbsorberSet, modes: Modes, compliance: 
         weighed = compliance * (held[:, None] * held)[..., None]
         surfaces = links.surfaces[:, members[0]]
         found[:, :, members] = mobility_of(problem, weighed, share)[surfaces[:, None], surfaces][:, :, None]
-    return found
+    return found * between[..., None]
 
 
 def each_alone(links: AbsorberSet, nodes: ComplexArray, mobility: ComplexArray, motion: ComplexArray) -> ComplexArray:
@@ -265,13 +272,13 @@ def each_alone(links: AbsorberSet, nodes: ComplexArray, mobility: ComplexArray, 
 
     ``mobility`` is that of :func:`mobility_at`.
     """
-    own, other, _ = (x.T for x in admittance(links, nodes))
+    inner, outer, other = (x.T for x in side_admittance(links, nodes)[:3])
     force = np.empty(motion.shape, np.complex128)
     for n in range(links.count):
         (g00, g01), (g10, g11) = mobility[:, :, n]
-        a, b = 1.0 + g00 * own[n] + g01 * other[n], g00 * other[n] + g01 * own[n]
-        c, d = g10 * own[n] + g11 * other[n], 1.0 + g10 * other[n] + g11 * own[n]
+        a, b = 1.0 + g00 * inner[n] + g01 * other[n], g00 * other[n] + g01 * outer[n]
+        c, d = g10 * inner[n] + g11 * other[n], 1.0 + g10 * other[n] + g11 * outer[n]
         determinant = a * d - b * c
         here, there = (d * motion[0, n] - b * motion[1, n]) / determinant, (a * motion[1, n] - c * motion[0, n]) / determinant
-        force[0, n], force[1, n] = -(own[n] * here + other[n] * there), -(other[n] * here + own[n] * there)
+        force[0, n], force[1, n] = -(inner[n] * here + other[n] * there), -(other[n] * here + outer[n] * there)
     return force

@@ -10,7 +10,8 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
+from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion, motion_of_laws
+from coaxshell.solver.links.histories import LawHistories
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import SolidSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -47,6 +48,8 @@ class SolvedSpectra:
         Of all steps of a march, 0 if nothing was marched.
     exact : tuple of ndarray, shapes (2 N, nodes) and (N, nodes), or None
         Transforms of force and displacement of the absorbers carried, where they were solved exactly.
+    laws : LawHistories or None
+        What links of any law did, where there are such.
     """
 
     structure: StructureSpectra
@@ -59,6 +62,7 @@ class SolvedSpectra:
     actuation: FloatArray | None = None
     iterations: int = 0
     exact: tuple[ComplexArray, ComplexArray] | None = None
+    laws: LawHistories | None = None
 
     @property
     def problem(self) -> Problem:
@@ -105,4 +109,6 @@ class SolvedSpectra:
             return None
         if self.exact is not None:
             return exact_motion(self.absorbers, self.grid, *self.exact)
+        if self.laws is not None:
+            return motion_of_laws(self.absorbers, self.laws, self.force, self.displacement)
         return marched_motion(self.absorbers, self.grid.time_step, self.force, self.displacement)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes, RadialBasis
+from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.excitation import SourceGroup, incident_of
@@ -145,6 +146,9 @@ class SteadySystem:
             nodes = self.grid.nodes.size
             force, moved = np.zeros((0, 2, nodes), np.complex128), np.zeros((0, nodes), np.complex128)
             return SteadyMotion(bare[0], bare[1], bare[2], bare[3], slope, pressure, links, force, moved)
+        if links.of_any_law:
+            remedy = "leave it out, or use laws that are linear: linear, maxwell, and inertance"
+            raise InputError("absorbers.law", "is not linear, and the answer at a frequency is that of linear absorbers", remedy)
         surfaces = self.problem.surfaces
         moved_alone = np.stack([bare[0 if side == 0 else 1, i] for i, side, _ in surfaces])
         alone = _Alone(self.problem, self.grid, self.modes, bare[1], moved_alone, self.compliance)

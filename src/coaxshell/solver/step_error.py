@@ -24,9 +24,9 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import KernelTable, summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
-from coaxshell.solver.interface.march import march
 from coaxshell.solver.kernels import voltage_law, voltage_weights
-from coaxshell.solver.orders_left_out import Interface, forces_against, mean_tangent, relative
+from coaxshell.solver.links.any_law import march_interface
+from coaxshell.solver.orders_left_out import Interface, forces_against, relative
 from coaxshell.solver.quadrature import unresolved_orders
 from coaxshell.solver.sampled_orders import standing_for
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -142,7 +142,7 @@ class CoarserStructure(StructureSpectra):
 
     def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
         """Return the points, alone where they march so."""
-        return super().points(absorbers) if self._points is None else PointsAlone(self._points.count)
+        return super().points(absorbers) if self._points is None else PointsAlone(absorbers)
 
     @cached_property
     def open_loop(self) -> StructureSpectra:
@@ -216,7 +216,7 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
     given = np.zeros((*moved.shape[:2], orders.size, grid.nodes.size), np.complex128)
     if links.count:
         ends = points.evaluate(moved).reshape(2, links.count, -1)
-        forces = forces_against(structure, mean_tangent(links, interface.stretch), ends, which=slice(None))
+        forces = forces_against(structure, interface.linear_links(), ends, which=slice(None))
         given += points.project(forces.reshape(2 * links.count, -1), orders)
     for i in [] if interface.saturating is None else interface.saturating.controlled:
         assert interface.saturating is not None
@@ -234,7 +234,7 @@ def _difference(structure: StructureSpectra, interface: Interface, whole: FloatA
     unknown = np.full(whole.shape, np.inf)
     try:
         with np.errstate(all="ignore"):
-            coarse = march(coarser, links, saturate=saturating is not None)
+            coarse = march_interface(coarser, links, saturate=saturating is not None)
     except (InputError, np.linalg.LinAlgError, FloatingPointError):
         return unknown
     if not np.abs(coarse.modal_pressure).max(initial=0.0) < 1e100:

@@ -29,6 +29,7 @@ from coaxshell.model import (
     UnderwaterExplosion,
     Viscoelastic,
     fluids,
+    laws,
     materials,
     presets,
 )
@@ -96,6 +97,9 @@ def _reference() -> Iterator[str]:
     yield from _entries(AbsorberRing)
     yield "  in three dimensions [[absorbers]], each at a point of the axis:"
     yield from _entries(PointAbsorber)
+    yield "[absorbers.law]: what the links of an absorber exert besides its damper and springs"
+    for law in laws.LAWS.values():
+        yield from _kind(law)
     yield "[control]: piezoelectric feedback from each shell's sensor layer to its actuator layer"
     yield from _entries(PDControl)
     yield "  or of any other law:"

@@ -16,6 +16,7 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, Properties, absorber_set, properties
 from coaxshell.solver.interface.link_motion import LinkMotion
+from coaxshell.solver.links.described import side_of
 from coaxshell.structure.shell_model import ShellModel
 
 
@@ -23,12 +24,14 @@ class AbsorberEnergy(NamedTuple):
     """Energies of all absorbers together, at the kept instants.
 
     ``defect`` is what the forces on the moving ends make of the dissipation, less ``dissipated``: an error of the time step.
+    ``lost`` is what friction, stops and viscoelastic branches turned into heat, None without laws.
     """
 
     kinetic: FloatArray
     spring: FloatArray
     dissipated: FloatArray
     defect: FloatArray
+    lost: FloatArray | None = None
 
 
 Walls = Callable[[int, list[int], list[int]], tuple[FloatArray, FloatArray, "FloatArray | float"]]
@@ -44,7 +47,7 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
 
     every = absorber_set(motion.problem, fitted, 2)
     at: Walls = on_lines if every.footprint is None else _on_footprints(motion, every)
-    inner = [one.inner_shell for one in fitted]
+    inner = [side_of(one, len(motion.problem.shells)) for one in fitted]
     return held_energy(properties(fitted, scales), inner, motion.links, at, motion.grid, motion.kept)
 
 
@@ -73,6 +76,8 @@ def held_energy(
         The grid's instants at which energies are taken.
     """
     powers, energies = np.zeros((2, grid.time.size)), np.zeros((2, grid.time[kept].size))
+    if links is not None and links.laws is not None:
+        return _energy_of_laws(law, inner, links, at, grid, kept)
     if links is not None:
         q, dq, force = links.displacement, links.velocity, links.force
         energies[0] = np.sum(0.5 * law.mass[:, None] * dq[:, kept] ** 2, axis=0)
@@ -108,6 +113,22 @@ def _on_footprints(motion: Motion, links: AbsorberSet) -> Walls:
         return w[ends], dw[ends], (2.0 * wall.mass / grid.time_step / softness)[:, None]
 
     return at
+
+
+def _energy_of_laws(law: Properties, inner: Sequence[int], links: LinkMotion, at: Walls, grid: LaplaceGrid, kept: slice) -> AbsorberEnergy:
+    """Return the energies of links of any law, as their march kept them; the defect is that of the work on the moving ends."""
+    assert links.laws is not None
+    stored, damped, lost, held = links.laws
+    power = np.zeros(grid.time.size)
+    for shell in range(max(inner, default=0) + 2):
+        ends = [(n, shell - first) for n, first in enumerate(inner) if shell - first in (0, 1) and held[n, shell - first]]
+        if ends:
+            here, side = (list(part) for part in zip(*ends, strict=True))
+            power -= np.sum(links.force[here, side] * at(shell, here, side)[1], axis=0)
+    work = integrate.cumulative_simpson(power, dx=grid.time_step, initial=0.0)
+    kinetic = np.sum(0.5 * law.mass[:, None] * links.velocity**2, axis=0)
+    defect = work - kinetic - stored - damped - lost
+    return AbsorberEnergy(kinetic[kept], stored[kept], damped[kept], defect[kept], lost[kept])
 
 
 def _at_absorbers(motion: Motion, shell: int, angle: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -75,14 +75,15 @@ def _shells(motion: Motion) -> dict[str, Entry]:
 
 def absorber_entries(found: AbsorberEnergy) -> dict[str, Entry]:
     """Return the energy of absorbers by the names of the balance."""
-    kinetic, spring, dissipated, defect = found
+    kinetic, spring, dissipated, defect, lost = found
+    friction = "energy lost in friction, at stops and in viscoelastic branches of the absorbers"
     law = "what the forces on the moving ends make of the dampers' dissipation, less damper_dissipation: error of the time step"
     return {
         "absorber_kinetic": Entry(kinetic, "store", "absorbers", "kinetic energy of the absorbers' masses"),
         "absorber_spring": Entry(spring, "store", "absorbers", "energy of the absorbers' springs, linear and cubic"),
         "damper_dissipation": Entry(dissipated, "loss", "dampers", "energy dissipated in the absorbers' dampers"),
         "damper_defect": Entry(defect, "balance", "dampers", law),
-    }
+    } | ({} if lost is None else {"law_dissipation": Entry(lost, "loss", "absorbers", friction)})
 
 
 def _fluids(motion: Motion, progress: ShareDone) -> dict[str, Entry]:

@@ -166,7 +166,7 @@ def _march_block(plan: _Plan, state: _State, motion: LineMotion, block: slice) -
     free_u = (state.mass_velocity - links.mobility[:, None] * _both(state.force))[:, None]
     free_q = (state.mass_displacement + half * state.mass_velocity)[:, None] + over * free_u
     bare_w, bare_v = (np.moveaxis(x[..., block], -1, 1) for x in (motion.displacement, motion.velocity))
-    damping, stiffness = (np.tile(x, 2)[:, None] for x in (links.damping, links.stiffness))
+    damping, stiffness = (x[:, None] for x in (links.damping, links.stiffness))
     free_stretch = np.tile(free_q, (1, 1, 2, 1)) - bare_w - free_w
     drive = damping * (np.tile(free_u, (1, 1, 2, 1)) - bare_v - excited) + stiffness * free_stretch
     size = count * 2 * n

@@ -130,6 +130,9 @@ def require_lines_alone(problem: Problem, settings: Settings) -> None:
     system = problem.system
     if not system.absorber_list:
         return
+    if absorber_set(problem, system.absorber_list, 2).elements is not None:
+        found = "line absorbers with laws, inertance, or a mass on one shell alone are solved in two dimensions"
+        raise InputError("absorbers", found, f"use dimensions=2, or {_row(problem, settings)}")
     if system.point_absorbers:
         raise InputError("absorbers", "line absorbers and point absorbers are not solved together", _row(problem, settings))
     for number, geometry in enumerate(problem.sources):

@@ -18,10 +18,11 @@ from coaxshell.solver.axial.blocks import BlockMap
 from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_sums
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, admittance
-from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion
-from coaxshell.solver.interface.march import march
+from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, side_admittance
+from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion, motion_of_laws
 from coaxshell.solver.kernels import exponential_weights, initial_decay
+from coaxshell.solver.links.any_law import march_interface
+from coaxshell.solver.links.histories import LawHistories, middles_transform
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.step_error import SHARES
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -48,6 +49,8 @@ class PointSolution:
         Transforms of the forces of the absorbers carried.
     exact : ndarray or None
         Those of q of the absorbers carried, (N, nodes), where they are linear.
+    laws : LawHistories or None
+        What links of any law did, where there are such.
     """
 
     forces: PointForces
@@ -57,6 +60,7 @@ class PointSolution:
     structure: PointStructure
     carried: ComplexArray
     exact: ComplexArray | None = None
+    laws: LawHistories | None = None
 
     @property
     def links(self) -> LinkMotion:
@@ -64,6 +68,8 @@ class PointSolution:
         absorbers, grid = self.structure.layout.absorbers, self.structure.grid
         if self.exact is not None:
             return exact_motion(absorbers, grid, self.carried, self.exact)
+        if self.laws is not None:
+            return motion_of_laws(absorbers, self.laws, self.force, self.displacement)
         return marched_motion(absorbers, grid.time_step, self.force, self.displacement)
 
 
@@ -107,7 +113,7 @@ class PointStructure(StructureSpectra):
 
     def points(self, absorbers: AbsorberSet) -> PointsAlone:
         """Return the points, which march alone."""
-        return PointsAlone(self.layout.carried.count)
+        return PointsAlone(absorbers)
 
     @property
     def kernels(self) -> KernelTable:
@@ -148,7 +154,12 @@ def point_structure(
     for (i, j), share in class_shares(problem, layout, classes, sampling.max_order).items():
         if i == j:
             at_once[share.numbers] = sum(share.at(modes, sampling, wave).sum(axis=1) for wave, modes in enumerate(sampling.modes))
-    return PointStructure(problem, grid, layout, motion, _over_images(layout, classes, by_class), _over_images(layout, classes, at_once))
+    receptance, immediate = _over_images(layout, classes, by_class), _over_images(layout, classes, at_once)
+    if layout.absorbers.elements is not None:  # what a core holds does not move, and nobody feels the force on it
+        held = layout.absorbers.held.ravel()
+        motion, immediate = motion * held[:, None], held[:, None] * immediate * held
+        receptance = held[:, None, None] * receptance * held[:, None]
+    return PointStructure(problem, grid, layout, motion, receptance, immediate)
 
 
 def _over_images(layout: PointLayout, classes: PairClasses, values: Numbers) -> Numbers:
@@ -167,39 +178,42 @@ def solve_points(structure: PointStructure, progress: Progress | None = None) ->
     """
     layout, grid = structure.layout, structure.grid
     absorbers, displacement = layout.absorbers, None
+    laws: LawHistories | None = None
     if absorbers.is_linear:
         carried, displacement = _exact(structure)
         histories, moved, error = grid.invert(carried), grid.invert(displacement), 0.0
     else:
-        result = march(structure, absorbers, progress=progress)
+        result = march_interface(structure, absorbers, progress=progress)
         histories, moved = result.force, result.mass_displacement
-        error, carried = _march_error(structure, histories), grid.transform_linear(histories)
+        error, laws = _march_error(structure, histories), result.laws
+        carried = grid.transform_linear(histories) if laws is None else middles_transform(grid, laws.force)
     every = layout.of_every(histories)
     sides = every.reshape(2, layout.member_count, -1).swapaxes(0, 1)
-    forces = PointForces(layout.points, layout.of_every(carried), layout.parities)
-    return PointSolution(forces, sides, moved[absorbers.member], error, structure, carried, displacement)
+    felt = carried if absorbers.elements is None else carried * absorbers.held.reshape(-1, 1)
+    forces = PointForces(layout.points, layout.of_every(felt), layout.parities)
+    return PointSolution(forces, sides, moved[absorbers.member], error, structure, carried, displacement, laws)
 
 
 def point_law(absorbers: AbsorberSet, nodes: ComplexArray) -> ComplexArray:
     """Return Y of linear absorbers at Laplace nodes, f = -Y w, shape (nodes, 2N, 2N), inner sides first."""
     count, index = absorbers.count, np.arange(absorbers.count)
-    own, other, _ = admittance(absorbers, nodes)
+    sides = side_admittance(absorbers, nodes)
     law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
     for a in (0, 1):
-        law[:, a * count + index, a * count + index] = own
-        law[:, a * count + index, (1 - a) * count + index] = other
+        law[:, a * count + index, a * count + index] = sides[a]
+        law[:, a * count + index, (1 - a) * count + index] = sides.other
     return law
 
 
 def _exact(structure: PointStructure) -> tuple[ComplexArray, ComplexArray]:
     """Return the transforms of the forces (2N, nodes) and of the masses' displacements (N, nodes) of linear absorbers."""
     absorbers, nodes = structure.layout.absorbers, structure.grid.nodes
-    count, mass, law = absorbers.count, admittance(absorbers, nodes)[2], point_law(absorbers, nodes)
+    count, sides, law = absorbers.count, side_admittance(absorbers, nodes), point_law(absorbers, nodes)
     receptance = np.ascontiguousarray(np.moveaxis(structure.receptance, -1, 0))
     moved = np.linalg.solve(np.eye(2 * count) + receptance @ law, structure.motion.T[:, :, None])
     force = -(law @ moved)[:, :, 0].T
     walls = moved[:, :, 0].T
-    return force, mass.T * (walls[:count] + walls[count:])
+    return force, sides.mass_displacement(walls[:count].T, walls[count:].T).T
 
 
 class _CoarserPoints(PointStructure):
@@ -229,7 +243,7 @@ def _march_error(structure: PointStructure, force: FloatArray) -> float:
         coarser = _CoarserPoints(structure, every)
         try:
             with np.errstate(all="ignore"):
-                coarse = march(coarser, structure.layout.absorbers).force
+                coarse = march_interface(coarser, structure.layout.absorbers).force
         except (InputError, np.linalg.LinAlgError, FloatingPointError):
             continue
         change, whole = force[:, ::every][:, : coarse.shape[1]] - coarse, np.linalg.norm(force[:, ::every])

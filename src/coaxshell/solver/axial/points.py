@@ -33,6 +33,7 @@ from coaxshell.solver.axial.sums import motions_of, pair_count
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.links.described import LinkScales, link_elements, side_of
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
 
@@ -87,6 +88,7 @@ def point_layout(problem: Problem) -> PointLayout:
     in_plane = all(axial_position(source) == 0.0 and getattr(source, "inclination", 0.0) == 0.0 for source in system.sources)
     around = source_parities(problem) == 1 and _symmetric(listed, -1.0, 1.0)
     along = in_plane and _symmetric(listed, 1.0, -1.0)
+    moving = [wall.moves for wall in problem.shells]
     images: list[list[int]] = []
     found: dict[tuple[object, ...], int] = {}
     member = []
@@ -102,17 +104,24 @@ def point_layout(problem: Problem) -> PointLayout:
     absorbers = AbsorberSet(
         angle=np.array([one.angle for one in carried]),
         **_properties(carried, problem.scales),
-        inner_shell=np.array([one.inner_shell for one in carried], dtype=np.int64),
+        inner_shell=np.array([side_of(one, len(problem.shells)) for one in carried], dtype=np.int64),
         multiplicity=np.array([float(len(members)) for members in images]),
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([one.angle for one in listed]),
         parities=2,
-        surfaces=np.array([[one.inner_shell + side for one in carried] for side in (0, 1)], dtype=np.int64).reshape(2, len(carried)),
+        surfaces=np.array([[_end(one, side, moving) for one in carried] for side in (0, 1)], dtype=np.int64).reshape(2, len(carried)),
+        elements=link_elements(carried, moving, LinkScales(a, problem.scales.pressure * a**2, problem.scales.time)),
     )
-    parts = [_wall_point(problem, one, one.inner_shell + side) for side in (0, 1) for one in listed]
+    parts = [_wall_point(problem, one, _end(one, side, moving)) for side in (0, 1) for one in listed]
     shell, angle, z, width = (np.array(column) for column in zip(*parts, strict=True))
     points = WallPoints(shell.astype(np.int64), angle, z / a, width / a)
     return PointLayout(points, absorbers, [np.array(members) for members in images], 1 if around else 2)
+
+
+def _end(one: PointAbsorber, side: int, moving: list[bool]) -> int:
+    """Return the shell of a link, or that of the other link where there is none or a core: the point counts, but not what it does."""
+    inner = side_of(one, len(moving))
+    return inner + side if inner + side >= 0 and moving[inner + side] else inner + 1 - side
 
 
 def _wall_point(problem: Problem, one: PointAbsorber, shell: int) -> tuple[float, float, float, float]:
@@ -137,7 +146,9 @@ def _properties(absorbers: Sequence[PointAbsorber], scales: Scales) -> dict[str,
 def _key(one: PointAbsorber, around: float, along: float) -> tuple[object, ...]:
     """Return what makes two absorbers equal once their angle and axial position have been mirrored or not."""
     angle = round(around * one.angle / _SAME) % round(360.0 / _SAME)
-    rest = tuple(value for name, value in one.model_dump().items() if name not in ("angle", "z"))
+    rest = tuple(
+        repr(value) if isinstance(value, dict) else value for name, value in one.model_dump().items() if name not in ("angle", "z")
+    )
     return (angle, round(along * one.z / _SAME), *rest)
 
 

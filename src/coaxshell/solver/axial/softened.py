@@ -109,6 +109,9 @@ def _felt(problem: Problem, layout: PointLayout, sample: Sample) -> FloatArray:
 def _tangent(structure: PointStructure, linked: PointSolution) -> AbsorberSet:
     """Return the absorbers carried, cubic springs by their mean tangent."""
     links = structure.layout.absorbers
+    if linked.laws is not None:
+        fitted: AbsorberSet = linked.laws.linear
+        return fitted
     if links.is_linear:
         return links
     moved = structure.motion + np.einsum("abk,bk->ak", structure.receptance, linked.carried)

@@ -14,7 +14,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver import checks
 from coaxshell.solver.cost import require_room
-from coaxshell.solver.dimensions import require_mid_surfaces, require_two_dimensions
+from coaxshell.solver.dimensions import require_cubic_springs, require_mid_surfaces, require_two_dimensions
 from coaxshell.solver.direct.engine import march_directly
 from coaxshell.solver.direct.result import DirectResult
 from coaxshell.solver.estimates import ORDERS_FACTOR
@@ -47,6 +47,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     stopwatch = Stopwatch()
     require_two_dimensions(system, settings)
     require_mid_surfaces(system)
+    require_cubic_springs(system, "the direct engine", 'use engine="spectral", or leave it out')
     problem = dimensionless(system, settings=settings)
     require_steps(problem)
     _require_no_return(problem, settings.duration)

@@ -13,7 +13,7 @@ factor h_m = sin(x)/x, x = m b/2R. On a wall whose faces move differently it act
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -24,6 +24,7 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.model.absorbers import Absorber
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.solver.links.described import LinkElements, LinkScales, link_elements, side_of
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
 
@@ -75,6 +76,8 @@ class AbsorberSet:
         Numbers of the surfaces of the problem that they hold (:attr:`coaxshell.solver.scaling.Problem.surfaces`).
     footprint : ndarray, shape (2, N), or None
         Arcs of these that they hold, in units of a, 0 of a line; None where all are lines.
+    elements : LinkElements or None
+        What the links exert besides, and which there are; None where each absorber has two of c, k_l and k_nl alone.
     """
 
     angle: FloatArray
@@ -89,6 +92,7 @@ class AbsorberSet:
     parities: int
     surfaces: npt.NDArray[np.int64]
     footprint: FloatArray | None = None
+    elements: LinkElements | None = None
 
     @property
     def count(self) -> int:
@@ -97,8 +101,22 @@ class AbsorberSet:
 
     @cached_property
     def is_linear(self) -> bool:
-        """Whether no absorber has cubic stiffness."""
-        return not np.any(self.cubic)
+        """Whether no absorber has cubic stiffness or a law that is not linear."""
+        return not np.any(self.cubic) and (self.elements is None or self.elements.is_linear)
+
+    def linear_part(self) -> AbsorberSet:
+        """Return the absorbers without their cubic springs and laws that are not linear."""
+        return replace(self, cubic=np.zeros_like(self.cubic), elements=None if self.elements is None else self.elements.linear())
+
+    @cached_property
+    def of_any_law(self) -> bool:
+        """Whether a link has a law beyond cubic springs that is not linear, and so is marched by :mod:`coaxshell.solver.links`."""
+        return self.elements is not None and not self.is_linear
+
+    @property
+    def held(self) -> FloatArray:
+        """1 where a link holds a wall, 0 where there is none or a core, shape (2, N)."""
+        return np.ones((2, self.count)) if self.elements is None else self.elements.held.reshape(2, -1).astype(np.float64)
 
     def shapes(self, modes: Modes) -> FloatArray:
         """Return cos(m theta_n) and, with two parities, sin(m theta_n): shape (parities, N, M + 1)."""
@@ -146,17 +164,18 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int
             multiplicity.append(1.0)
             found[key] = index
         member.append(index)
-    held = [[problem.surface_facing(a.inner_shell + side, 1 - side) for a in carried] for side in (0, 1)]
+    held = [[_surface(problem, a, side) for a in carried] for side in (0, 1)]
     return AbsorberSet(
         angle=np.array([a.angle for a in carried], dtype=np.float64),
         **properties(carried, problem.scales)._asdict(),
-        inner_shell=np.array([a.inner_shell for a in carried], dtype=np.int64),
+        inner_shell=np.array([side_of(a, len(problem.shells)) for a in carried], dtype=np.int64),
         multiplicity=np.array(multiplicity),
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([a.angle for a in absorbers], dtype=np.float64),
         parities=1 if symmetric else 2,
         surfaces=np.array(held, dtype=np.int64).reshape(2, len(carried)),
         footprint=_footprints(problem, carried),
+        elements=link_elements(carried, [wall.moves for wall in problem.shells], _link_scales(problem.scales)),
     )
 
 
@@ -165,7 +184,8 @@ def _footprints(problem: Problem, absorbers: Sequence[Absorber]) -> FloatArray |
     found = np.zeros((2, len(absorbers)))
     for n, one in enumerate(absorbers):
         for side in (0, 1):
-            wall, described = problem.shells[one.inner_shell + side], problem.system.shells[one.inner_shell + side]
+            shell = problem.surfaces[_surface(problem, one, side)].shell
+            wall, described = problem.shells[shell], problem.system.shells[shell]
             if one.footprint is not None:
                 found[side, n] = one.footprint / problem.scales.length
             elif not wall.faces_move_alike and isinstance(described, Shell):
@@ -173,10 +193,20 @@ def _footprints(problem: Problem, absorbers: Sequence[Absorber]) -> FloatArray |
     return found if found.any() else None
 
 
+def _surface(problem: Problem, one: Absorber, side: int) -> int:
+    """Return the number of the surface that a link of an absorber holds; in a system of one shell that shell's, for both."""
+    inner = side_of(one, len(problem.shells))
+    return problem.surface_facing(inner + side, 1 - side) if inner >= 0 else 0
+
+
+def _link_scales(scales: Scales) -> LinkScales:
+    return LinkScales(scales.length, scales.pressure * scales.length, scales.time)
+
+
 def _place(absorber: Absorber, *, mirrored: bool) -> tuple[object, ...]:
     """Return what makes two absorbers equal: rounded angle and all properties."""
     angle = round((-absorber.angle if mirrored else absorber.angle) / _SAME_ANGLE) % round(360.0 / _SAME_ANGLE)
-    rest = tuple(value for name, value in absorber.model_dump().items() if name != "angle")
+    rest = tuple(repr(value) if isinstance(value, dict) else value for name, value in absorber.model_dump().items() if name != "angle")
     return (angle, *rest)
 
 
@@ -193,6 +223,43 @@ def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, C
     dynamic = absorbers.mass * s[:, None] ** 2 + 2.0 * z
     share = z / dynamic
     return z - z * share, -z * share, share
+
+
+class SideAdmittance(NamedTuple):
+    """Y = [[inner, other], [other, outer]] of every absorber and node, and q = inner_share w_0 + outer_share w_1; (nodes, N) each."""
+
+    inner: ComplexArray
+    outer: ComplexArray
+    other: ComplexArray
+    inner_share: ComplexArray
+    outer_share: ComplexArray
+
+    def mass_displacement(self, inner: Array, outer: Array) -> ComplexArray:
+        """Return q of the displacements of both walls, (nodes, N)."""
+        if self.inner_share is self.outer_share:
+            return np.asarray(self.inner_share * (inner + outer))
+        return np.asarray(self.inner_share * inner + self.outer_share * outer)
+
+
+def link_impedance(absorbers: AbsorberSet, s: ComplexArray) -> ComplexArray:
+    """Return the linear force per stretch of every link, shape (nodes, 2N)."""
+    common = np.tile(absorbers.damping * s[:, None] + absorbers.linear, 2)
+    return common if absorbers.elements is None else common * absorbers.elements.present + absorbers.elements.impedance(s)
+
+
+def side_admittance(absorbers: AbsorberSet, s: ComplexArray) -> SideAdmittance:
+    """Return the admittance of linear absorbers whose links may differ: with z_0 and z_1 of the two and d = m s^2 + z_0 + z_1,
+
+    q = (z_0 w_0 + z_1 w_1)/d,  f_j = z_j (q - w_j).
+    """
+    if absorbers.elements is None:
+        own, other, share = admittance(absorbers, s)
+        return SideAdmittance(own, own, other, share, share)
+    z = link_impedance(absorbers, s)
+    inner, outer = z[:, : absorbers.count], z[:, absorbers.count :]
+    dynamic = absorbers.mass * s[:, None] ** 2 + inner + outer
+    shares = inner / dynamic, outer / dynamic
+    return SideAdmittance(inner - inner * shares[0], outer - outer * shares[1], -inner * shares[1], *shares)
 
 
 class InterfacePoints:
@@ -216,6 +283,10 @@ class InterfacePoints:
             for (_, points), evaluate, project in zip(self._groups, self._evaluate, self._project, strict=True):
                 evaluate *= means[points]
                 project *= means[points]
+        if absorbers.elements is not None:  # what a core holds does not move, and nobody feels the force on it
+            held = absorbers.elements.held
+            for parts in (self._evaluate, self._project):
+                parts[:] = [part * held[points][:, None] for part, (_, points) in zip(parts, self._groups, strict=True)]
         self.count, self.surfaces = self.surface.size, len(problem.surfaces)
         self.parities, self.modes = shapes.shape[0], modes.count
 
@@ -313,18 +384,21 @@ class PointsAlone:
     What needs the motion of the points alone is marched so, with :meth:`InterfacePoints.between` as kernels.
     """
 
-    def __init__(self, count: int) -> None:
-        self.count = self.surfaces = count
+    def __init__(self, absorbers: AbsorberSet) -> None:
+        self.count = self.surfaces = 2 * absorbers.count
         self.parities = self.modes = 1
+        self._held = None if absorbers.elements is None else absorbers.elements.held.astype(np.float64)
 
     def evaluate(self, modal: Array) -> Array:
         """Return motion (points, 1, 1[, T]) as (points[, T])."""
-        return modal[:, 0, 0]
+        return modal[:, 0, 0] if self._held is None else modal[:, 0, 0] * self._held.reshape(-1, *[1] * (modal.ndim - 3))
 
     def project(self, forces: Array) -> Array:
         """Return forces (points[, T]) as (points, 1, 1[, T])."""
-        return forces[:, None, None]
+        pressing = forces if self._held is None else forces * self._held.reshape(-1, *[1] * (forces.ndim - 1))
+        return pressing[:, None, None]
 
     def immediate(self, present: FloatArray) -> FloatArray:
         """Return the kernels' weights (points, points, 1) as (points, points)."""
-        return present[..., 0]
+        weights = present[..., 0]
+        return weights if self._held is None else np.asarray(self._held[:, None] * weights * self._held)

@@ -25,8 +25,8 @@ class LinkConstants:
 
     Attributes
     ----------
-    damping, stiffness : ndarray, shape (N,)
-        c and k + kappa, alike on both sides.
+    damping, stiffness : ndarray, shape (2N,)
+        c and k + kappa of every link, 0 of those that there are not.
     auxiliary_stiffness : ndarray, shape (N,)
         kappa: stiffness lent to massless absorbers that have nothing but cubic springs, without which b would not determine them.
     inertia, mobility : ndarray, shape (N,)
@@ -54,9 +54,12 @@ class LinkConstants:
         mobility = np.divide(0.5 * time_step, absorbers.mass, out=np.zeros(absorbers.count), where=heavy)
         bare = ~heavy & (absorbers.damping == 0) & (absorbers.linear == 0)
         auxiliary_stiffness = np.where(bare, 2e-3 / (time_step * max(float(own.max(initial=0.0)), 1e-300)), 0.0)
+        damping, stiffness = np.tile(absorbers.damping, 2), np.tile(absorbers.linear + auxiliary_stiffness, 2)
+        if absorbers.elements is not None:
+            damping, stiffness = damping * absorbers.elements.present, stiffness * absorbers.elements.present
         return cls(
-            absorbers.damping,
-            absorbers.linear + auxiliary_stiffness,
+            damping,
+            stiffness,
             auxiliary_stiffness,
             2.0 * absorbers.mass / time_step,
             mobility,
@@ -97,8 +100,8 @@ def block_response(links: LinkConstants, kernels: FloatArray, imposed: FloatArra
     lags, points, further = imposed.shape
     n, half, columns = links.count, links.half_step, points + imposed.shape[2]
     pairs = np.tile(np.eye(n), (2, 1))
-    stiffness = np.tile(links.stiffness, 2)[:, None]
-    tangent = np.tile(links.damping, 2)[:, None] + half * stiffness
+    stiffness = links.stiffness[:, None]
+    tangent = links.damping[:, None] + half * stiffness
     inverse = np.linalg.inv(np.block([[np.eye(points) + tangent * kernels[0], -tangent * pairs], [pairs.T, np.diag(links.inertia)]]))
     found = BlockResponse(*(np.empty((lags, rows, columns)) for rows in (points, points, n)))
     w, v, q, u, f = (np.zeros((rows, columns)) for rows in (points, points, n, n, points))

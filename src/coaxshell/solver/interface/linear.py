@@ -19,7 +19,7 @@ from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import Nodes
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, side_admittance
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks
 
@@ -82,18 +82,19 @@ def solve_linear(
     blocks = [slice(a, min(a + width, nodes.size)) for a in range(0, nodes.size, width)]
 
     def work(block: slice) -> None:
-        own, other, mass = admittance(absorbers, nodes[block])
+        law = side_admittance(absorbers, nodes[block])
         receptance = points.receptance(structure.compliance[..., block])
         system = np.empty_like(receptance)
         for side in (0, 1):
             here, there = slice(side * count, (side + 1) * count), slice((1 - side) * count, (2 - side) * count)
-            system[:, :, here] = receptance[:, :, here] * own[:, None, :] + receptance[:, :, there] * other[:, None, :]
+            own = law[side]
+            system[:, :, here] = receptance[:, :, here] * own[:, None, :] + receptance[:, :, there] * law.other[:, None, :]
         system[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
         w = np.linalg.solve(system, excited[:, block].T[:, :, None])[:, :, 0]
         inner, outer = w[:, :count], w[:, count:]
-        force[:count, block] = -(own * inner + other * outer).T
-        force[count:, block] = -(other * inner + own * outer).T
-        displacement[:, block] = (mass * (inner + outer)).T
+        force[:count, block] = -(law.inner * inner + law.other * outer).T
+        force[count:, block] = -(law.other * inner + law.outer * outer).T
+        displacement[:, block] = law.mass_displacement(inner, outer).T
 
     map_node_blocks(blocks, work, progress, "linear absorbers")
     return LinearAbsorberSpectra(force, displacement, points.project(force))

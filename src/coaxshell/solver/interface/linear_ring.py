@@ -22,7 +22,7 @@ _SAME_ANGLE = 1e-9
 def is_ring(absorbers: AbsorberSet) -> bool:
     """Return whether the absorbers of the description are equal and equally spaced."""
     properties = (absorbers.mass, absorbers.damping, absorbers.linear, absorbers.cubic, absorbers.inner_shell, *_held(absorbers))
-    if absorbers.count == 0 or any(np.ptp(x) > 0 for x in properties):
+    if absorbers.count == 0 or absorbers.elements is not None or any(np.ptp(x) > 0 for x in properties):
         return False
     angles = np.sort(absorbers.every_angle % 360.0)
     gaps = np.diff(np.append(angles, angles[0] + 360.0))

@@ -10,12 +10,15 @@ motion of the two ends in different ways is the error of both, times c. It is th
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.absorbers import AbsorberSet, link_impedance
+from coaxshell.solver.links.described import assembled
+from coaxshell.solver.links.histories import LawHistories
 
 
 @dataclass(frozen=True)
@@ -30,22 +33,69 @@ class LinkMotion:
         q and dq/dt.
     stretch_rate : ndarray, shape (N, 2, T)
         dD/dt of the links that have a damper.
+    laws : LawEnergy or None
+        What all absorbers hold and lose, where the march or the laws of the links tell.
     """
 
     force: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     stretch_rate: FloatArray
+    laws: LawEnergy | None = None
+
+
+class LawEnergy(NamedTuple):
+    """Energy of all links of a description together, each of shape (T,): held by springs, turned into heat by dampers and by laws.
+
+    ``held``, shape (N, 2), tells which links hold a wall.
+    """
+
+    stored: FloatArray
+    damped: FloatArray
+    lost: FloatArray
+    held: FloatArray
+
+
+def motion_of_laws(absorbers: AbsorberSet, laws: LawHistories, force: FloatArray, displacement: FloatArray) -> LinkMotion:
+    """Return the motion that a march of links of any law found; ``force`` (N, 2, T) and q (N, T) of every absorber."""
+    rates = np.zeros_like(force)
+    return LinkMotion(force, displacement, laws.velocity[absorbers.member], rates, _of_all(absorbers, laws.stored, laws.damped, laws.lost))
+
+
+def _of_all(absorbers: AbsorberSet, *histories: FloatArray) -> LawEnergy:
+    """Return the sums over all links of the description of histories of those carried, (2N, T)."""
+    many = np.tile(np.bincount(absorbers.member, minlength=absorbers.count), 2).astype(np.float64)
+    stored, damped, lost = (many @ one for one in histories)
+    return LawEnergy(stored, damped, lost, absorbers.held.T[absorbers.member])
+
+
+def _energy_by_replay(absorbers: AbsorberSet, grid: LaplaceGrid, force: ComplexArray) -> LawEnergy:
+    """Return the energy of linear links that differ, from the transforms of their forces (2N, nodes): D = F/z, followed step by step."""
+    assert absorbers.elements is not None
+    z = link_impedance(absorbers, grid.nodes).T
+    stretch = grid.invert(np.divide(force, z, out=np.zeros_like(force), where=z != 0.0)).T
+    step, present = grid.time_step, absorbers.elements.present
+    laws = assembled(absorbers.elements.elements, step)
+    state, stored, work = laws.at_rest(), np.zeros_like(stretch), np.zeros_like(stretch)
+    for n in range(1, len(stretch)):
+        work[n] = laws.force(stretch[n], state).value * (stretch[n] - stretch[n - 1])
+        state = laws.advance(stretch[n], state)
+        stored[n] = laws.stored(state)
+    lost = np.cumsum(work, axis=0) - stored
+    damping, stiffness = (np.tile(x, 2) * present for x in (absorbers.damping, absorbers.linear))
+    damped = np.cumsum(damping * np.diff(stretch, axis=0, prepend=0.0) ** 2 / step, axis=0)
+    return _of_all(absorbers, (stored + 0.5 * stiffness * stretch**2).T, damped.T, lost.T)
 
 
 def exact_motion(absorbers: AbsorberSet, grid: LaplaceGrid, force: ComplexArray, displacement: ComplexArray) -> LinkMotion:
     """Return the motion from the transforms of the forces (2N, nodes) and of q (N, nodes) of the N absorbers carried."""
-    law = (absorbers.damping[:, None] * grid.nodes + absorbers.linear[:, None])[None]
+    law = link_impedance(absorbers, grid.nodes).T.reshape(2, absorbers.count, -1)
     sides = force.reshape(2, absorbers.count, -1)
     rate = np.divide(sides * grid.nodes, law, out=np.zeros_like(sides), where=law != 0.0)
     histories = (grid.invert(x)[..., absorbers.member, :] for x in (sides, displacement, displacement * grid.nodes, rate))
     f, q, velocity, stretch_rate = histories
-    return LinkMotion(f.swapaxes(0, 1), q, velocity, stretch_rate.swapaxes(0, 1))
+    energy = None if absorbers.elements is None else _energy_by_replay(absorbers, grid, force)
+    return LinkMotion(f.swapaxes(0, 1), q, velocity, stretch_rate.swapaxes(0, 1), energy)
 
 
 def marched_motion(absorbers: AbsorberSet, time_step: float, force: FloatArray, displacement: FloatArray) -> LinkMotion:

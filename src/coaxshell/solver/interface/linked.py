@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
@@ -11,7 +13,9 @@ from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
-from coaxshell.solver.interface.march import MarchResult, march
+from coaxshell.solver.interface.march import MarchResult
+from coaxshell.solver.links.any_law import march_interface
+from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.point_forces import point_force_shares
 from coaxshell.solver.solved_spectra import SolvedSpectra
@@ -33,7 +37,7 @@ def solve_linked(
     """
     grid = structure.grid
     if saturate:
-        result = march(structure, absorbers, saturate=True, progress=progress)
+        result = march_interface(structure, absorbers, saturate=True, progress=progress)
         if not result.saturated:
             return solve_linked(structure, absorbers, progress, exact=exact)
         return _marched(structure, absorbers, result)
@@ -50,15 +54,17 @@ def solve_linked(
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
         transforms = found.force, found.mass_displacement
         return SolvedSpectra(structure, absorbers, *moved, force, displacement, exact=transforms)
-    return _marched(structure, absorbers, march(structure, absorbers, progress=progress))
+    return _marched(structure, absorbers, march_interface(structure, absorbers, progress=progress))
 
 
 def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult) -> SolvedSpectra:
     """Return the answer of a structure to the forces of a march, without its feedback where actuators saturated."""
     acting = structure if result.actuation is None else structure.open_loop
-    moved = acting.forced_spectra(structure.grid.transform_linear(result.modal_pressure))
+    transformed = structure.grid.transform_linear if result.laws is None else partial(middles_transform, structure.grid)
+    moved = acting.forced_spectra(transformed(result.modal_pressure))
     force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
-    return SolvedSpectra(structure, absorbers, *moved, force, displacement, result.actuation, result.iterations)
+    done = result.actuation, result.iterations
+    return SolvedSpectra(structure, absorbers, *moved, force, displacement, *done, laws=result.laws)
 
 
 def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -85,7 +91,7 @@ def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: 
     first = _representatives(absorbers)
     force = solved.force[first].swapaxes(0, 1)
     stretch = np.zeros((2, 0, 0))
-    if not absorbers.is_linear:
+    if not absorbers.is_linear and solved.laws is None:
         surfaces = (
             normal
             if solved.solid is None
@@ -95,7 +101,8 @@ def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: 
         stretch = solved.displacement[first][:, kept] - walls.reshape(2, absorbers.count, -1)
     force = force.reshape(2 * absorbers.count, solved.grid.time.size)
     saturating = None if solved.actuation is None else solved.structure
-    return Interface(absorbers, force, stretch, solved.actuation, solved.marched, saturating, asked)
+    linear = None if solved.laws is None else solved.laws.linear
+    return Interface(absorbers, force, stretch, solved.actuation, solved.marched, saturating, asked, linear)
 
 
 def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:

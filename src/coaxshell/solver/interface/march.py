@@ -31,6 +31,7 @@ from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.interface.newton import ConvergenceError, NewtonState
 from coaxshell.solver.interface.plan import MarchPlan, MotionWithout, march_plan, motion_without
 from coaxshell.solver.interface.state import LinkState, MarchState
+from coaxshell.solver.links.histories import LawHistories
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 
@@ -52,6 +53,8 @@ class MarchResult:
         Whether any actuator reached its limit.
     iterations : int
         Iterations of all steps together.
+    laws : LawHistories or None
+        What links of any law did, where there are such: then ``modal_pressure`` is that of the middles of the steps.
     """
 
     force: FloatArray
@@ -60,6 +63,7 @@ class MarchResult:
     actuation: FloatArray | None
     saturated: bool
     iterations: int
+    laws: LawHistories | None = None
 
 
 class BlockOutput(NamedTuple):
@@ -145,7 +149,8 @@ def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tu
     free_u = before.mass_velocity - links.mobility * before.force.sum(axis=0)
     free_q = before.mass_displacement + half * before.mass_velocity + integral.sum(axis=1)[:, None] * free_u
     free_stretch = free_q[:, None] - motion.displacement - free_w
-    drive = (links.damping * (free_u - motion.velocity - excited) + links.stiffness * free_stretch).reshape(count, -1)
+    parting = free_u - motion.velocity - excited
+    drive = (links.damping.reshape(2, n) * parting + links.stiffness.reshape(2, n) * free_stretch).reshape(count, -1)
     demanded = motion.demanded_voltage
     if plan.actuators.controlled:
         demanded = demanded + plan.actuators.of_limits(history_forcing[plan.points.surfaces :]).reshape(-1, count).T

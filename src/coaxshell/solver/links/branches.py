@@ -20,6 +20,7 @@ class SpringDampers:
     """
 
     variables = 0
+    swings = False
 
     def __init__(self, links: Links, stiffness: FloatArray, damping: FloatArray, time_step: float) -> None:
         self.links, self._stiffness, self._damping, self._step = links, stiffness, damping, time_step
@@ -59,6 +60,7 @@ class MaxwellBranches:
 
     variables = 1
     """F, the force of the branch."""
+    swings = True
 
     def __init__(self, links: Links, stiffness: FloatArray, relaxation_time: FloatArray, time_step: float) -> None:
         self.links, self._stiffness, self._time = links, stiffness, relaxation_time
@@ -84,7 +86,10 @@ class MaxwellBranches:
 
 
 class Inerters:
-    """f = b d^2D/dt^2: h = b (r_1 - r_0)/dt, r_1 = 2 (D_1 - D_0)/dt - r_0, which stores b r^2/2.
+    """f = b d^2D/dt^2: h = b (3 r_2 - 4 r_1 + r_0)/(2 dt), r the rates (D_1 - D_0)/dt over this step and the two before it.
+
+    It stores b [r_2^2 + (2 r_2 - r_1)^2]/4, b r^2/2 at the end of the step, and loses b (r_2 - 2 r_1 + r_0)^2/4 to the step. A rule that
+    loses nothing would leave the force swinging from step to step after each jump of a wall's velocity.
 
     Parameters
     ----------
@@ -94,24 +99,26 @@ class Inerters:
     time_step : float
     """
 
-    variables = 1
-    """r, the rate of the stretch."""
+    variables = 2
+    """r of the last two steps."""
+    swings = False
 
     def __init__(self, links: Links, inertance: FloatArray, time_step: float) -> None:
         self.links, self._inertance, self._step = links, inertance, time_step
 
     def force(self, after: FloatArray, before: FloatArray, state: FloatArray) -> StepForce:
-        """Return h and its slope, 2 b/dt^2."""
+        """Return h and its slope, 3 b/(2 dt^2)."""
         rate = (after - before) / self._step
-        return StepForce(2.0 * self._inertance * (rate - state[0]) / self._step, 2.0 * self._inertance / self._step**2)
+        share = 0.5 * self._inertance / self._step
+        return StepForce(share * (3.0 * rate - 4.0 * state[0] + state[1]), 3.0 * share / self._step)
 
     def advance(self, after: FloatArray, before: FloatArray, state: FloatArray) -> FloatArray:
-        """Return r_1."""
-        return 2.0 * (after - before) / self._step - state
+        """Return the rates of this step and the one before."""
+        return np.stack([(after - before) / self._step, state[0]])
 
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
-        """Return b r^2/2."""
-        return np.asarray(0.5 * self._inertance * state[0] ** 2)
+        """Return b [r_2^2 + (2 r_2 - r_1)^2]/4."""
+        return np.asarray(0.25 * self._inertance * (state[0] ** 2 + (2.0 * state[0] - state[1]) ** 2))
 
     def impedance(self, s: ComplexArray) -> ComplexArray:
         """Return b s^2."""

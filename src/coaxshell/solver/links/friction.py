@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
@@ -22,6 +20,7 @@ class SmoothedFriction:
     """
 
     variables = 0
+    swings = False
 
     def __init__(self, links: Links, limit: FloatArray, speed: FloatArray, time_step: float) -> None:
         self.links, self._limit, self._travel = links, limit, speed * time_step
@@ -54,6 +53,7 @@ class HystereticFriction:
 
     variables = 1
     """The force of the spring."""
+    swings = True
 
     def __init__(self, links: Links, limit: FloatArray, stiffness: FloatArray) -> None:
         self.links, self._limit, self._stiffness = links, limit, stiffness
@@ -74,35 +74,46 @@ class HystereticFriction:
         return np.asarray(0.5 * state[0] ** 2 / self._stiffness)
 
 
-class Sliders(NamedTuple):
-    """Exact dry friction, a force that is a set while nothing slips: y = F sign(r) while it slips, |y| <= F_s while it sticks.
+class DryFriction:
+    """f = F sign(r) while it slides, |f| <= F_s while it sticks: h = clip(h_0 + (D_1 - D_0)/(2 A), -F, F), h_0 that of the step before.
 
-    There is no function from the motion to y: the implicit step finds both (:mod:`coaxshell.solver.links.step`). Over a step the rate
-    is D_1 - D_0, so that y (D_1 - D_0) = F |D_1 - D_0| is heat. A mass that comes to stick within a step swings about rest from step to
-    step, by F dt/(2 m) at most: F_s > F bounds the mean of y over two steps, from which that falls out.
+    The law of the set F Sgn(r) by proximal steps: A is the compliance of the link within a step, by which h takes back 2 A h of D_1, so
+    that a sticking end creeps by 2 A F at most, F dt^2/(2 m) of a mass m, of second order in dt. A constraint D_1 = D_0 would be met
+    exactly but leave a mass that comes to stick swinging about rest from step to step for ever; so h forgets it within one. Where the
+    step before slipped, F bounds h, else F_s. It stores A h^2 and turns all else into heat, never less than none.
 
-    Attributes
+    Parameters
     ----------
     links : ndarray of int, shape (n,)
-        At most one slider a link.
     kinetic, static : ndarray, shape (n,)
-        F and F_s >= F; F_s holds over a step before which the slider stuck.
+        F and F_s >= F.
+    compliance : ndarray, shape (n,)
+        A.
     """
 
-    links: Links
-    kinetic: FloatArray
-    static: FloatArray
+    variables = 2
+    """h of the step before, and 1 where it slipped."""
+    swings = False
 
-    def bounds(self, stuck: FloatArray, last: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the smallest and the largest friction over a step.
+    def __init__(self, links: Links, kinetic: FloatArray, static: FloatArray, compliance: FloatArray) -> None:
+        self.links, self._kinetic, self._static = links, kinetic, static
+        self._stiffness = 0.5 / compliance
 
-        Parameters
-        ----------
-        stuck : ndarray, shape (n,)
-            1 where nothing slipped over the step before, else 0.
-        last : ndarray, shape (n,)
-            The friction over the step before.
-        """
-        held = (stuck > 0.0) & (self.static > self.kinetic)
-        low = np.where(held, np.minimum(-2.0 * self.static - last, 0.0), -self.kinetic)
-        return low, np.where(held, np.maximum(2.0 * self.static - last, 0.0), self.kinetic)
+    def force(self, after: FloatArray, before: FloatArray, state: FloatArray) -> StepForce:
+        """Return h and its slope."""
+        tried, limit = self._tried(after, before, state)
+        return StepForce(np.clip(tried, -limit, limit), np.where(np.abs(tried) < limit, self._stiffness, 0.0))
+
+    def advance(self, after: FloatArray, before: FloatArray, state: FloatArray) -> FloatArray:
+        """Return h, and where it slipped."""
+        tried, limit = self._tried(after, before, state)
+        return np.stack([np.clip(tried, -limit, limit), np.where(np.abs(tried) < limit, 0.0, 1.0)])
+
+    def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
+        """Return A h^2."""
+        return np.asarray(0.5 * state[0] ** 2 / self._stiffness)
+
+    def _tried(self, after: FloatArray, before: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the force that would stick, and the largest there is."""
+        limit = np.where(state[1] > 0.0, self._kinetic, self._static)
+        return state[0] + self._stiffness * (after - before), limit

@@ -35,6 +35,8 @@ class LinkLaw(Protocol):
     """Numbers of the links that have it, shape (n,)."""
     variables: int
     """How many internal variables it remembers of each link."""
+    swings: bool
+    """Whether its slope is that of a spring, on which something swings that steps must resolve."""
 
     def force(self, after: FloatArray, before: FloatArray, state: FloatArray) -> StepForce:
         """Return h over a step.

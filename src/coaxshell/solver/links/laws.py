@@ -9,8 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.links.friction import Sliders
-from coaxshell.solver.links.law import LinkLaw, StepForce, Truths
+from coaxshell.solver.links.law import LinkLaw
 
 
 class LawState(NamedTuple):
@@ -22,16 +21,18 @@ class LawState(NamedTuple):
         D at the end of the last step.
     internal : tuple of ndarray
         Internal variables of each law, (variables, n).
-    stuck : ndarray, shape (sliders,)
-        1 where nothing slipped over the last step, else 0.
-    friction : ndarray, shape (sliders,)
-        Of the sliders over the last step.
     """
 
     stretch: FloatArray
     internal: tuple[FloatArray, ...]
-    stuck: FloatArray
-    friction: FloatArray
+
+
+class LinkForces(NamedTuple):
+    """Forces of links over a step, their slopes in D_1, and the springs' share in these; each (links,)."""
+
+    value: FloatArray
+    slope: FloatArray
+    elastic: FloatArray
 
 
 @dataclass(frozen=True)
@@ -43,55 +44,31 @@ class LinkLaws:
     count : int
         Links.
     laws : sequence of LinkLaw
-    sliders : Sliders or None
+        None of them holds a link twice.
     """
 
     count: int
     laws: Sequence[LinkLaw]
-    sliders: Sliders | None = None
 
     def at_rest(self) -> LawState:
         """Return the state before the first step."""
-        stuck = np.ones(0 if self.sliders is None else self.sliders.links.size)
-        internal = tuple(np.zeros((law.variables, law.links.size)) for law in self.laws)
-        return LawState(np.zeros(self.count), internal, stuck, np.zeros_like(stuck))
+        return LawState(np.zeros(self.count), tuple(np.zeros((law.variables, law.links.size)) for law in self.laws))
 
-    def force(self, after: FloatArray, state: LawState) -> StepForce:
-        """Return the force of every link over a step that ends at the stretches *after*, sliders left out, and its slope, each (links,)."""
-        value, slope = np.zeros((2, self.count))
+    def force(self, after: FloatArray, state: LawState) -> LinkForces:
+        """Return the forces of all links over a step that ends at the stretches *after*, (links,)."""
+        value, slope, elastic = np.zeros((3, self.count))
         for law, internal in zip(self.laws, state.internal, strict=True):
             one = law.force(after[law.links], state.stretch[law.links], internal)
             value[law.links] += one.value
             slope[law.links] += one.slope
-        return StepForce(value, slope)
+            if law.swings:
+                elastic[law.links] += one.slope
+        return LinkForces(value, slope, elastic)
 
-    def bounds(self, state: LawState) -> tuple[FloatArray, FloatArray]:
-        """Return the least and the largest friction of every link over the next step, 0 where it has no slider, each (links,)."""
-        low, high = np.zeros((2, self.count))
-        if self.sliders is not None:
-            low[self.sliders.links], high[self.sliders.links] = self.sliders.bounds(state.stuck, state.friction)
-        return low, high
-
-    def advance(self, after: FloatArray, slips: Truths, friction: FloatArray, state: LawState) -> LawState:
-        """Return the state after a step.
-
-        Parameters
-        ----------
-        after : ndarray, shape (links,)
-            D_1.
-        slips : ndarray of bool, shape (links,)
-            Where sliders slip over the step.
-        friction : ndarray, shape (links,)
-            Over the step.
-        state : LawState
-        """
-        internal = tuple(
-            law.advance(after[law.links], state.stretch[law.links], one) for law, one in zip(self.laws, state.internal, strict=True)
-        )
-        if self.sliders is None:
-            return LawState(after, internal, state.stuck, state.friction)
-        sliding = self.sliders.links
-        return LawState(after, internal, np.where(slips[sliding], 0.0, 1.0), friction[sliding])
+    def advance(self, after: FloatArray, state: LawState) -> LawState:
+        """Return the state after a step that ends at the stretches *after*, (links,)."""
+        pairs = zip(self.laws, state.internal, strict=True)
+        return LawState(after, tuple(law.advance(after[law.links], state.stretch[law.links], internal) for law, internal in pairs))
 
     def stored(self, state: LawState) -> FloatArray:
         """Return the energy of every link, (links,)."""

@@ -22,6 +22,7 @@ class Polynomials:
     """
 
     variables = 0
+    swings = True
 
     def __init__(self, links: Links, coefficients: FloatArray) -> None:
         self.links, self._coefficients = links, coefficients
@@ -63,6 +64,7 @@ class BrokenLines:
     """
 
     variables = 0
+    swings = True
 
     def __init__(self, links: Links, slope: FloatArray, corners: FloatArray, changes: FloatArray, signs: FloatArray) -> None:
         self.links, self._slope, self._corners, self._changes, self._signs = links, slope, corners, changes, signs

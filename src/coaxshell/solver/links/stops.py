@@ -53,6 +53,7 @@ class Stops:
 
     variables = 3
     """v, the speed at which the present contact with either stop began, and the rate of the stretch over the step before."""
+    swings = True
     _signs = np.array([[1.0], [-1.0]])
 
     def __init__(self, links: Links, clearance: FloatArray, stiffness: FloatArray, restitution: FloatArray, time_step: float) -> None:
