@@ -168,8 +168,8 @@ ELASTIC = (
     Mutation(
         "faces-at-the-gap",
         "solver/interface/absorbers.py",
-        "a.inner_shell + side, 1 - side)",
-        "a.inner_shell + side, side if a.inner_shell else 1 - side)",
+        "surface_facing(inner + side, 1 - side)",
+        "surface_facing(inner + side, side if inner else 1 - side)",
         "absorbers hold the faces that look at their gap",
         "solver/test_footprints.py",
     ),
