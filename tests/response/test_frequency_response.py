@@ -327,3 +327,24 @@ def test_walls_without_losses_scatter_all_that_the_wave_loses(theory, wetted):
     system = cx.System(shells=shells, fluids=[cx.VACUUM, WATER, WATER], source=WAVE)
     lost, scattered = (cx.frequency_response(system, hertz([0.7, 5.2]), name) for name in ("extinction_width", "scattering_width"))
     np.testing.assert_allclose(lost, scattered, rtol=1e-8)
+
+
+def test_waves_along_the_axis_know_what_they_cannot_do():
+    near = cx.SphericalShock(distance=4.0, peak_pressure=1.0, decay_time=1e-4)
+    with pytest.raises(InputError, match="dimensions: a point source has all axial wavenumbers"):
+        cx.frequency_response(double(source=near), 100.0, "stress", dimensions=3)
+    held = double([cx.PointAbsorber(angle=0.0, z=0.0, mass=1.0, linear_stiffness=1e7)])
+    with pytest.raises(InputError, match="absorbers: absorbers at points scatter"):
+        cx.frequency_response(held, 100.0, "stress", dimensions=3)
+    with pytest.raises(InputError, match="dimensions: 4 is not allowed"):
+        cx.frequency_response(double(), 100.0, "stress", dimensions=4)
+
+
+def test_a_pole_without_losses_has_a_number():
+    """A shell within a rigid one cannot radiate: at its resonance the answer is what a damping ratio of 1e-12 leaves of it."""
+    steel = cx.Shell(radius=0.5, layers=[cx.Layer(STEEL, 0.01)])
+    closed = cx.System(shells=[steel, cx.RigidShell(radius=1.0)], fluids=[WATER, WATER, WATER], source=WAVE)
+    tone = float(cx.natural_frequencies(closed, 2, up_to=100.0)["frequency"].squeeze())
+    found = np.abs(cx.frequency_response(closed, [tone, 2 * tone], "receptance", shell=0, modes=20))
+    assert found[0] > 1e9 * found[1]
+    assert np.all(np.isfinite(found))

@@ -136,6 +136,10 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
         raise InputError("sea", "an answer at a frequency is that of unbounded water", "leave the sea out, or give it surface = false")
     if dimensions == 2:
         require_two_dimensions(system, Settings())
+    elif system.point_absorbers:
+        raise InputError(
+            "absorbers", "absorbers at points scatter a wave into all wavenumbers along the axis", "leave them out, or use lines"
+        )
     transit = system.reference_radius / system.exterior.sound_speed
     hertz = frequencies(frequency, transit)
     omega = 2.0 * math.pi * transit * np.atleast_1d(hertz)
@@ -143,9 +147,8 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
     problem = _directed(dimensionless(system, dimensions, band=band), what).resolving(float(omega.max()))
     orders = _orders(problem, what, float(omega.max()), modes)
     _require(problem, what)
-    if dimensions == 2:
-        require_stable(problem, orders, _WATCHED)
-    tail, trace = Tail(), _trace(problem, dimensions)
+    require_stable(problem, orders, _WATCHED)
+    tail, trace = Tail(), 0.0 if what.force is not None else _trace(problem, dimensions)
     parts = []
     for some in _blocks(omega, orders):
         grid = Frequencies.of(some)
