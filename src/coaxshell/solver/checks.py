@@ -374,11 +374,13 @@ def tension(problem: Problem, found: Iterable[Tension]) -> list[str]:
         if low.region == count and problem.system.sea is not None:
             warnings.append(_cavitation(problem, low, fluid))
             continue
+        stands = "water at the surface of the sea would cavitate there, which a depth might prevent: a system with a sea has one"
+        if problem.system.sea is not None:
+            stands = "water under the atmosphere alone would cavitate there, and what shells enclose may be sealed from the sea's pressure"
         extent = f"over up to {low.width:.0f} degrees at once, for {engineering(low.lasting * problem.scales.time, 's')} in all"
         warnings.append(
             f"{shell_phrase(low.shell, count)}: the total pressure of {fluid} on it falls to {engineering(low.pressure, 'Pa')} at {when}, "
-            f"and below {engineering(-AMBIENT, 'Pa')} {extent}: water at the surface of the sea would cavitate there, and the pressure of "
-            "a depth, which would prevent it, is not part of the model; lower the source's pressure, or take what follows with care"
+            f"and below {engineering(-AMBIENT, 'Pa')} {extent}: {stands}; lower the source's pressure, or take what follows with care"
         )
     return warnings
 

@@ -65,7 +65,7 @@ class Tension(NamedTuple):
 
 def watched(problem: Problem) -> bool:
     """Return whether the sources are strong enough for tension to be looked for."""
-    return sum(abs(source.pulse.peak) for source in problem.system.sources) > HARMLESS * AMBIENT
+    return sum(abs(source.pulse.peak) for source in problem.emitters) > HARMLESS * AMBIENT
 
 
 def tensions(
