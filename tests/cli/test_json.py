@@ -135,6 +135,17 @@ def test_spectra(run, small):
     assert run("spectrum", "bare", *small, *asked, "-o", "a.csv").files == ["a.csv"]
 
 
+def test_participation(run, small):
+    asked = ("participation", "bare", *small, "--up-to", "600 Hz", "-q")
+    found = document(run(*asked, "--json"))
+    assert found["value"] == pytest.approx(sum(found["orders"]["order_contribution"]) + found["other_orders"] * found["value"])
+    assert (found["units"]["contribution"], found["quantity"]) == ("Pa", "stress")
+    assert {"order", "frequency", "damping_ratio", "contribution", "share"} <= set(found["modes"][0])
+    text = run(*asked, "-o", "modes.png")
+    assert "carried by no mode of these orders" in text.out
+    assert text.files == ["modes.png"]
+
+
 def test_conformance_report(run):
     outcome = run("verify", "--quick", "--only", "statics", "--quiet", "--json")
     found = document(outcome)

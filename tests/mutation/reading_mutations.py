@@ -45,4 +45,20 @@ READING = (
         "an acceleration that begins with a jump",
         "numerics/test_oscillators.py",
     ),
+    Mutation(
+        "mode-residue",
+        "solver/mode_residues.py",
+        "weight / mode.slope * (mode.left @ loads)",
+        "weight * mode.slope * (mode.left @ loads)",
+        "what a natural mode carries of a motion",
+        "response/test_participation.py",
+    ),
+    Mutation(
+        "link-stroke",
+        "response/strokes.py",
+        "masses.to_numpy()[there] - length",
+        "masses.to_numpy()[there] + length",
+        "stroke of an absorber relative to its shells",
+        "response/test_absorbers.py",
+    ),
 )

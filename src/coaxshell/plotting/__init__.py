@@ -23,6 +23,7 @@ from coaxshell.plotting.loads import figure_loads
 from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
 from coaxshell.plotting.natural_frequencies import figure_natural_frequencies, plot_mode_shape, plot_natural_frequencies
 from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_front, plot_parallel
+from coaxshell.plotting.participation import figure_participation
 from coaxshell.plotting.pressure_rms import figure_pressure_rms
 from coaxshell.plotting.saving import FIGURE_SUFFIXES, save_figure
 from coaxshell.plotting.sensitivity import figure_sensitivity, plot_distribution, plot_sensitivity
@@ -59,6 +60,7 @@ __all__ = [
     "figure_named_curves",
     "figure_natural_frequencies",
     "figure_optimum",
+    "figure_participation",
     "figure_pressure_rms",
     "figure_sensitivity",
     "figure_shock_spectra",

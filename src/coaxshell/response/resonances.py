@@ -81,11 +81,11 @@ def natural_frequencies(
         An argument is not allowed, or the system cannot be solved at such wavenumbers.
     """
     described = as_system(system).replace(absorbers=())
-    orders, lengths = _orders(order), _lengths(axial_half_wavelength)
+    orders, lengths = whole_orders(order), _lengths(axial_half_wavelength)
     dimensions = 2 if lengths is None else 3
     problem = dimensionless(described, dimensions)
     scales = problem.scales
-    highest = TRANSITS if up_to is None else 2.0 * math.pi * scales.time * _frequency(up_to, scales.time)
+    highest = TRANSITS if up_to is None else highest_frequency(up_to, scales.time)
     damped = _ratio(most_damped)
     problem = problem.resolving(highest)
     wavenumbers = [0.0] if lengths is None else [math.pi * scales.length / length for length in np.atleast_1d(lengths)]
@@ -140,7 +140,7 @@ def _damping(poles: ComplexArray, words: str) -> tuple[Any, dict[str, str]]:
     return -poles.real / np.abs(poles) + 0.0, {"units": "1", "long_name": words}
 
 
-def _orders(order: object) -> list[int]:
+def whole_orders(order: object) -> list[int]:
     """Return orders as a list; InputError if one is none."""
     remedy = f"give whole numbers from 0 to {HIGHEST_ORDER}, as range(13)"
     values = [plain(one) for one in _each(order, "order", remedy)]
@@ -178,8 +178,8 @@ def _lengths(value: Any) -> float | npt.NDArray[np.float64] | None:
     return np.array(found) if several else found[0]
 
 
-def _frequency(value: object, time: float) -> float:
-    """Return the highest frequency in Hz."""
+def highest_frequency(value: object, time: float) -> float:
+    """Return the highest frequency that is looked at (Hz, or a text), radians per transit of so many seconds; InputError if it is none."""
     most = _LONGEST / (2.0 * math.pi * time)
     remedy = f'give a frequency above 0 and up to {most:.4g} Hz, or a text such as "2 kHz"'
     try:
@@ -188,7 +188,7 @@ def _frequency(value: object, time: float) -> float:
         raise InputError("up_to", error.problem, remedy) from None
     if not 0.0 < hertz <= most:
         raise InputError("up_to", f"{hertz:g} Hz is not allowed", remedy)
-    return hertz
+    return 2.0 * math.pi * time * hertz
 
 
 def _ratio(value: object) -> float:

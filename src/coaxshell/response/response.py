@@ -18,6 +18,7 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage, wall_stress
 from coaxshell.response.history_spectrum import history_spectrum
+from coaxshell.response.participation import ParticipationOptions, participation
 from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
 from coaxshell.response.solid_histories import displacement_at_depth
 from coaxshell.response.strokes import absorber_stroke
@@ -274,6 +275,14 @@ class Response:
         """
         found = self.history(shell, angle, quantity, station=station) if isinstance(quantity, str) else quantity
         return history_spectrum(found, self.system.sources, frequency, per, source)
+
+    def participation(self, shell: int | str, quantity: str = "stress", **options: Unpack[ParticipationOptions]) -> xr.Dataset:
+        """Return which natural modes carry a quantity of a shell at its peak, or at an *angle* and *time*, and over time.
+
+        Dims (order, mode): the orders that carry most unless an *order* is given, modes *up_to* a frequency. See
+        :func:`coaxshell.response.participation.participation`.
+        """
+        return participation(self.motion, self._index(shell), quantity, **options)
 
     def history(
         self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, quantity: str = "stress", *, station: Any = None

@@ -159,6 +159,10 @@ class ModalSystem:
         """Diagonal of the tridiagonal system of the shells: stiffness and own added mass, one entry a shell, each (orders, nodes)."""
         return self._diagonal
 
+    def beside(self, index: int) -> tuple[ComplexArray | float, ComplexArray | float]:
+        """Return upper_i and lower_{i+1}, by which a shell and the next one outward load each other."""
+        return self._upper[index], self._lower[index + 1]
+
     @property
     def coupling(self) -> list[ComplexArray | float]:
         """Products lower_i upper_{i-1} of the off-diagonals, i = 1 onwards: what neighbouring shells do to the determinant."""
