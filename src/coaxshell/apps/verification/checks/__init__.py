@@ -25,6 +25,7 @@ ORDER = (
     "orders",
     "transparency",
     "rigid",
+    "sea",
     "form_function",
     "translation",
     "statics",
