@@ -58,7 +58,16 @@ if TYPE_CHECKING:
         materials,
         presets,
     )
-    from coaxshell.response import PreparedSystem, Response, frequency_response, load_response, natural_frequencies, prepare, simulate
+    from coaxshell.response import (
+        PreparedSystem,
+        Response,
+        frequency_response,
+        load_response,
+        natural_frequencies,
+        prepare,
+        simulate,
+        stability_margins,
+    )
     from coaxshell.solver.settings import Settings
     from coaxshell.studies import (
         Choice,
@@ -142,6 +151,7 @@ __all__ = [
     "robustness",
     "sensitivity",
     "simulate",
+    "stability_margins",
     "sweep",
 ]
 

@@ -27,6 +27,7 @@ COMMANDS = (
         "spectrum",
         "modes",
         "response",
+        "control",
         "figure",
         "snapshots",
         "animate",
@@ -83,7 +84,7 @@ def test_version(run):
 def test_unknown_command(refused):
     message = refused("solve")
     assert "'solve'" in message
-    assert "allowed: run, presets, init, info, record, plot, spectrum, modes, response, figure" in message
+    assert "allowed: run, presets, init, info, record, plot, spectrum, modes, participation, response, control, figure" in message
 
 
 def test_unknown_option(refused):

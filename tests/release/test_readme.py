@@ -25,6 +25,7 @@ SMALLER = {
     "modes": ["--order", "2"],
     "response": ["--frequency", "100,200", "--modes", "8"],
     "participation": [*COARSE, "--up-to", "600 Hz"],
+    "control": ["--modes", "4"],
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
     "report": [*COARSE, "--without", "energy", "--without", "fields"],

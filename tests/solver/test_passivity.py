@@ -106,5 +106,5 @@ def test_the_contour_reaches_a_membrane_above_where_feedback_fades():
     problem = dimensionless(paper(0.0, 2e-3))
     fades = stability.highest_frequency(problem, 10)
     assert fades < problem.shells[0].highest_frequency(MODES).max()
-    contour = stability._Contour.of(problem, MODES, 0.25)
+    contour = stability.Contour.of(problem, MODES, 0.25)
     assert contour.even[-1] > problem.shells[0].highest_frequency(MODES).max()

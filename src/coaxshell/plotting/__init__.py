@@ -20,6 +20,7 @@ from coaxshell.plotting.frequency_response import (
 )
 from coaxshell.plotting.histories import QUANTITIES, PlottedQuantity, mark_peak, plot_history
 from coaxshell.plotting.loads import figure_loads
+from coaxshell.plotting.margins import figure_margins, plot_bode, plot_delay_margins, plot_nyquist
 from coaxshell.plotting.named_curves import CurvePanel, figure_named_curves, plot_named_curves
 from coaxshell.plotting.natural_frequencies import figure_natural_frequencies, plot_mode_shape, plot_natural_frequencies
 from coaxshell.plotting.optimum import figure_optimum, plot_convergence, plot_front, plot_parallel
@@ -57,6 +58,7 @@ __all__ = [
     "figure_energy",
     "figure_frequency_response",
     "figure_loads",
+    "figure_margins",
     "figure_named_curves",
     "figure_natural_frequencies",
     "figure_optimum",
@@ -69,9 +71,11 @@ __all__ = [
     "figure_sweep",
     "figure_wall_stress",
     "mark_peak",
+    "plot_bode",
     "plot_comparison",
     "plot_convergence",
     "plot_curves",
+    "plot_delay_margins",
     "plot_directivity",
     "plot_distribution",
     "plot_energy",
@@ -83,6 +87,7 @@ __all__ = [
     "plot_mode_shape",
     "plot_named_curves",
     "plot_natural_frequencies",
+    "plot_nyquist",
     "plot_parallel",
     "plot_sensitivity",
     "plot_sweep",

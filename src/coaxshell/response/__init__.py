@@ -1,6 +1,7 @@
 """The labelled answer: histories, summary, storage."""
 
 from coaxshell.response.frequency import frequency_response
+from coaxshell.response.margins import stability_margins
 from coaxshell.response.resonances import natural_frequencies
 from coaxshell.response.response import Response
 from coaxshell.response.simulation import PreparedSystem, load_response, prepare, simulate
@@ -18,4 +19,5 @@ __all__ = [
     "natural_frequencies",
     "prepare",
     "simulate",
+    "stability_margins",
 ]

@@ -18,6 +18,7 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage, wall_stress
 from coaxshell.response.history_spectrum import history_spectrum
+from coaxshell.response.margins import stability_margins
 from coaxshell.response.participation import ParticipationOptions, participation
 from coaxshell.response.shock_spectrum import SpectrumOptions, shock_spectrum
 from coaxshell.response.solid_histories import displacement_at_depth
@@ -412,6 +413,13 @@ class Response:
         See :func:`coaxshell.response.energy.energy`.
         """
         return energy.energy(self.solution, every, progress, spectra=self._spectra)
+
+    def stability_margins(self) -> xr.Dataset:
+        """Return gain, phase and delay margins of the feedback of each shell by order, dims (shell, order).
+
+        See :func:`coaxshell.stability_margins`.
+        """
+        return stability_margins(self.system, settings=self.settings)
 
     def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> Summary:
         """Return peaks, RMS, error estimates and warnings within a window (start, end) in transits; print it for a table.

@@ -120,7 +120,7 @@ def highest_frequency(problem: Problem, max_order: int, wavenumber: float | Comp
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
-class _Contour(NamedTuple):
+class Contour(NamedTuple):
     """Where Re s = shift is walked: at an even step as far as each order resonates, then by a growing one to where feedback fades."""
 
     shift: float
@@ -130,7 +130,7 @@ class _Contour(NamedTuple):
     delay: float
 
     @classmethod
-    def of(cls, problem: Problem, modes: Modes, least: float) -> _Contour:
+    def of(cls, problem: Problem, modes: Modes, least: float) -> Contour:
         """Return it for some orders; the shift is the *least* growth that counts, or more where as many nodes cannot tell it from none."""
         first = Modes(np.ones(1), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
         limits = np.stack([1.2 * np.hypot(wall.highest_frequency(modes), wall.highest_frequency(first)) for wall in problem.shells])
@@ -139,6 +139,11 @@ class _Contour(NamedTuple):
         even = np.arange(0.0, limits.max() + _SPACING * shift, _SPACING * shift)
         delay = max((wall.gains.delay for wall in problem.shells if wall.gains is not None), default=0.0)
         return cls(shift, even, limits, highest_frequency(problem, modes.max_order, modes.wavenumber), delay)
+
+    @property
+    def nodes(self) -> ComplexArray:
+        """All nodes, ascending, an even step as far as any order resonates."""
+        return np.concatenate([self.shift + 1j * self.even[:-1], self.beyond(float(self.even[-1]))])
 
     def blocks(self) -> Iterator[ComplexArray]:
         """Yield the nodes with an even step by blocks, each of which shares a node with the next."""
@@ -170,11 +175,11 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
     if not doubtful.size:
         return UnstablePoles(doubtful, np.zeros(0))
     modes = Modes(doubtful, modes.wavenumber, modes.sparse or 2 * doubtful.size < modes.count)
-    counts = np.rint(-_turned(problem, modes, _Contour.of(problem, modes, least), shared) / np.pi)
+    counts = np.rint(-_turned(problem, modes, Contour.of(problem, modes, least), shared) / np.pi)
     return UnstablePoles(doubtful[counts > 0], counts[counts > 0])
 
 
-def _turned(problem: Problem, modes: Modes, contour: _Contour, shared: SharedParts | None) -> FloatArray:
+def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedParts | None) -> FloatArray:
     """Return how far D_m/D0_m turns along a contour, of each order."""
     turned, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
     for block in contour.blocks():
@@ -238,8 +243,7 @@ def _pole(problem: Problem, modes: Modes, least: float) -> complex:
         here, ahead = (OpenLoop.of(problem, x, modes, None).closed(problem, x, modes)[0] for x in (s, s + step))
         return np.asarray(here * step / np.where(ahead == here, 1e-300, ahead - here))
 
-    walk = _Contour.of(problem, modes, least)
-    contour = np.concatenate([walk.shift + 1j * walk.even[:-1], walk.beyond(float(walk.even[-1]))])
+    contour = Contour.of(problem, modes, least).nodes
     s = contour[[int(np.abs(newton(contour)).argmin())]]  # the pole is nearer to the contour than any that does not grow
     for _ in range(_ITERATIONS):
         change = newton(s)

@@ -13,8 +13,8 @@ from coaxshell._version import __version__
 from coaxshell.apps.cli.output import echo
 
 COMMANDS = (
-    *("run", "presets", "init", "info", "record", "plot", "spectrum", "modes", "participation", "response", "figure"),
-    *("reproduce", "snapshots"),
+    *("run", "presets", "init", "info", "record", "plot", "spectrum", "modes", "participation", "response", "control"),
+    *("figure", "reproduce", "snapshots"),
     *("report", "animate", "export", "sweep", "optimise", "sensitivity", "verify", "response-function", "studio"),
 )
 """In the order of the help; each is the function of the same name in the module of the same name."""

@@ -1,0 +1,127 @@
+"""How far a stable loop is from growing: gain, phase and delay margins of the feedback of each shell, by order.
+
+With the loops of all other shells closed, that of one is 1 - L = D_m/D_m', D_m' without its feedback. On Re s = sigma_0, the least growth
+that counts, it would vanish if the gain were 1/L where L is real and positive, if the phase turned by arg L where |L| = 1, and if the
+answer came later by (arg L)/omega there. Between nodes log L is taken as linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.stability import Contour, OpenLoop
+
+_BLOCK = 512
+_FURTHER = 10.0
+"""How far beyond where feedback fades to half of the inertia a loop is followed: to gain margins of about as much."""
+
+
+@dataclass(frozen=True)
+class LoopMargins:
+    """Margins of the loop of one shell, each of an order; infinite where no change of that kind makes it grow.
+
+    Attributes
+    ----------
+    orders : ndarray, shape (orders,)
+    gain : ndarray
+        Least factor above 1.
+    lesser_gain : ndarray
+        Largest factor below 1, 0 where there is none.
+    phase : ndarray
+        Radians.
+    delay : ndarray
+        Transits, beyond the delay that the law has.
+    gain_frequency, phase_frequency, delay_frequency : ndarray
+        Where, radians per transit; NaN where a margin is infinite.
+    """
+
+    orders: FloatArray
+    gain: FloatArray
+    lesser_gain: FloatArray
+    phase: FloatArray
+    delay: FloatArray
+    gain_frequency: FloatArray
+    phase_frequency: FloatArray
+    delay_frequency: FloatArray
+
+
+class Loop(NamedTuple):
+    """L of a shell's loop: nodes on Re s = sigma_0, ascending, and L of each order there, shape (orders, nodes)."""
+
+    nodes: ComplexArray
+    values: ComplexArray
+
+
+def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
+    """Return L of the loop of each shell that feeds anything back, by its number, on Re s = *least* or a little more."""
+    shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
+    contour = Contour.of(problem, modes, least)
+    nodes = contour._replace(fades=_FURTHER * contour.fades).nodes
+    values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
+    without = [_without(problem, shell) for shell in shells]
+    for start in range(0, nodes.size, _BLOCK):
+        block = nodes[start : start + _BLOCK]
+        open_loop = OpenLoop.of(problem, block, modes, None)
+        closed = open_loop.closed(problem, block, modes)
+        for loop, others in zip(values, without, strict=True):
+            loop[:, start : start + _BLOCK] = 1.0 - closed / open_loop.closed(others, block, modes)
+    return {shell: Loop(nodes, loop) for shell, loop in zip(shells, values, strict=True)}
+
+
+def loop_margins(problem: Problem, modes: Modes, least: float) -> dict[int, LoopMargins]:
+    """Return the margins of the loop of each shell that feeds anything back, by its number, in a stable system."""
+    return {shell: margins_of(modes.orders, *loop) for shell, loop in loops(problem, modes, least).items()}
+
+
+def _without(problem: Problem, shell: int) -> Problem:
+    walls = list(problem.shells)
+    walls[shell] = walls[shell].with_gains(None)
+    return replace(problem, shells=tuple(walls))
+
+
+def margins_of(orders: FloatArray, s: ComplexArray, loop: ComplexArray) -> LoopMargins:
+    """Return the margins of a loop, shape (orders, nodes), given along a line of constant Re s."""
+    size, angle, frequency = np.log(np.maximum(np.abs(loop), 1e-300)), np.unwrap(np.angle(loop), axis=1), s.imag
+    real = _crossings(np.sin(angle), (np.cos(angle[:, :-1]) > 0.0) & (np.cos(angle[:, 1:]) > 0.0))
+    factor = np.exp(-_between(size, real))
+    at_real, where = _between(np.broadcast_to(frequency, size.shape), real), ~np.isnan(factor)
+    gain, gain_at = _least(np.where(where & (factor > 1.0), factor, np.inf), at_real)
+    lesser = np.where(where & (factor <= 1.0), factor, 0.0).max(axis=1, initial=0.0)
+    at_rest = np.exp(-size[:, 0])  # where L is real on the whole axis
+    rests = (frequency[0] == 0.0) & (loop[:, 0].real > 0.0)
+    sooner = rests & (at_rest > 1.0) & (at_rest < gain)
+    gain, gain_at = np.where(sooner, at_rest, gain), np.where(sooner, 0.0, gain_at)
+    lesser = np.maximum(lesser, np.where(rests & (at_rest <= 1.0), at_rest, 0.0))
+    alone = _crossings(size, np.ones_like(real, dtype=np.bool_))
+    turned, at = _between(angle, alone), _between(np.broadcast_to(frequency, size.shape), alone)
+    turned = np.mod(turned, 2.0 * np.pi)  # of s and of its conjugate: what a delay takes off, and the shorter way round
+    phase, phase_at = _least(np.where(np.isnan(turned), np.inf, np.minimum(turned, 2.0 * np.pi - turned)), at)
+    delay, delay_at = _least(np.where(np.isnan(turned), np.inf, turned / np.maximum(at, 1e-300)), at)
+    return LoopMargins(orders, gain, lesser, phase, delay, gain_at, phase_at, delay_at)
+
+
+def _crossings(values: FloatArray, allowed: npt.NDArray[np.bool_]) -> FloatArray:
+    """Return where between two nodes values cross 0, 0 to 1, shape (orders, nodes - 1); NaN where they do not."""
+    one, other = values[:, :-1], values[:, 1:]
+    crosses = (np.signbit(one) != np.signbit(other)) & allowed
+    return np.where(crosses, np.divide(one, one - other, out=np.full_like(one, np.nan), where=crosses), np.nan)
+
+
+def _between(values: FloatArray, place: FloatArray) -> FloatArray:
+    return values[:, :-1] + place * (values[:, 1:] - values[:, :-1])
+
+
+def _least(values: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least value of each order and where it is; NaN where it is infinite."""
+    if not values.shape[1]:
+        return np.full(len(values), np.inf), np.full(len(values), np.nan)
+    place = values.argmin(axis=1)[:, None]
+    least = np.take_along_axis(values, place, 1)[:, 0]
+    return least, np.where(np.isinf(least), np.nan, np.take_along_axis(at, place, 1)[:, 0])

@@ -1,0 +1,36 @@
+"""``coaxshell control``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+
+def test_margins_are_printed_and_drawn(run):
+    told = run("control", "electrodes", "--modes", "4", "--output", "loops.png")
+    assert told.code == 0
+    lines = told.out.splitlines()
+    assert lines[0] == "What the feedback of electrodes stands"
+    assert any(line.split()[:2] == ["inner", "delay"] and "µs" in line and "Hz" in line for line in lines)
+    assert any(line.split() == ["outer", "gain", "10", "times", "or", "more"] for line in lines)
+    assert Path("loops.png").read_bytes().startswith(b"\x89PNG")
+    rows = json.loads(run("control", "electrodes", "--modes", "4", "--json").out)["margins"]
+    assert {row["margin"] for row in rows} == {"gain_margin", "lesser_gain_margin", "phase_margin", "delay_margin"}
+    assert all(row["value"] is None for row in rows if row["margin"] == "gain_margin")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("bare",), "control: nothing is fed back"),
+        (("active", "--set", "control.proportional=2e4", "--modes", "4"), "makes the closed loop unstable"),
+        (("active", "--modes", "auto"), "--modes: 'auto' is not allowed here"),
+        (("active", "--output", "a.txt"), "--output: 'a.txt' has no known ending"),
+    ],
+)
+def test_refused(run, arguments, words):
+    told = run("control", *arguments)
+    assert told.code == 2
+    assert words in told.err

@@ -1,0 +1,124 @@
+"""Margins of feedback: a textbook loop, and against the count of poles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.errors import InputError
+from coaxshell.numerics.modes import Modes
+from coaxshell.plotting import figure_margins
+from coaxshell.response.margins import worst_loops
+from coaxshell.solver.margins import loop_margins, margins_of
+from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.settings import Settings
+from coaxshell.solver.stability import unstable_poles
+
+BARE = cx.presets.load("bare")
+TIME = BARE.transit_time
+PAIRS = BARE.with_overrides({f"shells[{i}].layers[{j}].role": "self-sensing" for i in (0, 1) for j in (0, 2)})
+
+
+def pairs(**law) -> cx.System:
+    return PAIRS.replace(control=cx.Feedback(transducers="electrodes", **law))
+
+
+def test_a_textbook_loop():
+    # 4/(s + 1)^3 under negative feedback: gain margin 2 at sqrt(3), phase margin 27.1 degrees at 1.233 (Franklin, Powell).
+    s = 1e-9 + 1j * np.linspace(0.0, 10.0, 20001)
+    found = margins_of(np.zeros(1), s, -4.0 / (s[None, :] + 1.0) ** 3)
+    crossing = np.sqrt(4.0 ** (2.0 / 3.0) - 1.0)
+    phase = np.pi - 3.0 * np.arctan(crossing)
+    assert (found.gain[0], found.gain_frequency[0]) == pytest.approx((2.0, np.sqrt(3.0)), rel=1e-6)
+    assert (found.phase[0], found.phase_frequency[0]) == pytest.approx((phase, crossing), rel=1e-6)
+    assert found.delay[0] == pytest.approx(phase / crossing, rel=1e-6)
+    assert found.lesser_gain[0] == 0.0
+
+
+def test_a_loop_that_needs_its_gain():
+    # 6/(s - 1)/(s + 2): stable above a gain of 1/3 only.
+    s = 1e-9 + 1j * np.linspace(0.0, 20.0, 20001)
+    found = margins_of(np.zeros(1), s, -6.0 / (s - 1.0)[None, :] / (s + 2.0))
+    assert found.lesser_gain[0] == pytest.approx(1.0 / 3.0, rel=1e-6)
+    assert np.isinf(found.gain[0])
+
+
+def test_a_loop_that_gives_way_at_rest():
+    # 0.4/(s + 1) under positive feedback: the pole at 0.4 k - 1 grows beyond a gain of 2.5.
+    s = 1e-9 + 1j * np.linspace(0.0, 20.0, 2001)
+    found = margins_of(np.zeros(1), s, 0.4 / (s[None, :] + 1.0))
+    assert (found.gain[0], found.gain_frequency[0]) == pytest.approx((2.5, 0.0), rel=1e-6)
+    assert np.isinf(found.phase[0])
+
+
+@pytest.mark.parametrize(
+    "system",
+    [
+        pairs(numerator=[2 * TIME, 0.0]),
+        pairs(numerator=[2 * TIME, 3.0], amplifier_corner="50 kHz"),
+        pairs(numerator=[0.2 * TIME, 3.0], amplifier_corner="50 kHz", weights=4, delay="1 us"),
+        cx.presets.load("active"),
+    ],
+    ids=["rate", "corner", "late", "paper"],
+)
+def test_delay_margins_part_stable_from_unstable(system):
+    problem, modes = dimensionless(system), Modes.up_to(8)
+    for shell, margins in loop_margins(problem, modes, 0.25).items():
+        worst = float(margins.delay.min())
+        grown = [unstable_poles(_later(problem, shell, factor * worst), 8, 4.0).orders for factor in (0.97, 1.03)]
+        assert grown[0].size == 0
+        assert float(margins.delay.argmin()) in grown[1]
+
+
+def test_gain_margins_part_stable_from_unstable():
+    law = {"numerator": [0.3 * TIME, 1.0], "delay": "20 us", "weights": 3, "amplifier_corner": "20 kHz"}
+    margins = cx.stability_margins(pairs(**law), modes=4, duration=4)
+    least = float(margins["gain_margin"].min())
+    assert 1.0 < least < 100.0
+    assert margins["gain_margin"].attrs["units"] == "1"
+    for factor, many in ((0.97, False), (1.03, True)):
+        scaled = [factor * least * one for one in law["numerator"]]
+        shell = str(margins["shell"].values[int(margins["gain_margin"].min("order").argmin("shell"))])
+        problem = dimensionless(pairs(**law))
+        stronger = dimensionless(pairs(**{**law, "numerator": scaled}))
+        place = {"inner": 0, "outer": 1}[shell]
+        walls = tuple(stronger.shells[i] if i == place else problem.shells[i] for i in (0, 1))
+        assert bool(unstable_poles(replace(problem, shells=walls), 4, 4.0).orders.size) == many
+
+
+def _later(problem, shell, delay):
+    walls = list(problem.shells)
+    walls[shell] = walls[shell].with_gains(walls[shell].gains.late(delay))
+    return replace(problem, shells=tuple(walls))
+
+
+def test_labelled_and_drawn():
+    system = pairs(numerator=[2 * TIME, 3.0], weights=2)
+    response = cx.simulate(system, duration=0.5, time_step=0.02, modes=4)
+    margins = response.stability_margins()
+    assert margins["delay_margin"].dims == ("shell", "order")
+    assert margins["shell"].values.tolist() == ["inner", "outer"]
+    assert np.isinf(margins["delay_margin"].sel(order=[3, 4])).all()  # nothing is fed back there
+    assert 1e-6 < float(margins["delay_margin"].min()) < 1e-4
+    figure = figure_margins(*worst_loops(system, Settings(duration=0.5, modes=4)))
+    assert [ax.get_xlabel() for ax in figure.axes] == ["circumferential order $m$", "Re $L$", "frequency (Hz)", "frequency (Hz)"]
+
+
+@pytest.mark.parametrize(
+    ("system", "changes", "words"),
+    [
+        (BARE, {}, ("control: nothing is fed back", "PDControl or a Feedback")),
+        (pairs(numerator=[0.0]), {}, ("nothing is fed back",)),
+        (pairs(numerator=[-TIME, 0.0]), {}, ("unstable",)),
+        (pairs(numerator=[1.0]), {"modes": "auto"}, ("modes: 'auto'", "highest order")),
+        (pairs(numerator=[1.0]), {"dimensions": 3}, ("dimensions:", "dimensions=2")),
+    ],
+)
+def test_refused_in_one_line(system, changes, words):
+    with pytest.raises(InputError) as caught:
+        cx.stability_margins(system, **{"modes": 4, **changes})
+    for word in words:
+        assert word in str(caught.value)
