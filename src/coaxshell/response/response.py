@@ -415,10 +415,7 @@ class Response:
         return energy.energy(self.solution, every, progress, spectra=self._spectra)
 
     def stability_margins(self) -> xr.Dataset:
-        """Return gain, phase and delay margins of the feedback of each shell by order, dims (shell, order).
-
-        See :func:`coaxshell.stability_margins`.
-        """
+        """Return gain, phase and delay margins of the feedback of each shell by order; see :func:`coaxshell.stability_margins`."""
         return stability_margins(self.system, settings=self.settings)
 
     def summary(self, window: Sequence[float] | None = None, *, segment: Segment = None) -> Summary:
