@@ -21,12 +21,12 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from coaxshell.model.sea import ATMOSPHERE, GRAVITY
-from coaxshell.numerics.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from coaxshell.numerics.arrays import FloatArray
 
 DENSITY, SPEED = 1025.0, 1500.0
 """Sea water, in which the fits were made, kg/m^3 and m/s."""
@@ -59,6 +59,8 @@ def oscillation(mass: float, depth: float, factor: float, pulses: int) -> tuple[
         Charge (kg), depth (m) and K6.
     pulses : int
     """
+    import numpy as np
+
     rest, largest = ATMOSPHERE + DENSITY * GRAVITY * depth, largest_radius(mass, depth, factor)
     half = _motion(mass, rest, largest, math.inf, 1)
     later = _motion(mass, rest, largest, SPEED, 2 * pulses)
@@ -71,6 +73,7 @@ def oscillation(mass: float, depth: float, factor: float, pulses: int) -> tuple[
 
 def _motion(mass: float, rest: float, largest: float, speed: float, turns: int) -> tuple[FloatArray, FloatArray]:
     """Return times from rest at the largest radius and rho V''/(4 pi), until the bubble has turned so many times."""
+    import numpy as np
     from scipy.integrate import solve_ivp
 
     def gas(a: Any) -> Any:
@@ -117,6 +120,8 @@ def whole_pulse(
     pulses : int
         How many bubble pulses follow.
     """
+    import numpy as np
+
     time, strength = oscillation(mass, depth, factor, pulses)
     shock_time = np.concatenate([[0.0], decay * np.geomspace(1e-2, 12.0, _SHOCK)])
     both = np.union1d(shock_time, time)

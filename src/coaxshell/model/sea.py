@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
 from coaxshell.model.units import Angle, Length
-from coaxshell.numerics.arrays import FloatArray
 
-Heights = TypeVar("Heights", float, FloatArray)
+if TYPE_CHECKING:
+    from coaxshell.numerics.arrays import FloatArray
+
+Heights = TypeVar("Heights", float, "FloatArray")
 
 ATMOSPHERE = 101_325.0
 """Pressure of the standard atmosphere, Pa (ISO 2533)."""
