@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.interface import absorbers
 from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set, admittance
 from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
@@ -77,3 +79,20 @@ def test_weak_absorbers_add(structure: StructureSpectra) -> None:
     )
     change = np.asarray(both - none)
     np.testing.assert_allclose(np.asarray(first + second - 2 * none), change, rtol=0, atol=1e-4 * abs(change).max())
+
+
+@pytest.mark.parametrize("kept", [0, 10**9])
+def test_receptance_by_pairs_and_by_points(monkeypatch, kept):
+    """A point answers a force at another by the sum of all orders' compliances times both shapes."""
+    monkeypatch.setattr(absorbers, "_PAIR_BYTES", kept)
+    listed = [cx.Absorber(angle=angle, mass=1.0, linear_stiffness=1e9) for angle in (5.0, 77.0, 250.0)]
+    problem = dimensionless(cx.presets.load("bare").replace(absorbers=listed))
+    modes, rng = Modes.up_to(7), np.random.default_rng(2)
+    points = absorbers.InterfacePoints(problem, absorbers.absorber_set(problem, tuple(listed), 1), modes)
+    compliance = rng.normal(size=(2, 2, 8, 4)) + 1j * rng.normal(size=(2, 2, 8, 4))
+    found = points.receptance(compliance)
+    for force in range(points.count):
+        unit = np.zeros((points.count, 4))
+        unit[force] = 1.0
+        moved = points.evaluate(np.einsum("ijmk,jhmk->ihmk", compliance, points.project(unit)))
+        assert_allclose(found[:, :, force].T, moved, rtol=1e-12, atol=1e-13)

@@ -32,6 +32,8 @@ Array = npt.NDArray[Any]
 
 _SAME_ANGLE = 1e-9
 """Degrees within which two angles count as one."""
+_PAIR_BYTES = 64 * 1024 * 1024
+"""Most bytes of what all pairs of points keep for their receptance."""
 
 
 class Properties(NamedTuple):
@@ -289,6 +291,7 @@ class InterfacePoints:
                 parts[:] = [part * held[points][:, None] for part, (_, points) in zip(parts, self._groups, strict=True)]
         self.count, self.surfaces = self.surface.size, len(problem.surfaces)
         self.parities, self.modes = shapes.shape[0], modes.count
+        self._pair_shares: dict[tuple[int, int], FloatArray] = {}
 
     def evaluate(self, modal: Array) -> Array:
         """Return the value at every point of modal amplitudes (surfaces, parities, M + 1[, T]): shape (points[, T])."""
@@ -363,13 +366,32 @@ class InterfacePoints:
         """
         nodes = compliance.shape[-1]
         matrix = np.zeros((nodes, self.count, self.count), np.complex128)
-        for i, rows in self._groups:
-            for j, columns in self._groups:
+        for (i, rows), span in zip(self._groups, self._rows, strict=True):
+            for (j, columns), beside in zip(self._groups, self._rows, strict=True):
                 if rows.size and columns.size:
-                    spectra = np.ascontiguousarray(compliance[i, j].T)
-                    shapes = zip(self._evaluate[i], self._project[j], strict=True)
-                    matrix[:, rows[:, None], columns] = sum((e * spectra[:, None, :]) @ p.T for e, p in shapes)
+                    whole = isinstance(span, slice) and isinstance(beside, slice)
+                    place = (slice(None), span, beside) if whole else (slice(None), rows[:, None], columns)
+                    matrix[place] = self._of_pairs(i, j, compliance[i, j]) if self._few else self._of_points(i, j, compliance[i, j])
         return matrix
+
+    @property
+    def _few(self) -> bool:
+        """Whether the shares of all pairs of points in all orders are small enough to be kept."""
+        return 8 * self.count**2 * self.modes <= _PAIR_BYTES
+
+    def _of_pairs(self, i: int, j: int, compliance: ComplexArray) -> ComplexArray:
+        """Return the receptance of one surface to forces on another, (nodes, points, points): one real product for all pairs and nodes."""
+        if (i, j) not in self._pair_shares:
+            shares = np.einsum("ham,hbm->abm", self._evaluate[i], self._project[j])
+            self._pair_shares[i, j] = shares.reshape(-1, self.modes)
+        product = (self._pair_shares[i, j] @ np.ascontiguousarray(compliance).view(np.float64)).view(np.complex128)
+        return np.asarray(product.T.reshape(-1, self._evaluate[i].shape[1], self._project[j].shape[1]))
+
+    def _of_points(self, i: int, j: int, compliance: ComplexArray) -> ComplexArray:
+        """Return that receptance by one real product a node, which keeps nothing of the pairs."""
+        evaluate, project = np.concatenate(list(self._evaluate[i]), axis=1), np.concatenate(list(self._project[j]), axis=1)
+        spectra = np.tile(compliance, (self.parities, 1)).T[:, :, None] * np.ascontiguousarray(project.T)
+        return np.asarray((evaluate @ spectra.view(np.float64)).view(np.complex128))
 
 
 def _span(numbers: npt.NDArray[np.int64]) -> slice | npt.NDArray[np.int64]:

@@ -23,7 +23,7 @@ from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, s
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks
 
-BLOCK_BYTES = 32 * 1024 * 1024
+BLOCK_BYTES = 8 * 1024 * 1024
 """Of the matrices of a block of nodes."""
 
 
