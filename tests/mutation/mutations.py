@@ -9,6 +9,7 @@ from elastic_mutations import ELASTIC
 from electrode_mutations import ELECTRODES
 from feedback_mutations import FEEDBACK
 from gradient_mutations import GRADIENTS
+from law_mutations import LAWS
 from loss_mutations import LOSSES
 from reading_mutations import READING
 from sea_mutations import SEA
@@ -495,5 +496,6 @@ MUTATIONS = (
     *ELASTIC,
     *ELECTRODES,
     *FEEDBACK,
+    *LAWS,
     *LOSSES,
 )

@@ -13,6 +13,8 @@ from coaxshell import Response
 from coaxshell.model import presets
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.solver.interface.absorbers import absorber_set, side_admittance
+from coaxshell.solver.scaling import dimensionless
 
 BARE = presets.load("bare")
 LAWS = cx.laws
@@ -119,6 +121,27 @@ def test_a_core_that_is_no_shell_holds_like_a_spring_to_the_ground():
     assert apart(to_core, to_shell) < 1e-12
     law = cx.Absorber(mass=2, law=LAWS.Polynomial([2e8]), links="outer", grounded=True)
     assert apart(motion(run(of(law, system=ring))), to_core) < 1e-4
+
+
+def test_a_tuned_mass_damper_has_den_hartogs_two_equal_peaks():
+    # mass ratio mu: tuned to w/(1 + mu), zeta^2 = 3 mu/(8 (1 + mu)^3), both peaks near the fixed points, (1 + 2/mu)^(1/2)
+    problem, ratio, mass = dimensionless(BARE), 0.05, 3.0
+    scales, tuned = problem.scales, 1.0 / (1.0 + ratio)
+    damper = 2.0 * ratio * mass * np.sqrt(3.0 * ratio / (8.0 * (1.0 + ratio) ** 3))
+    absorber = cx.Absorber(
+        mass=ratio * mass * scales.pressure * scales.length**2 / scales.velocity**2,
+        linear_stiffness=ratio * mass * tuned**2 * scales.pressure,
+        damping=damper * scales.pressure * scales.length / scales.velocity,
+        links="outer",
+    )
+    s = 1j * np.linspace(0.7, 1.3, 6001)
+    links = absorber_set(problem, (absorber,), 1)
+    law = side_admittance(links, s)
+    assert not law.inner.any()
+    answer = np.abs(mass / (mass * (1.0 + s**2) + law.outer[:, 0]))
+    peaks = answer[1:-1][(answer[1:-1] > answer[:-2]) & (answer[1:-1] > answer[2:])]
+    assert peaks.size == 2
+    assert_allclose(peaks, np.sqrt(1.0 + 2.0 / ratio), rtol=0.02)
 
 
 def test_inertance_alone_is_a_mass_between_the_ends():

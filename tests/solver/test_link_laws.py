@@ -200,6 +200,35 @@ def test_stick_slip_has_the_closed_period():
     assert_allclose(period, 2.0 * drop / speed + 2.0 * (np.pi - np.arctan(drop / speed)), rtol=5e-3)
 
 
+def left_after(amplitude: float) -> float:
+    """Return the share of its energy that a mass on a spring keeps, struck to a speed, with a light mass on a cubic spring."""
+    light, damping, cubic, time_step = 0.02, 0.2, 4.0 / 3.0, 0.1  # x" + x + eps f = 0, eps v" = eps f, f = 0.2 dD/dt + 4/3 D^3
+    known = LinkLaws(
+        1, [Polynomials(ONE, row(0.0, 0.0, light * cubic)), SpringDampers(ONE, np.zeros(1), np.array([light * damping]), time_step)]
+    )
+    quarter, stiff = time_step**2 / 4.0, 1.0 + time_step**2 / 4.0
+    solver = LawSolver(np.array([[-quarter * (1.0 / stiff + 1.0 / light)]]), known, np.zeros(1))
+    state, added = known.at_rest(), np.zeros(1)
+    x, dx, v, dv = 0.0, amplitude, 0.0, 0.0
+    for _ in range(1200):
+        free_x, free_v = (x + 0.5 * time_step * dx) / stiff, v + 0.5 * time_step * dv
+        step = solver.solve(np.array([free_x - free_v]), added, state)
+        added, state = step.added, step.state
+        half_x, half_v = free_x - quarter / stiff * float(added[0]), free_v + quarter / light * float(added[0])
+        x, dx = 2.0 * half_x - x, 4.0 * (half_x - x) / time_step - dx
+        v, dv = 2.0 * half_v - v, 4.0 * (half_v - v) / time_step - dv
+    return (x * x + dx * dx) / amplitude**2
+
+
+def test_an_essentially_nonlinear_absorber_takes_energy_above_the_fold_of_its_slow_manifold():
+    # |x|^2 = [lambda^2 + (1 - 3/4 k Z)^2] Z has its fold at Z = 4/(9 k) (2 - (1 - 3 lambda^2)^(1/2)): below it the absorber sleeps
+    damping, cubic = 0.2, 4.0 / 3.0
+    z = 4.0 / (9.0 * cubic) * (2.0 - np.sqrt(1.0 - 3.0 * damping**2))
+    fold = np.sqrt((damping**2 + (1.0 - 0.75 * cubic * z) ** 2) * z)
+    assert left_after(0.97 * fold) > 0.5
+    assert left_after(1.15 * fold) < 0.06
+
+
 def test_linear_laws_marched_are_those_of_the_nodes():
     # the force of a stretch (1 - cos wt)/2, against the transform's impedance at s = iw in the steady state
     time_step, omega = 5e-3, 3.0

@@ -13,7 +13,7 @@ from coaxshell.apps.verification.independent.radial_elements import ELEMENT
 from coaxshell.apps.verification.registry import check
 from coaxshell.apps.verification.rows import Curve, Finding, Panel, Sheet, at_least, distance, within
 from coaxshell.apps.verification.systems import GAINS, SMOOTH, cubic_ring, smooth
-from coaxshell.model import presets
+from coaxshell.model import laws, presets
 from coaxshell.model.absorbers import Absorber
 from coaxshell.model.fluids import VACUUM, Fluid
 from coaxshell.model.sources import PlaneWave
@@ -45,12 +45,26 @@ def configurations() -> dict[str, tuple[System, float]]:
         "one absorber with a strong cubic spring": (bare.replace(absorbers=[Absorber(**strong, angle=0)]), 3e-5),
         "three unequal absorbers off the axis": (bare.replace(absorbers=three), 3e-5),
         "hybrid, 7 absorbers with strong cubic springs": (bare.replace(absorbers=cubic_ring(7), control=GAINS), 1e-5),
+        "bistable and tabulated springs, smoothed friction, each side its own, an inerter": (bare.replace(absorbers=[of_laws()]), 3e-5),
+        "a mass on the outer shell alone, by a hardening spring": (bare.replace(absorbers=[on_one_shell()]), 3e-5),
         "plane wave from 40°": (bare.replace(source=PlaneWave(angle=40.0, pulse=SMOOTH)), 5e-7),
         "three shells, four fluids, vacuum inside": (layered, 5e-7),
         "evacuated single shell": (smooth("iakovlev-evacuated"), 5e-7),
         "filled single shell": (smooth("iakovlev-filled"), 5e-7),
         "double shell, inner one evacuated": (smooth("iakovlev-double"), 5e-7),
     }
+
+
+def of_laws() -> Absorber:
+    """Return an absorber whose links have laws of many kinds."""
+    table = laws.Table(stretch=(-2e-6, 0.0, 2e-6), force=(-6e2, 0.0, 2e3))
+    outer = laws.Parallel(laws=(table, laws.Friction(force=5e2, speed=2e-2), laws.Linear(stiffness=2e8, damping=2e4)))
+    return Absorber(angle=0, mass=8, damping=1e5, inertance=2, law=laws.Sides(inner=laws.Bistable(k1=-2e8, k3=1e20), outer=outer))
+
+
+def on_one_shell() -> Absorber:
+    """Return a mass that hangs on the outer shell by a spring of the fifth order."""
+    return Absorber(angle=0, mass=20, damping=3e4, links="outer", law=laws.Polynomial(coefficients=(2e8, 0.0, 1e20, 0.0, 1e31)))
 
 
 @check("independent", "An independent method")

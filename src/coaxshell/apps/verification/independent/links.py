@@ -11,7 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.apps.verification.independent.assembly import Assembly
+from coaxshell.apps.verification.independent.springs import force_of
 from coaxshell.model.gains import gains_of
+from coaxshell.model.laws import of_side
 from coaxshell.numerics.arrays import FloatArray
 
 
@@ -48,9 +50,12 @@ class Links:
         self._absorbers()
         absorbers = system.absorber_list
         per_metre = assembly.pressure * assembly.length
-        self._c = np.repeat([x.damping for x in absorbers], 2) * (assembly.length / assembly.transit) / per_metre
-        self._k_l = np.repeat([x.linear_stiffness for x in absorbers], 2) / assembly.pressure
-        self._k_nl = np.repeat([x.cubic_stiffness for x in absorbers], 2) * assembly.length**2 / assembly.pressure
+        there = np.array([x.links in ("both", side) or x.grounded for x in absorbers for side in ("inner", "outer")], dtype=float)
+        self._c = np.repeat([x.damping for x in absorbers], 2) * (assembly.length / assembly.transit) / per_metre * there
+        self._k_l = np.repeat([x.linear_stiffness for x in absorbers], 2) / assembly.pressure * there
+        self._k_nl = np.repeat([x.cubic_stiffness for x in absorbers], 2) * assembly.length**2 / assembly.pressure * there
+        self.inertance = np.repeat([x.inertance for x in absorbers], 2) / (assembly.system.exterior.density * assembly.length**2) * there
+        self._laws = [of_side(x.law, side) if there[2 * k + side] else () for k, x in enumerate(absorbers) for side in (0, 1)]
         self._links = len(self._rows)
         self._limit = np.array(self._voltages(angles))
         controlled = system.controlled_shells if assembly.saturates else ()
@@ -69,6 +74,9 @@ class Links:
             for i in (x.inner_shell, x.inner_shell + 1):
                 p, b = np.zeros(places.size), np.zeros(places.size)
                 p[places.masses + k], b[places.masses + k] = 1.0, -1.0
+                if x.links not in ("both", "inner" if i == x.inner_shell else "outer"):
+                    self._rows.append((p, b))  # nothing, or a core that does not move
+                    continue
                 for start, (parity, m) in zip(places.starts, places.blocks, strict=True):
                     value = shape(parity, m, np.radians(x.angle))
                     p[start + places.shells + i] = -value
@@ -97,6 +105,14 @@ class Links:
         f, by, bd = np.zeros_like(y), np.zeros_like(y), np.zeros_like(y)
         f[:, a] = self._c * dy[:, a] + self._k_l * y[:, a] + self._k_nl * y[:, a] ** 3
         by[:, a], bd[:, a] = self._k_l + 3 * self._k_nl * y[:, a] ** 2, self._c
+        length, speed = self._assembly.length, self._assembly.length / self._assembly.transit
+        per_metre = self._assembly.pressure * length
+        for link, several in enumerate(self._laws):
+            for law in several:
+                found = force_of(law, y[:, link] * length, dy[:, link] * speed)
+                f[:, link] += found[0] / per_metre
+                by[:, link] += found[1] * length / per_metre
+                bd[:, link] += found[2] * speed / per_metre
         if self._limit.size:
             proportional, derivative = self._gains
             asked = proportional * y[:, s] + derivative * dy[:, s]

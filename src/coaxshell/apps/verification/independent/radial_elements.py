@@ -78,6 +78,9 @@ class RadialElements:
         self._starts = sizes[:-1]
         places = Places(self.blocks, self._starts.tolist(), int(sizes[-1]), int(self._m.shape[0]), len(self.assembly.walls))
         self._links = Links(self.assembly, places, angles)
+        if self._links.inertance.any():
+            links, count = self._links, self._links.inertance.size
+            self._m = self._m - sp.csc_matrix(links.apply[:, :count] @ (links.inertance[:, None] * links.read[:count]))
         self.time: npt.NDArray[Any] = np.zeros(1)
         self.v = self.w = self.u = np.zeros((len(self.assembly.walls), len(self.blocks), 1))
 

@@ -1,0 +1,48 @@
+"""The mutations of laws of links."""
+
+from __future__ import annotations
+
+from mutation import Mutation
+
+LAWS = (
+    Mutation(
+        "law-discrete-gradient",
+        "solver/links/springs.py",
+        "value = value + coefficient / (k + 1) * mixed",
+        "value = value + coefficient / k * mixed",
+        "the force of a polynomial spring over a step",
+        "solver/test_link_laws.py",
+    ),
+    Mutation(
+        "law-restitution",
+        "solver/links/stops.py",
+        "(1.0 + restitution) * u - np.log1p(u)",
+        "(1.0 + restitution) * u - 0.9 * np.log1p(u)",
+        "the damping of a stop from its restitution",
+        "solver/test_link_laws.py",
+    ),
+    Mutation(
+        "law-dry-friction",
+        "solver/links/friction.py",
+        "limit = np.where(state[1] > 0.0, self._kinetic, self._static)",
+        "limit = np.where(state[1] > 0.0, self._static, self._kinetic)",
+        "what holds once friction slips",
+        "solver/test_link_laws.py",
+    ),
+    Mutation(
+        "law-middles",
+        "solver/links/histories.py",
+        "np.exp(0.5 * grid.time_step * grid.nodes)",
+        "np.exp(-0.5 * grid.time_step * grid.nodes)",
+        "when the force of a step acts",
+        "solver/test_laws_of_absorbers.py",
+    ),
+    Mutation(
+        "law-other-side",
+        "solver/interface/absorbers.py",
+        "-inner * shares[1], *shares)",
+        "-inner * shares[0], *shares)",
+        "what one side of an unequal absorber does to the other",
+        "solver/test_laws_of_absorbers.py",
+    ),
+)
