@@ -1,7 +1,4 @@
-"""The mutations: small wrong changes in central places, each of which some test must notice.
-
-One row a mistake that a person could make: a sign, a factor, an index, a power of the radius.
-"""
+"""The mutations, one row a mistake that a person could make: a sign, a factor, an index. Some test must notice each."""
 
 from __future__ import annotations
 
