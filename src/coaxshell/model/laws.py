@@ -92,7 +92,7 @@ class Polynomial(_Law):
 
 
 class Gap(_Law):
-    """Describe stops: nothing within the clearance, beyond it k (|D| - g), less on the way back by the coefficient of restitution.
+    """Describe stops: nothing within the clearance, beyond it k (abs(D) - g), less on the way back by the coefficient of restitution.
 
     A mass that strikes a stop at the speed v leaves it at e v (Hunt and Crossley's contact, whatever mass and speed).
     """
@@ -109,7 +109,7 @@ class Gap(_Law):
 
 
 class Friction(_Law):
-    """Describe dry friction: exact, f = F sign(dD/dt), |f| <= F_s at rest; or smoothed by a speed; or behind a spring that yields at F."""
+    """Describe dry friction: exact, f = F sign(dD/dt), abs(f) <= F_s at rest; smoothed by a speed; or behind a spring that yields at F."""
 
     type: Literal["friction"] = "friction"
     force: Force

@@ -60,7 +60,7 @@ def gradient(
         Dotted paths of what may change: "absorbers[0].mass", "absorbers[*].angle" for every absorber, "control.derivative",
         "shells[0].layers[1].thickness", "shells[0].radius", "source.distance".
     smooth : float or None
-        Power p of the mean <|q|^p>^(1/p) over circle and time that stands for a peak, at least 2; None for the peak itself, whose gradient
+        Power p of means <abs(q)^p>^(1/p) over circle and time which stands for peaks, at least 2; None for the peak itself, whose gradient
         jumps where another angle or instant takes its place.
     duration, time_step, modes, tolerance, refinement, engine
         As those of :func:`simulate`; the duration in transits is held where radii change.
