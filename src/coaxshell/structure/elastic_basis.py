@@ -63,10 +63,24 @@ class OrdersBasis:
         return np.stack([self.shapes[:, :, 0, 0], self.shapes[:, :, 0, -1]], axis=1)
 
     @cached_property
+    def ceramics(self) -> dict[LayerMesh, PotentialOfLayer]:
+        """The potential of each piezoelectric layer."""
+        ceramics = (part for part in self.mesh.layers if part.layer.coupling is not None)
+        return {part: PotentialOfLayer(part, self.orders, self.wavenumber) for part in ceramics}
+
+    @cached_property
     def potentials(self) -> dict[LayerMesh, FloatArray]:
         """Phi at the points of each piezoelectric layer per displacement there (:class:`PotentialOfLayer`)."""
-        ceramics = (part for part in self.mesh.layers if part.layer.coupling is not None)
-        return {part: PotentialOfLayer(part, self.orders, self.wavenumber).values for part in ceramics}
+        return {part: potential.values for part, potential in self.ceramics.items()}
+
+    @cached_property
+    def electric_rows(self) -> list[FloatArray]:
+        """Rows of the potentials of each layer per unit of each shape, (orders, rows, shapes); no rows of a layer without."""
+        none = np.zeros((self.orders.size, 0, self.squares.shape[1]))
+        return [
+            np.einsum("micp,mncp->min", self.ceramics[layer].rows, self.shapes[..., layer.nodes]) if layer in self.ceramics else none
+            for layer in self.mesh.layers
+        ]
 
 
 def displacements(wavenumber: float) -> int:
@@ -154,7 +168,8 @@ def _along_the_axis(mesh: WallMesh, members: slice, orders: FloatArray, wavenumb
             vectors[..., :low] = vectors[..., :low] @ np.swapaxes(turned[:, ::-1], 1, 2)
     shapes = np.swapaxes(vectors, 1, 2).reshape(orders.size, -1, displacements(wavenumber), mesh.radius.size) / root
     found = OrdersBasis(members, orders, wavenumber, mesh, squares, shapes)
-    vars(found)["potentials"] = {part: potential.values for part, potential in ceramics.items()}  # which it would make again
+    vars(found)["ceramics"] = ceramics  # which it would make again
+    vars(found)["potentials"] = {part: potential.values for part, potential in ceramics.items()}
     return found
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.lobatto import interpolation
-from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, displacements
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements
 from coaxshell.structure.elastic_mesh import LayerMesh, strains
 from coaxshell.structure.solid import AXIAL, HOOP, HOOP_AXIAL, RADIAL, RADIAL_AXIAL, RADIAL_HOOP
 
@@ -137,7 +137,7 @@ def field_stress(basis: OrdersBasis, number: int, radius: float, what: Shown) ->
         A stress.
     """
     part, at = _place(basis, number, radius)
-    per_row = PotentialOfLayer(part, basis.orders, basis.wavenumber).per_row
+    per_row = basis.ceramics[part].per_row
     phi, slope = (np.einsum("q,mqi->mi", row, per_row) for row in (at, at @ part.derivative))
     e = np.array(part.layer.coupling)[:, STRESSES[what]]
     along = (e[1] * basis.orders / radius + e[2] * basis.wavenumber)[:, None]

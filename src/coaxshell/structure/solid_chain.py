@@ -191,8 +191,21 @@ class WallReading:
         chain = PieceChain(answers)
         shown = np.zeros((len(self.places), 2, modes.count, s.size), np.complex128)
         for (reading, members), answer, forces in zip(self._parts, answers, chain.forces, strict=True):
+            if answer.fields is not None:
+                shown[members] = _of_waves(answer, forces)
+                continue
             active = reading.active(wavenumber)
             for row, place in zip(answer.shown, members, strict=True):
                 for side in range(2):
                     shown[place, side] = _under([row[a] for a in active], [forces[side][a] for a in active])
         return chain, shown
+
+
+def _of_waves(answer: PieceAnswer, forces: Sequence[Sequence[Entry]]) -> ComplexArray:
+    """Return what is shown in a piece by its potentials under the forces on its faces, (places, 2, orders, nodes)."""
+    assert answer.fields is not None
+    given = np.zeros((len(forces[0]), 2, *answer.shown.shape[2:]), np.complex128)
+    for side, each in enumerate(forces):
+        for number, force in enumerate(each):
+            given[number, side] = force
+    return np.asarray(np.einsum("pwmk,wsmk->psmk", answer.shown, answer.fields.waves(given)))

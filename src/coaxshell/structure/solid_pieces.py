@@ -24,7 +24,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
-from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer, displacements, elastic_basis, modal_sums
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements, elastic_basis, modal_sums
 from coaxshell.structure.elastic_depth import STRESSES, Shown, field_stress, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.losses import Relaxation
@@ -33,6 +33,10 @@ from coaxshell.structure.solid_potentials import Potentials
 
 MOST_DEGREE = 24
 """A layer of a wall in pieces that needs a higher degree at the top of the band answers by its potentials."""
+
+
+MANY_PLACES = 8
+"""Quantities of a piece above which its waves are found before them."""
 
 
 class Place(NamedTuple):
@@ -55,11 +59,14 @@ class PieceAnswer(NamedTuple):
     faces : list of list of ndarray (orders, nodes)
         Displacements per force, 4 x 4 or, with u_z, 6 x 6; 0 where a force was not asked for.
     shown : ndarray, shape (places, 4 or 6, orders, nodes)
-        What was asked for per force.
+        What was asked for per force, or per unit of each wave of the fields.
+    fields : Potentials or None
+        Of a piece by its potentials of which so much is asked for that the waves under the forces on it are found first.
     """
 
     faces: list[list[Entry]]
     shown: ComplexArray
+    fields: Potentials | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,18 +117,6 @@ def pieces(layers: Sequence[SolidLayer], frequency: float) -> tuple[Piece, ...]:
     return tuple(found)
 
 
-def electric_rows(part: OrdersBasis) -> list[FloatArray]:
-    """Return R x of the potentials of each layer per unit of each shape, shape (orders, rows, shapes); no rows of a layer without."""
-    found = []
-    for layer in part.mesh.layers:
-        if layer.layer.coupling is None:
-            found.append(np.zeros((part.orders.size, 0, part.squares.shape[1])))
-        else:
-            rows = PotentialOfLayer(layer, part.orders, part.wavenumber).rows
-            found.append(np.einsum("micp,mncp->min", rows, part.shapes[..., layer.nodes]))
-    return found
-
-
 def wavenumber_of(modes: Modes) -> float:
     """Return the one wavenumber of some modes."""
     assert isinstance(modes.wavenumber, (int, float))
@@ -140,7 +135,7 @@ def kept_rows(part: OrdersBasis, rows: FloatArray) -> FloatArray:
 
 def lossless_rows(part: OrdersBasis) -> FloatArray:
     """Return what the kept combinations of all ceramics are per unit of each shape, shape (orders, ceramics, shapes)."""
-    found = [np.einsum("mij,min->mjn", kept_rows(part, rows), rows) for rows in electric_rows(part) if rows.shape[1]]
+    found = [np.einsum("mij,min->mjn", kept_rows(part, rows), rows) for rows in part.electric_rows if rows.shape[1]]
     return np.concatenate([np.zeros((part.orders.size, 0, part.squares.shape[1])), *found], axis=1)
 
 
@@ -188,9 +183,11 @@ class PieceReading:
         count = displacements(fields.wavenumber)
         moved = [fields.rows(radius, names[:count]) for radius in (layer.inner, layer.outer)]
         asked = [fields.rows(place.radius, (place.what,)) for place in self.places]
-        found = fields.per_force(np.concatenate([*moved, *asked]))
+        many = len(asked) > MANY_PLACES
+        found = fields.per_force(np.concatenate(moved if many else [*moved, *asked]))
         found[0 : 2 * count : count] *= -1.0  # u_r is outward
-        return PieceAnswer([list(row) for row in found[: 2 * count]], found[2 * count :])
+        faces: list[list[Entry]] = [list(row) for row in found[: 2 * count]]
+        return PieceAnswer(faces, np.concatenate(asked), fields) if many else PieceAnswer(faces, found[2 * count :])
 
     # By shapes
 
@@ -249,8 +246,9 @@ class _Weights:
         rows = lossless_rows(part)[:, : None if lossy else 0]
         forces = np.concatenate([on_faces(part)[:, active], rows], axis=1)
         shown, parts = [np.zeros((part.orders.size, 0, part.squares.shape[1]))], []
+        fields = _Fields(part)
         for number, place in enumerate(reading.places):
-            for one, unweighted in _parts_of(place, part, lossy):
+            for one, unweighted in _parts_of(place, part, fields if lossy else None):
                 parts.append((number, unweighted))
                 shown.append(one[:, None])
         return cls(len(active), rows.shape[1], len(reading.places), tuple(parts), part.squares, forces, np.concatenate(shown, axis=1))
@@ -285,16 +283,31 @@ class _Weights:
         return _without_rows(pairs, shown, self.active, self.electric, np.zeros_like(s) if g is None else 1.0 - g)
 
 
-def _parts_of(place: Place, part: OrdersBasis, lossy: bool) -> list[tuple[FloatArray, bool]]:
-    """Return a quantity per unit of each shape in parts, with whether g weighs each of them not."""
+class _Fields:
+    """The kept part of the rows of ceramics per unit of each shape, found once a layer."""
+
+    def __init__(self, part: OrdersBasis) -> None:
+        self._part, self._known = part, dict[int, tuple[FloatArray, FloatArray]]()
+
+    def stress(self, place: Place) -> FloatArray:
+        """Return what the field of a ceramic adds to a stress in it, shape (orders, shapes)."""
+        if place.layer not in self._known:
+            rows = self._part.electric_rows[place.layer]
+            kept = kept_rows(self._part, rows)
+            self._known[place.layer] = kept, np.swapaxes(kept, 1, 2) @ rows
+        kept, shown = self._known[place.layer]
+        per_row = field_stress(self._part, place.layer, place.radius, place.what)
+        return np.asarray(((per_row[:, None] @ kept) @ shown)[:, 0])
+
+
+def _parts_of(place: Place, part: OrdersBasis, fields: _Fields | None) -> list[tuple[FloatArray, bool]]:
+    """Return a quantity per unit of each shape in parts, with whether g weighs each of them not; one part without losses."""
     whole = shown_by_shapes(part, place.layer, place.radius, place.what)
-    if not lossy or place.what not in STRESSES:
+    if fields is None or place.what not in STRESSES:
         return [(whole, True)]
     if part.mesh.layers[place.layer].layer.coupling is None:
         return [(whole, False)]
-    rows = electric_rows(part)[place.layer]
-    kept = kept_rows(part, rows)
-    field = np.einsum("mi,mij,mkj,mkn->mn", field_stress(part, place.layer, place.radius, place.what), kept, kept, rows)
+    field = fields.stress(place)
     return [(whole - field, False), (field, True)]
 
 

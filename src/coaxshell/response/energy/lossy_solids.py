@@ -29,7 +29,7 @@ from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.shell_model import WallEnergy
 from coaxshell.structure.solid_chain import WallReading
-from coaxshell.structure.solid_pieces import Piece, electric_rows, lossless_rows, on_faces
+from coaxshell.structure.solid_pieces import Piece, lossless_rows, on_faces
 from coaxshell.structure.solid_potentials import Potentials
 
 MOST_POINTS = 20
@@ -125,7 +125,7 @@ def _of_shapes(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally:
     """Return what a piece holds by the amplitudes of its shapes."""
 
     def fields(part: OrdersBasis) -> FloatArray:
-        return np.concatenate(electric_rows(part), axis=1) if piece.factor is None else lossless_rows(part)
+        return np.concatenate(part.electric_rows, axis=1) if piece.factor is None else lossless_rows(part)
 
     tasks = [
         (part, place, rows, parity)
