@@ -16,6 +16,8 @@ import numpy as np
 from coaxshell.apps.verification.independent.electrodes import Electrodes
 from coaxshell.apps.verification.independent.elements import RadialMatrices, elements
 from coaxshell.apps.verification.independent.walls import Wall
+from coaxshell.model.control import PDControl
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.gains import gains_of
 from coaxshell.model.piezoelectric import Piezoelectric
@@ -42,6 +44,8 @@ class Block(NamedTuple):
     damping: FloatArray
     stiffness: FloatArray
     exterior_point: int
+    late: FloatArray
+    """Load of each delayed law per volt, shape (laws, size); laws are the last unknowns of a block."""
 
 
 @dataclass(frozen=True)
@@ -90,13 +94,17 @@ class Assembly:
         n = len(self.walls)
         sizes = [0 if region is None else region.radial.nodes.size for region in self.regions]
         offset = 3 * n + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
-        mass, damping, stiffness = (np.zeros((int(offset[-1]),) * 2) for _ in range(3))
+        laws = len(self.system.controlled_shells) if self.rational else 0
+        mass, damping, stiffness = (np.zeros((int(offset[-1]) + laws,) * 2) for _ in range(3))
         for j, region in enumerate(self.regions):
             if region is not None:
                 self._fluid(region, j, m, slice(int(offset[j]), int(offset[j + 1])), (mass, damping, stiffness))
         for i in range(n):
             self._shell(i, m, (mass, damping, stiffness))
-        return Block(mass, damping, stiffness, int(offset[-2]))
+        late = np.zeros((laws, mass.shape[0]))
+        for law, i in enumerate(self.system.controlled_shells if self.rational else ()):
+            self._law(i, m, int(offset[-1]) + law, (mass, damping, stiffness), late[law])
+        return Block(mass, damping, stiffness, int(offset[-2]), late)
 
     def _fluid(self, region: Region, j: int, m: int, rows: slice, matrices: tuple[FloatArray, FloatArray, FloatArray]) -> None:
         mass, damping, stiffness = matrices
@@ -120,7 +128,7 @@ class Assembly:
         mass[at, at] = wall.inertia / (self.system.exterior.density * self.length) * radius
         stiffness[np.ix_(at, at)] += wall.stiffness(m, self._per_metre) * self.length / self.pressure * radius
         control = self.system.control
-        if control is not None and i in self.system.controlled_shells and not self.saturates:
+        if isinstance(control, PDControl) and i in self.system.controlled_shells and not self.saturates:
             proportional, derivative = gains_of(self.system, i)
             if control.transducers == "electrodes":
                 shell = self.system.shells[i]
@@ -135,6 +143,40 @@ class Assembly:
             inward = self.inward(i)
             stiffness[n + i, at] -= inward * proportional * volts
             damping[n + i, at] -= inward * derivative * volts
+
+    @property
+    def rational(self) -> Feedback | None:
+        """The control law if it is one of second order."""
+        control = self.system.control
+        return control if isinstance(control, Feedback) else None
+
+    @property
+    def law(self) -> tuple[FloatArray, FloatArray]:
+        """b and a of u = b_0 y'' + b_1 y' + b_2 y, a_0 y'' + a_1 y' + a_2 y = phi, t in transits."""
+        assert self.rational is not None
+        numerator, denominator = self.rational.polynomials
+        if len(denominator) != 3 or self.rational.transducers != "electrodes":
+            raise NotImplementedError("laws of second order between electrodes are written in the independent solver")
+        powers = self.transit ** -np.arange(2.0, -1.0, -1.0)
+        padded = np.zeros(3)
+        padded[3 - len(numerator) :] = numerator
+        return padded * powers, np.array(denominator) * powers
+
+    def _law(self, i: int, m: int, place: int, matrices: tuple[FloatArray, FloatArray, FloatArray], late: FloatArray) -> None:
+        """Write the law of a shell as one more unknown y; a delayed law's load is known from the past, *late*."""
+        shell, control = self.system.shells[i], self.rational
+        assert isinstance(shell, Shell)
+        assert control is not None
+        at, found, (top, bottom) = self.displacements(i), Electrodes.of(shell, m), self.law
+        radius = self.walls[i].radius / self.length
+        matrices[2][np.ix_(at, at)] += found.stiffness * self.length / self.pressure * radius
+        load = found.load / self.pressure * radius
+        for matrix, b, a in zip(matrices, top, bottom, strict=True):
+            matrix[place, place] = a
+            if not control.delay:
+                matrix[at, place] -= load * b
+        matrices[2][place, at] -= found.reading * self.length
+        late[at] = load
 
     @property
     def _per_metre(self) -> float:

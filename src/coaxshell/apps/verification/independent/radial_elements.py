@@ -15,6 +15,7 @@ from scipy.sparse.linalg import splu
 
 from coaxshell.apps.verification.independent.assembly import Assembly
 from coaxshell.apps.verification.independent.incident import incident
+from coaxshell.apps.verification.independent.late import Late
 from coaxshell.apps.verification.independent.links import Links, Places, shape
 from coaxshell.apps.verification.independent.sphere import incident_sphere
 from coaxshell.model.absorbers import Absorber
@@ -74,6 +75,7 @@ class RadialElements:
         self._m = sp.block_diag([*(sp.csr_matrix(p.mass) for p in parts), sp.csr_matrix(np.diag(masses))], format="csc")
         self._c = sp.block_diag([*(sp.csr_matrix(p.damping) for p in parts), sp.csr_matrix(loose)], format="csc")
         self._k = sp.block_diag([*(sp.csr_matrix(p.stiffness) for p in parts), sp.csr_matrix(loose)], format="csc")
+        self._late = Late.of(self.assembly, parts, int(self._m.shape[0])) if self.assembly.rational else None
         self._exterior = parts[0].exterior_point
         self._starts = sizes[:-1]
         places = Places(self.blocks, self._starts.tolist(), int(sizes[-1]), int(self._m.shape[0]), len(self.assembly.walls))
@@ -126,17 +128,22 @@ class RadialElements:
         x, v = np.zeros(self.size), np.zeros(self.size)
         self.time = h * np.arange(steps + 1)
         self.v, self.w, self.u = np.zeros((3, n, len(self.blocks), steps + 1))
+        past = None if self._late is None else self._late.beginning(h, steps)
         load, active = self.load((h * (np.arange(steps)[:, None] + _NODES)).ravel())
         for step in range(steps):
             right = np.zeros((2, self.size))
             right[:, active] = load[:, 2 * step : 2 * step + 2].T
             right -= (self._c @ v + self._k @ x) + h * _NODES[:, None] * (self._k @ v)
+            if past is not None:
+                right += past.load(step)
             acceleration = factor.solve(right.ravel())
             if interface is not None:
                 acceleration = acceleration + interface.correction(x, v, acceleration)
             stages = acceleration.reshape(2, -1)
             x = x + h * v + h**2 * 0.5 * (_A.sum(0) @ stages)
             v = v + h * 0.5 * stages.sum(0)
+            if past is not None:
+                past.keep(step + 1, x, v)
             for i in range(n):
                 for kept, place in zip((self.v, self.w, self.u), self.assembly.displacements(i), strict=True):
                     kept[i, :, step + 1] = x[self._starts + place]

@@ -1,0 +1,51 @@
+"""Rational and delayed control laws against spectral elements in r and implicit Gauss integration in t."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coaxshell as cx
+from coaxshell.apps.verification.independent import RadialElements
+from coaxshell.errors import InputError
+from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.stability import fastest_growth, unstable_poles
+
+ROLES = {f"shells[{i}].layers[{j}].role": "self-sensing" for i in (0, 1) for j in (0, 2)}
+CORNER = 2.0 * np.pi * 2e4
+
+
+def with_law(struck, gain: float, delay: float | str) -> cx.System:
+    """Return the double shell under PD control behind a filter of second order, 20 kHz."""
+    law = {"numerator": [4e-4 * gain, 3.0 * gain], "denominator": [1.0 / CORNER**2, 1.2 / CORNER, 1.0], "delay": delay}
+    return struck().with_overrides({**ROLES, "control": cx.Feedback(**law, transducers="electrodes")})
+
+
+@pytest.mark.parametrize("delay", [0.0, "8 us"])
+def test_a_law_of_second_order(struck, distances, delay):
+    # Measured 3.7e-8 or less.
+    assert max(distances(with_law(struck, 1.0, delay), 1e-3, 2e-3, duration=1.2, modes=3).values()) < 2e-7
+
+
+def test_an_unstable_loop_grows_as_the_check_says(struck):
+    # Measured in time: e^(14.0 t) of order 3, between the largest of two windows; the pole: 14.18.
+    system = with_law(struck, 3.0, "20 us")
+    problem = dimensionless(system)
+    unstable = unstable_poles(problem, 3, 2.0)
+    growth = fastest_growth(problem, unstable.orders, 0.5)
+    assert (unstable.orders.tolist(), growth.order) == ([2.0, 3.0], 3)
+    model = RadialElements(system, 3, 2.0).solve(4e-3, 500)
+    grown = np.abs(model.w[0, growth.order])
+    rate = np.log(grown[450:].max() / grown[350:400].max()) / 0.4
+    assert rate == pytest.approx(growth.rate, rel=0.03)
+    with pytest.raises(InputError, match=r"control\.delay: 20\.00 µs makes .* order 2, 3 grows .* fastest order 3 by e\^\(14\.2 t\)"):
+        cx.simulate(system, duration=2.0, time_step=0.01, modes=3)
+
+
+def test_losses_of_the_walls_carry_a_delay(struck):
+    late = struck().with_overrides(
+        {**ROLES, "control": cx.Feedback(numerator=[0.004 * struck().transit_time, 0.0], delay="30 us", transducers="electrodes")}
+    )
+    lossy = late.with_overrides({"materials.aluminium.loss_factor": 0.05, "materials.PZT-4.loss_factor": 0.05})
+    assert unstable_poles(dimensionless(late), 12, 4.0).orders.size > 0
+    assert unstable_poles(dimensionless(lossy), 12, 4.0).orders.size == 0
