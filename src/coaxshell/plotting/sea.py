@@ -62,7 +62,7 @@ def cavitating(system: System, pressure: npt.NDArray[np.floating], view: FieldVi
     outside = a * np.hypot(x, y) >= system.head_radius
     water = outside & (height < sea.depth) & (height > (-np.inf if sea.bottom is None else -sea.bottom))
     torn = water & (left < 0.0)
-    thin = torn & ~ndimage.binary_opening(torn, np.ones((3, 3)), iterations=_THINNEST)
+    thin = torn & ~ndimage.binary_opening(torn, np.ones((3, 3), dtype=bool), iterations=_THINNEST)
     return np.where(water, np.where(thin, -left, left), np.nan)
 
 
