@@ -172,7 +172,12 @@ def _absorbers(system: SystemParts) -> str:
     if not alike:
         return f"{count}{spread}"
     law = f"m = {first.mass:g} kg/m, c = {first.damping:.3g}, k_l = {first.linear_stiffness:.3g}, k_nl = {first.cubic_stiffness:.3g}"
-    return f"{count}{spread}: {law} (SI, per metre)"
+    besides = [f"law {first.law.type}"] if first.law is not None else []
+    besides += [f"b = {first.inertance:.3g}"] if first.inertance else []
+    besides += (
+        [f"on the {first.links} shell alone{', the other link on a core' if first.grounded else ''}"] if first.links != "both" else []
+    )
+    return f"{count}{spread}: {', '.join([law, *besides])} (SI, per metre)"
 
 
 def _length(value: float) -> str:

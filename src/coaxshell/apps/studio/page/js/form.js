@@ -178,7 +178,7 @@ function following(item, value, name) {
 
 const HINTS = {
   z: 0,
-  count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, proportional: -2e4, derivative: -150, numerator: [-0.1, -2e4], denominator: [1],
+  count: 25, mass: 10, damping: 1e6, linear_stiffness: 1e9, cubic_stiffness: 1e20, stiffness: 1e9, clearance: 1e-6, force: 1e4, relaxation_time: 1e-4, k3: 1e20, proportional: -2e4, derivative: -150, numerator: [-0.1, -2e4], denominator: [1],
   distance: 5, peak_pressure: 2.5e4, decay_time: 1.314e-4, width: 1e-4, pressure: 2.5e4, charge_mass: 1, stand_off: 10,
   depth: 20, density: 1000, sound_speed: 1500, youngs_modulus: 7e10, poisson_ratio: 0.3, thickness: 0.006,
 };
