@@ -56,8 +56,8 @@ READING = (
     Mutation(
         "link-stroke",
         "response/strokes.py",
-        "masses.to_numpy()[there] - length",
-        "masses.to_numpy()[there] + length",
+        "masses.to_numpy()[n] - wall if",
+        "masses.to_numpy()[n] + wall if",
         "stroke of an absorber relative to its shells",
         "response/test_absorbers.py",
     ),

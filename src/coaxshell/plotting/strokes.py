@@ -26,7 +26,7 @@ def figure_strokes(strokes: xr.DataArray) -> Figure:
         From :meth:`coaxshell.Response.absorber_stroke`.
     """
     values, angles = strokes.to_numpy(), np.asarray(strokes["angle"])
-    largest = np.abs(values).max(axis=-1)
+    largest = np.nan_to_num(np.abs(values).max(axis=-1))  # of no link there is none
     worst = int(largest.max(axis=1).argmax())
     power = exponent_of(float(largest.max()) or 1.0)
     with style():

@@ -1,5 +1,6 @@
 """The labelled answer: histories, summary, storage."""
 
+from coaxshell.response.equipment import mounted_spectrum
 from coaxshell.response.frequency import frequency_response
 from coaxshell.response.margins import stability_margins
 from coaxshell.response.resonances import natural_frequencies
@@ -16,6 +17,7 @@ __all__ = [
     "frequency_response",
     "info",
     "load_response",
+    "mounted_spectrum",
     "natural_frequencies",
     "prepare",
     "simulate",

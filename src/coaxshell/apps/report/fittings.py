@@ -71,9 +71,8 @@ def _of_lines(response: Response) -> list[Item]:
     from coaxshell.plotting.strokes import figure_strokes
 
     strokes = response.absorber_stroke()
-    forces, moved, largest = (
-        np.abs(found.to_numpy()).max(axis=-1) for found in (response.absorber_force(), response.absorber_displacement(), strokes)
-    )
+    read = (response.absorber_force(), response.absorber_displacement(), strokes)
+    forces, moved, largest = (np.nan_to_num(np.abs(found.to_numpy()).max(axis=-1)) for found in read)  # of no link there is none
     order = np.argsort(-largest.max(axis=1), kind="stable")
     angles = np.asarray(strokes["angle"])
     rows = [

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 PARTS = ("spectra", "energy", "fields")
 """What takes long and can be left out."""
 _AROUND = np.arange(0.0, 360.0, 10.0)
-_FIGURES, _SPECTRUM, _ENERGY, _FIELDS = (4.0, 4e-4), (1.0, 2.5e-4), (4.5, 2.5e-5), 5.0
+_FIGURES, _SPECTRUM, _ENERGY, _FIELDS = (5.0, 5e-4), (1.0, 3e-4), (5.0, 3e-5), 6.0
 """Seconds of processor a run, and of the first two a shell and instant, of the third an order and instant, beyond these."""
 
 
