@@ -40,8 +40,8 @@ WETTED = (
     Mutation(
         "cascade-inside",
         "solver/cascade.py",
-        "(h.outer - h.across * h.across * (inner * zeta) / divisor) * outer",
-        "(h.outer - h.across * h.across * (outer * zeta) / divisor) * outer",
+        "(h.outer - h.back * h.across * (inner * zeta) / divisor) * outer",
+        "(h.outer - h.back * h.across * (outer * zeta) / divisor) * outer",
         "what lies within a wall with two faces, seen from outside",
         "solver/test_cascade.py",
     ),

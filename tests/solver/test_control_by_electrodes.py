@@ -202,13 +202,10 @@ def test_gains_of_each_shell():
         ({"dimensions": 3, "stations": [0.0]}, ("control.transducers", "two dimensions only", "dimensions=2")),
         ({"engine": "direct"}, ("control.transducers", "pressure alone", 'engine="spectral"')),
         ({"saturation": True}, ("control.saturation", "push along the wall", "saturation = false")),
-        ({"theory": "elastic"}, ("control", "thin walls", 'shells[1].theory = "thin"')),
     ],
 )
 def test_refused_in_words(changes, words):
     system = electrodes(0.0, 1.0, saturation=changes.pop("saturation", False))
-    if "theory" in changes:
-        system = system.with_overrides({"shells[1].theory": changes.pop("theory")})
     with pytest.raises(InputError) as caught:
         cx.simulate(system, duration=1, time_step=0.02, modes=4, **changes)
     for word in words:

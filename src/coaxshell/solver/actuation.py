@@ -10,6 +10,7 @@ from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.structure.control_law import ControlGains
+from coaxshell.structure.elastic_wall import ElasticWall
 
 
 def pressure_asked(
@@ -48,7 +49,11 @@ def voltage_asked(solved: SolvedSpectra) -> ComplexArray:
     """
     voltage = np.zeros_like(solved.normal)
     for i, wall in enumerate(solved.problem.shells):
-        if wall.gains is not None:
+        if isinstance(wall, ElasticWall):
+            if wall.gains is not None:
+                assert solved.solid is not None
+                voltage[i] = solved.solid.potentials[wall.shown_potentials - 1, i]
+        elif wall.gains is not None:
             sensor = wall.sensor_gain(solved.modes).columns
             voltage[i] = wall.gains.at(solved.grid.nodes, solved.modes) * (sensor.v * solved.tangential[i] + sensor.w * solved.normal[i])
     return voltage

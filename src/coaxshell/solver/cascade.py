@@ -3,12 +3,12 @@
 Each wall answers inward loads q on its faces, at the radii r_i and r_o that the fluids wet, by its receptances H
 (:class:`coaxshell.structure.shell_model.FaceReceptance`), and moves by d when no load is on them,
 
-    w_i = H_ii r_i q_i + H_io r_o q_o + d_i,      w_o = H_io r_i q_i + H_oo r_o q_o + d_o.
+    w_i = H_ii r_i q_i + H_io r_o q_o + d_i,      w_o = H_oi r_i q_i + H_oo r_o q_o + d_o.
 
 Seen from its inner face all that lies within is an impedance, p_i = zeta w_i + P, and seen from its outer face wall and inside together are
 a receptance, w_o = y r_o q_o + e,
 
-    y = H_oo - H_io^2 r_i zeta/(1 + H_ii r_i zeta),      e = d_o - H_io r_i [P + zeta (d_i - H_ii r_i P)/(1 + H_ii r_i zeta)].
+    y = H_oo - H_oi H_io r_i zeta/(1 + H_ii r_i zeta),      e = d_o - H_oi r_i [P + zeta (d_i - H_ii r_i P)/(1 + H_ii r_i zeta)].
 
 A gap between this face (a) and the next wall's inner one (b), p = g (aa w_a + ab w_b), (ba w_a + bb w_b), g = rho s^2, makes of it the next
 
@@ -118,7 +118,7 @@ class CascadeSystem:
         for i, (h, (inner, outer)) in enumerate(zip(self.walls, self._radii, strict=True)):
             zeta, fluid = self._within[i], self._fluids[i + 1]
             divisor = 1.0 + h.inner * (inner * zeta)
-            y = (h.outer - h.across * h.across * (inner * zeta) / divisor) * outer
+            y = (h.outer - h.back * h.across * (inner * zeta) / divisor) * outer
             gap = 1.0 - fluid.aa * y
             self._wall_divisor.append(divisor)
             self._seen.append(y)
@@ -139,7 +139,7 @@ class CascadeSystem:
         if side is None:
             return self.solve_free(shell, h.inner * (radius * load), h.outer * (radius * load))
         own = h.inner if side == 0 else h.outer
-        at_inner, at_outer = (own, h.across) if side == 0 else (h.across, own)
+        at_inner, at_outer = (own, h.back) if side == 0 else (h.across, own)
         pressed = self._radii[shell][side] * load
         found = self.solve_free(shell, at_inner * pressed, at_outer * pressed)
         given = found[shell]
@@ -162,7 +162,7 @@ class CascadeSystem:
             d_inner, d_outer = (inner, outer) if i == shell else (still, still)
             free_inner[i] = d_inner - h.inner * (radius * pressures[i])
             within = pressures[i] + zeta * free_inner[i] / self._wall_divisor[i]
-            driven[i] = d_outer - h.across * (radius * within)
+            driven[i] = d_outer - h.back * (radius * within)
             pressures[i + 1] = self._fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
         found: list[FaceMotion] = []
         beyond = still  # the next wall's inner face

@@ -272,6 +272,8 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
         changed = ' with transducers="paper"'
     if problem.two_faced and problem.system.absorber_list:
         changed += " without absorbers"
+    if problem.two_faced and control is not None:
+        changed = " without feedback" if not problem.system.absorber_list else " without absorbers and feedback"
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"
@@ -307,9 +309,8 @@ def thin_walls(problem: Problem, duration: float) -> list[str]:
             f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, error.at_faces, THIN_LIMIT)
         )
         remedies = [f'wetted = "faces" (about {faces} %)'] if error.at_faces < FACES_HELP * error.value else []
-        unknown = [] if system.control is None else ["feedback"]
-        unknown += ["absorbers in three dimensions"] if problem.dimensions == 3 and (system.absorber_list or system.point_absorbers) else []
-        remedies.append('theory = "elastic"' + (f", which does not know {' and '.join(unknown)}, to see by how much" if unknown else ""))
+        saturates = system.control is not None and system.control.saturation
+        remedies.append('theory = "elastic"' + (", which does not know saturation, to see by how much" if saturates else ""))
         where = "faces" if error.wetted == "faces" else "mid-surface"
         found.append(
             f"{shell_phrase(error.shell, len(problem.shells))}: thin-wall theory with fluids at its {where} leaves its hoop stress about "

@@ -50,8 +50,13 @@ def require_sources_alone(system: System, dimensions: int) -> None:
         raise InputError(
             "absorbers", f"lines are held on shells[{solid}], an elastic wall, in two dimensions only", f"use dimensions=2, {thin}"
         )
-    if system.control is not None:
-        raise InputError("control", f"feedback acts on thin walls, and shells[{solid}] is elastic", f"leave it out, {thin}")
+    if system.control is not None and dimensions == 3:
+        raise InputError(
+            "control", f"feedback on shells[{solid}], an elastic wall, is known in two dimensions only", f"use dimensions=2, {thin}"
+        )
+    if system.control is not None and system.control.saturation:
+        problem = f"the voltage on shells[{solid}], an elastic wall, has no limit that is marched yet"
+        raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {thin}")
 
 
 def _require_plane_electrodes(system: System, dimensions: int) -> None:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour, OpenLoop
+from coaxshell.solver.stability import Contour, along_alone, opened
 
 _BLOCK = 512
 _FURTHER = 10.0
@@ -62,13 +62,14 @@ class Loop(NamedTuple):
 def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
     """Return L of the loop of each shell that feeds anything back, by its number, on Re s = *least* or a little more."""
     shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
-    contour = Contour.of(problem, modes, least)
+    contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
+    passive = problem.open_loop
     nodes = contour._replace(fades=_FURTHER * contour.fades).nodes
     values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
     without = [_without(problem, shell) for shell in shells]
     for start in range(0, nodes.size, _BLOCK):
         block = nodes[start : start + _BLOCK]
-        open_loop = OpenLoop.of(problem, block, modes, None)
+        open_loop = opened(problem, passive, block, modes, None)
         closed = open_loop.closed(problem, block, modes)
         for loop, others in zip(values, without, strict=True):
             loop[:, start : start + _BLOCK] = 1.0 - closed / open_loop.closed(others, block, modes)

@@ -114,7 +114,7 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         instants=steps + 1,
         sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
         tabulated=sum(source.geometry == "spherical" for source in problem.emitters),
-        solids=5 + max(len(wall.piezoelectric) for wall in solids) if solids else 0,
+        solids=5 + max(wall.shown_potentials for wall in solids) if solids else 0,
         reflections=rounds(problem, settings.duration).done if settings.dimensions == 2 else 0,
         surfaces=len(problem.surfaces),
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),

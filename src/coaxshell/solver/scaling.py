@@ -13,9 +13,11 @@ from typing import NamedTuple
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.images import Planes
 from coaxshell.acoustics.sources import SourceGeometry
+from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.gains import gains_of
+from coaxshell.model.layers import serves
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
@@ -36,6 +38,7 @@ from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
 from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid import require_solid, solid_layers
+from coaxshell.structure.solid_transducers import Transducers
 from coaxshell.structure.thin_wall import ThinWall
 
 
@@ -219,7 +222,7 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
     if isinstance(shell, RigidShell):
         return RigidWall(radius=shell.radius / scales.length)
     if shell.theory == "elastic":
-        return _solid(shell, index, scales, system.exterior.density, band)
+        return _solid(system, shell, index, scales, band)
     gains, faces = _gains(system, index, scales.time), shell.wetted == "faces"
     thin: type[ThinWall] = ThinWall
     lossy: type[LossyWall] = LossyWall
@@ -232,11 +235,32 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
     return lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces)
 
 
-def _solid(shell: Shell, index: int, scales: Scales, density: float, band: Band) -> ElasticWall:
+def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ElasticWall:
     require_solid(shell, f"shells[{index}]")
+    density = system.exterior.density
     layers = tuple(layer.in_units(scales.length, scales.pressure, density) for layer in solid_layers(shell, scales.time, band))
-    kind = ElasticWall if all(layer.factor is None for layer in layers) else LossySolidWall
-    return kind.of(layers, shell.layers.index(shell.core))
+    gains, core = _gains(system, index, scales.time), shell.layers.index(shell.core)
+    if any(layer.factor is not None for layer in layers):
+        if gains is not None:
+            remedy = f'leave them out, or use shells[{index}].theory = "thin"'
+            raise InputError(
+                "control", f"shells[{index}] is elastic and has losses, or layers as soft as rubber, where no feedback is known", remedy
+            )
+        return LossySolidWall.of(layers, core)
+    wall = ElasticWall.of(layers, core)
+    return wall if gains is None else replace(wall, gains=gains, transducers=_transducers(system, shell, scales))
+
+
+def _transducers(system: System, shell: Shell, scales: Scales) -> Transducers:
+    """Return what senses and acts in an elastic wall under control."""
+    assert system.control is not None
+    electrodes = system.control.transducers == "electrodes"
+    thin = section(with_plane_stress(shell) if electrodes else shell)
+    in_units = thin.in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
+    sensors, actuators = (tuple(i for i, layer in enumerate(shell.layers) if serves(layer.role, role)) for role in ("sensor", "actuator"))
+    acting = [layer for layer in in_units.piezoelectric if serves(layer.role, "actuator")]
+    limit = min(layer.field_limit * layer.thickness for layer in acting)
+    return Transducers(electrodes, sensors, actuators, 0.0 if electrodes else -acting[0].actuator_coupling, limit)
 
 
 def _gains(system: System, index: int, time: float) -> ControlLaw | None:

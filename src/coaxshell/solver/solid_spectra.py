@@ -143,7 +143,7 @@ class FacedMotion(NamedTuple):
 def nothing_moves(problem: Problem, parities: int, orders: int, nodes: int) -> SolidSpectra:
     """Return transforms of walls at rest, of a structure some of whose walls have two faces."""
     shape = (len(problem.shells), parities, orders, nodes)
-    layers = max(len(wall.piezoelectric) for wall in problem.shells if isinstance(wall, ElasticWall))
+    layers = max(wall.shown_potentials for wall in problem.shells if isinstance(wall, ElasticWall))
     motion, faces, potentials = (np.zeros((n, *shape), np.complex128) for n in (3, 4, layers))
     return SolidSpectra(motion[0], motion[1], motion[2], faces[:2], faces[2:], potentials)
 

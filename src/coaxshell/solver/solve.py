@@ -152,7 +152,7 @@ def _solved(
         potentials = grid.invert(solved.solid.potentials)[..., keep] if solved.solid.potentials.size else None
     correction = np.zeros_like(w) if saturate else None
     w_rate = v_rate = asked = voltage = None
-    if isinstance(system.control, Feedback):
+    if isinstance(system.control, Feedback) or (system.control is not None and problem.two_faced):
         voltage = grid.invert(voltage_asked(solved))[..., keep]
     elif any(shell.gains is not None for shell in problem.shells):
         w_rate, v_rate = (grid.invert(x * grid.nodes)[..., keep] for x in (solved.normal, solved.tangential))

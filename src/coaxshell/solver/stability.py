@@ -30,7 +30,9 @@ from coaxshell.model.feedback import Feedback
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.winding import turning
+from coaxshell.solver.cascade import CascadeSystem
 from coaxshell.solver.coupling import ModalSystem, determinant
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
@@ -105,6 +107,36 @@ class OpenLoop:
         return np.asarray(determinant(diagonal, coupling) / self.determinant)
 
 
+@dataclass(frozen=True)
+class FacedLoop:
+    """The system without feedback at some nodes where walls have two faces: its determinant, by the cascade."""
+
+    determinant: ComplexArray
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of it."""
+        return self.determinant.nbytes
+
+    def closed(self, problem: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
+        """Return D_m/D0_m; of thin walls under electrodes with what feedback leaves along the hoop."""
+        ratio = _of_faces(problem, nodes, modes) / self.determinant
+        for wall in problem.shells:
+            if wall.faces_move_alike and wall.gains is not None:
+                ratio = ratio * (1.0 - wall.gains.at(nodes, modes) * wall.fed_back_along(modes, nodes))
+        return np.asarray(ratio)
+
+
+def _of_faces(problem: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
+    with one_blas_thread():  # many small matrices
+        return CascadeSystem(problem, nodes, modes).determinant()
+
+
+def opened(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None) -> OpenLoop | FacedLoop:
+    """Return a problem without feedback; ``passive`` is it, made once for all nodes."""
+    return FacedLoop(_of_faces(passive, nodes, modes)) if problem.two_faced else OpenLoop.of(problem, nodes, modes, shared)
+
+
 def with_gains(problem: Problem, proportional: float, derivative: float) -> Problem:
     """Return the problem with the gains of every shell under PD control scaled by 0 or 1 each."""
     shells = (
@@ -118,6 +150,23 @@ def highest_frequency(problem: Problem, max_order: int, wavenumber: float | Comp
     """Return a power of two above which feedback is less than half of every controlled shell's inertia."""
     highest = max(1.0, *(wall.feedback_frequency(Modes.up_to(max_order, wavenumber)) for wall in problem.shells))
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
+
+
+def _resonance(problem: Problem, modes: Modes) -> float:
+    """Return a frequency below which all walls resonate, but for motions through their thickness."""
+    ends = Modes(np.array([1.0, modes.max_order]), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
+    return max(float(np.hypot(*wall.highest_frequency(ends))) for wall in problem.shells)
+
+
+def along_alone(problem: Problem, modes: Modes) -> Problem:
+    """Return the problem whose elastic walls bend and stretch along themselves alone.
+
+    Voltages find no inertia in motions through the thickness (:data:`coaxshell.structure.solid_transducers.ALONG`).
+    """
+    if not problem.two_faced:
+        return problem
+    highest = 1.1 * _resonance(problem, modes)
+    return replace(problem, shells=tuple(wall.along_alone(highest) for wall in problem.shells))
 
 
 class Contour(NamedTuple):
@@ -171,40 +220,46 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
 
     Those are counted whose walls the feedback may make give energy (:mod:`coaxshell.solver.passivity`); no other order has any.
     """
-    doubtful = modes.orders[~passive_orders(problem, modes, least)]
+    doubtful = modes.orders if problem.two_faced else modes.orders[~passive_orders(problem, modes, least)]
     if not doubtful.size:
         return UnstablePoles(doubtful, np.zeros(0))
-    modes = Modes(doubtful, modes.wavenumber, modes.sparse or 2 * doubtful.size < modes.count)
-    counts = np.rint(-_turned(problem, modes, Contour.of(problem, modes, least), shared) / np.pi)
+    if doubtful.size < modes.count:
+        modes = Modes(doubtful, modes.wavenumber, modes.sparse or 2 * doubtful.size < modes.count)
+    counts = np.rint(-_turned(along_alone(problem, modes), modes, Contour.of(problem, modes, least), shared) / np.pi)
     return UnstablePoles(doubtful[counts > 0], counts[counts > 0])
 
 
 def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedParts | None) -> FloatArray:
     """Return how far D_m/D0_m turns along a contour, of each order."""
     turned, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
+    faced, passive = problem.two_faced, problem.open_loop
+    limits = np.full(modes.count, contour.limits.max()) if faced else contour.limits  # shapes of all orders are made once
     for block in contour.blocks():
-        some = Modes(modes.orders[left], modes.wavenumber, modes.sparse)
-        turned[left] += turning(_ratio(problem, block, some, shared))
+        some = modes if faced else Modes(modes.orders[left], modes.wavenumber, modes.sparse)
+        turned[left] += turning(_ratio(problem, block, some, shared, passive))
         reached[left] = block[-1].imag
-        left = left[contour.limits[left] > block[-1].imag]
+        left = left[limits[left] > block[-1].imag]
         if not left.size:
             break
     ends = np.unique(reached)
     nodes = contour.beyond(*ends.tolist())
-    ratio = _ratio(problem, nodes, modes, shared)
+    ratio = _ratio(problem, nodes, modes, shared, passive)
     for end in ends:
         turned[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
     return turned + np.angle(1.0 / ratio[:, -1])  # beyond the last node it tends to 1 without turning
 
 
-def _ratio(problem: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None) -> ComplexArray:
-    """Return D_m/D0_m at some nodes; what is the same for all gains is found among the shared parts, or left there."""
-    make = partial(OpenLoop.of, problem, nodes, modes, shared)
+def _ratio(problem: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None, passive: Problem) -> ComplexArray:
+    """Return D_m/D0_m at some nodes; what is the same for all gains is found among the shared parts, or left there.
+
+    ``passive`` is the problem without feedback.
+    """
+    make = partial(opened, problem, passive, nodes, modes, shared)
     if shared is None:
         return make().closed(problem, nodes, modes)
     controlled = tuple(shell.gains is not None for shell in problem.shells)
-    known = (problem.open_loop.shells, controlled, problem.fluids, problem.scales, modes.key)
-    open_loop: OpenLoop = shared.get_or_make(("open loop", *known, nodes.tobytes()), make)
+    known = (passive.shells, controlled, problem.fluids, problem.scales, modes.key)
+    open_loop: OpenLoop | FacedLoop = shared.get_or_make(("open loop", *known, nodes.tobytes()), make)
     return open_loop.closed(problem, nodes, modes)
 
 
@@ -236,11 +291,13 @@ def fastest_growth(problem: Problem, orders: FloatArray, least: float, wavenumbe
 
 def _pole(problem: Problem, modes: Modes, least: float) -> complex:
     """Return a pole of one order near the contour of a rate, which it grows by at least."""
+    slow = along_alone(problem, modes)
+    passive = slow.open_loop
 
     def newton(s: ComplexArray) -> ComplexArray:
         """Return D_m/D0_m over its derivative: how far Newton's method goes from each place."""
         step = 1e-6 * np.abs(s)
-        here, ahead = (OpenLoop.of(problem, x, modes, None).closed(problem, x, modes)[0] for x in (s, s + step))
+        here, ahead = (opened(slow, passive, x, modes, None).closed(slow, x, modes)[0] for x in (s, s + step))
         return np.asarray(here * step / np.where(ahead == here, 1e-300, ahead - here))
 
     contour = Contour.of(problem, modes, least).nodes

@@ -56,7 +56,7 @@ def shown_by_shapes(basis: OrdersBasis, number: int, radius: float, what: Shown)
     what : str
         The potential only of a piezoelectric layer.
     """
-    part, at = _place(basis, number, radius)
+    part, at = place_in_layer(basis, number, radius)
     shapes = basis.shapes[..., part.nodes]
     if what in DISPLACEMENTS:
         which, sign = DISPLACEMENTS[what]
@@ -72,7 +72,7 @@ def all_by_shapes(basis: OrdersBasis, number: int, radius: float) -> FloatArray:
 
     In the order of :data:`ALL_SHOWN`.
     """
-    part, at = _place(basis, number, radius)
+    part, at = place_in_layer(basis, number, radius)
     shapes = basis.shapes[..., part.nodes]
     flat = shapes.reshape(*shapes.shape[:2], -1).swapaxes(1, 2)
     stresses = stress_rows(basis, part, radius, at, tuple(STRESSES.values()))
@@ -84,7 +84,7 @@ def all_by_shapes(basis: OrdersBasis, number: int, radius: float) -> FloatArray:
     return found
 
 
-def _place(basis: OrdersBasis, number: int, radius: float) -> tuple[LayerMesh, FloatArray]:
+def place_in_layer(basis: OrdersBasis, number: int, radius: float) -> tuple[LayerMesh, FloatArray]:
     """Return the points of a layer, and what makes of values at them the value at a radius."""
     part = basis.mesh.layers[number]
     place = 2.0 * (radius - part.layer.inner) / part.layer.thickness - 1.0
@@ -136,7 +136,7 @@ def field_stress(basis: OrdersBasis, number: int, radius: float, what: Shown) ->
     what : str
         A stress.
     """
-    part, at = _place(basis, number, radius)
+    part, at = place_in_layer(basis, number, radius)
     per_row = basis.ceramics[part].per_row
     phi, slope = (np.einsum("q,mqi->mi", row, per_row) for row in (at, at @ part.derivative))
     e = np.array(part.layer.coupling)[:, STRESSES[what]]

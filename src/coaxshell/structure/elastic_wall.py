@@ -20,6 +20,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes, kept_with_modes
@@ -28,6 +29,17 @@ from coaxshell.structure.elastic_depth import ALL_SHOWN, DISPLACEMENTS, STRESSES
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
+from coaxshell.structure.solid_transducers import (
+    ALONG,
+    Driven,
+    Loop,
+    Transducers,
+    at_rest,
+    closed_loop,
+    driven_of,
+    field_of_volts,
+    loop_rows,
+)
 
 UNSTATED_FREQUENCY = 300.0
 """Up to which waves are resolved where no run has said so, radians per transit."""
@@ -70,19 +82,25 @@ class ElasticWall(ShellModel):
         From the inside out, dimensionless.
     core : int
         Number of the layer whose stress is reported.
+    transducers : Transducers or None
+        What senses and acts, where the wall is under control.
     frequency : float
         Up to which waves are resolved, radians per transit; a matter of a run's resolution, not of the wall.
     depth_read : float or None
         Depth at which stations read it; None for the motion of its middle and the stresses at its design depth.
     keeps_shapes : bool
         Whether stations keep its shapes as long as the modes are in use, which are three times what they read of them.
+    silent : float
+        Frequency above which shapes do not answer, where only slower ones are looked at.
     """
 
     layers: tuple[SolidLayer, ...]
     core: int
+    transducers: Transducers | None = None
     frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
     depth_read: float | None = field(default=None, compare=False)
     keeps_shapes: bool = field(default=False, compare=False)
+    silent: float = field(default=math.inf, compare=False)
 
     @classmethod
     def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
@@ -94,6 +112,10 @@ class ElasticWall(ShellModel):
     def resolving(self, frequency: float) -> Self:
         """Return the wall with degrees for waves up to a frequency, radians per transit."""
         return replace(self, frequency=frequency)
+
+    def along_alone(self, frequency: float) -> Self:
+        """Return the wall whose shapes above a frequency do not answer: it bends and stretches along itself alone."""
+        return replace(self, silent=frequency)
 
     # Geometry
 
@@ -147,7 +169,11 @@ class ElasticWall(ShellModel):
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes, made once as long as these are in use; nobody may change them."""
-        return self._shapes(modes)
+        found = self._shapes(modes)
+        if self.silent == math.inf:
+            return found
+        slow = (part.squares < self.silent**2 for part in found)
+        return tuple(replace(part, shapes=part.shapes * answering[..., None, None]) for part, answering in zip(found, slow, strict=True))
 
     def _shapes(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         if np.ndim(modes.wavenumber):
@@ -164,21 +190,95 @@ class ElasticWall(ShellModel):
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
-        return FaceReceptance(*self._summed(modes, s, [_of_faces(part) for part in self.basis(modes)]))
+        found = self._summed(modes, s, [_of_faces(part) for part in self.basis(modes)])
+        loop = self.loop(modes, s)
+        return FaceReceptance(*found) if loop is None else self._closed(found, loop)
 
     def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes).
 
         W and V of the middle, hoop stress at the design depth and potentials in the middle of the piezoelectric layers, whose faces are
-        grounded, in the sign of the sensor equation.
+        grounded, in the sign of the sensor equation. Under control two more: what the law reads, and the voltage that it gives.
         """
         found = self._summed(modes, s, self._of_port(modes))
-        return FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
+        shown, loop = found[3:].reshape(-1, 2, *found.shape[1:]), self.loop(modes, s)
+        if loop is None:
+            return FaceReceptance(*found[:3]), shown
+        shown = shown + self._by_volts(modes, s, tuple(self.asked_of_port), loop)
+        return self._closed(found[:3], loop), np.concatenate([shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
 
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
         found = self._summed(modes, s, self._weights(modes, asked))
-        return found.reshape(-1, 2, *found.shape[1:])
+        shown, loop = found.reshape(-1, 2, *found.shape[1:]), self.loop(modes, s)
+        return shown if loop is None else shown + self._by_volts(modes, s, tuple(asked), loop)
+
+    # Control
+
+    def loop(self, modes: Modes, s: ComplexArray) -> Loop | None:
+        """Return what its transducers do to it; None without any, or where none acts and none is open."""
+        if self.transducers is None or (self.gains is None and not self.transducers.opened.any()):
+            return None
+        pairs = list(zip(self.basis(modes), self.driven(modes), strict=True))
+        rows = [loop_rows(part, driven, self.wetted) for part, driven in pairs]
+        moved = np.concatenate([at_rest(part, -part.faces, driven) for part, driven in pairs])
+        read = np.concatenate([at_rest(part, driven.readings, driven) for part, driven in pairs])
+        return closed_loop(self._summed(modes, s, rows), (moved, read), self.transducers, self._law(modes, s))
+
+    @kept_with_modes
+    def driven(self, modes: Modes) -> tuple[Driven, ...]:
+        """Return loads and readings of its transducers, for each part of the basis."""
+        assert self.transducers is not None
+        return tuple(driven_of(part, self.transducers) for part in self.basis(modes))
+
+    def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
+        return 0.0 if self.gains is None else self.gains.at(s, modes)
+
+    def _closed(self, open_loop: ComplexArray, loop: Loop) -> FaceReceptance:
+        """Return the receptances H_ii, H_io and H_oo with what the transducers add."""
+        inner, outer = self.wetted
+        added = np.einsum("ajmk,jbmk->abmk", loop.moved, loop.volts) / np.array([inner, outer])[:, None, None]
+        h_ii, h_io, h_oo = open_loop
+        return FaceReceptance(h_ii + added[0, 0], h_io + added[0, 1], h_oo + added[1, 1], loop.characteristic, h_io + added[1, 0])
+
+    def _by_volts(self, modes: Modes, s: ComplexArray, asked: tuple[Asked, ...], loop: Loop) -> ComplexArray:
+        """Return what voltages add to quantities per load on either face: by the motion that they make, in their layers by the field."""
+        assert self.transducers is not None
+        rows, fields = [], []
+        for part, driven in zip(self.basis(modes), self.driven(modes), strict=True):
+            shown = self._shown(part, asked)
+            for row, one in enumerate(asked):
+                shown[:, row] *= -1.0 if one.what == "potential" and one in self._asked_potentials else 1.0
+            along = (shown * (np.arange(shown.shape[-1]) < ALONG))[:, :, None] * driven.loads[:, None]
+            rows.append(along.reshape(part.orders.size, -1, shown.shape[-1]))
+            each = [field_of_volts(part, self.transducers, self.layer_at(x.depth), self.radius + x.depth, x.what) for x in asked]
+            fields.append(np.stack(each, axis=1) + at_rest(part, shown, driven))
+        per_volt = self._summed(modes, s, rows).reshape(len(asked), -1, modes.count, s.size)
+        per_volt = per_volt + np.moveaxis(np.concatenate(fields), 0, -1)[..., None]
+        return np.asarray(np.einsum("qjmk,jbmk->qbmk", per_volt, loop.volts))
+
+    @property
+    def shown_potentials(self) -> int:
+        """How many potentials it shows: of its piezoelectric layers, and under control what the law reads and the voltage given."""
+        return len(self.piezoelectric) + (2 if self.transducers is not None else 0)
+
+    def voltage_limit(self, field: float | None = None) -> float:
+        """Return the least of field limit times thickness of all actuators."""
+        if self.transducers is None or field is None:
+            return float("inf") if self.transducers is None else self.transducers.limit
+        return min(field * self.layers[one].thickness for one in self.transducers.actuators)
+
+    def feedback_frequency(self, modes: Modes) -> float:
+        """Return a frequency above which feedback is less than half of its inertia, as far as orders bend and stretch along the wall."""
+        if self.gains is None or self.transducers is None:
+            return 0.0
+        top, size = float(self.highest_frequency(modes).max()), []
+        for part, driven in zip(self.basis(modes), self.driven(modes), strict=True):
+            along = part.squares < (1.5 * top) ** 2
+            products = np.einsum("mjn,min->mn", np.abs(driven.loads), np.abs(driven.readings))
+            size.append((products * along).sum(axis=1))
+        fades = self.gains.fades(np.concatenate(size) * np.abs(self.gains.weight(modes.orders)))
+        return max(fades, 1.2 * top) if fades > 0.0 else 0.0
 
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
         """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it.
@@ -273,8 +373,10 @@ class ElasticWall(ShellModel):
         return self.layer_number(role) is not None
 
     def layer_number(self, role: str) -> int | None:
-        """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
-        return next((number for number, i in enumerate(self.piezoelectric) if self.layers[i].role == role), None)
+        """Return the number of the layer of a role among the potentials shown; under control what the law reads stands for a sensor."""
+        if role == "sensor" and self.transducers is not None:
+            return len(self.piezoelectric)
+        return next((number for number, i in enumerate(self.piezoelectric) if serves(self.layers[i].role, role)), None)
 
     def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
         """Refuse: two faces have no one impedance."""

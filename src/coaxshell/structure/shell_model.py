@@ -134,10 +134,10 @@ class Leading(NamedTuple):
 class FaceReceptance:
     """How both faces of one wall answer inward loads on them, feedback included; arrays of shape (orders, nodes), or numbers.
 
-        w_i = H_ii r_i q_i + H_io r_o q_o,      w_o = H_io r_i q_i + H_oo r_o q_o,
+        w_i = H_ii r_i q_i + H_io r_o q_o,      w_o = H_oi r_i q_i + H_oo r_o q_o,
 
-    q_i = -p_i the inward load on the inner face, q_o = p_o that on the outer one. H is symmetric, and for a thin wall nearly of rank one:
-    it must never be inverted.
+    q_i = -p_i the inward load on the inner face, q_o = p_o that on the outer one. H is symmetric, but where sensors and actuators are not
+    the same, and for a thin wall nearly of rank one: it must never be inverted.
 
     Attributes
     ----------
@@ -146,12 +146,20 @@ class FaceReceptance:
     characteristic : ndarray or float
         A function of s that vanishes at the poles of H with feedback and is free of poles but for those that it has without feedback too:
         of a thin wall its impedance. What feedback makes of it counts in the search for unstable poles.
+    other : ndarray or None
+        H_oi where it is not H_io.
     """
 
     inner: ComplexArray
     across: ComplexArray
     outer: ComplexArray
     characteristic: ComplexArray | float = 1.0
+    other: ComplexArray | None = None
+
+    @property
+    def back(self) -> ComplexArray:
+        """H_oi."""
+        return self.across if self.other is None else self.other
 
 
 class WallStiffness(NamedTuple):
@@ -253,6 +261,10 @@ class ShellModel(ABC):
 
     def resolving(self, frequency: float) -> Self:
         """Return the wall resolving waves up to a frequency, radians per transit: itself where its theory has no such choice."""
+        return self
+
+    def along_alone(self, frequency: float) -> Self:
+        """Return the wall without motions through its thickness, whose shapes ring above a frequency: itself where it has none."""
         return self
 
     @property

@@ -207,5 +207,5 @@ class ThinWall(ShellModel):
             return []
         return [
             f"thickness/radius = {ratio:.3g} is above {THIN_SHELL_LIMIT:g}, where thin-shell theory loses accuracy; use a thinner "
-            'shell, or theory = "elastic" (without feedback)'
+            'shell, or theory = "elastic"'
         ]

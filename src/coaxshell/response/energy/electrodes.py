@@ -10,7 +10,9 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.solid_transducers import solid_electrical
 from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import Gain
 
 
@@ -19,6 +21,10 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
     grid, s = motion.grid, motion.grid.nodes
     supplied, held, driven = np.zeros(grid.time.size), np.zeros(grid.time.size), False
     for i, wall in enumerate(motion.problem.shells):
+        if isinstance(wall, ElasticWall):
+            if (found := solid_electrical(motion, i)) is not None:
+                driven, supplied, held = True, supplied + found[0], held + found[1]
+            continue
         charges = () if wall.gains is None else wall.charges(motion.modes)
         if wall.gains is None or not charges:
             continue

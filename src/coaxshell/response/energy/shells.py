@@ -8,8 +8,10 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.lossy_solids import lossy_solid_energy
 from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.solid_transducers import solid_actuator_work
 from coaxshell.response.energy.solids import solid_energy
 from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.shell_model import WallEnergy, WallMotion
 
@@ -60,6 +62,9 @@ def actuator_work(motion: Motion) -> FloatArray:
     total = np.zeros(grid.time.size)
     for i, wall in enumerate(problem.shells):
         if wall.gains is None:
+            continue
+        if isinstance(wall, ElasticWall):
+            total += solid_actuator_work(motion, i)
             continue
         if given is not None:
             pressure = grid.transform_linear(given[i])

@@ -15,9 +15,11 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.solid_transducers import driven_at, open_fields, volts_of
 from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import WallEnergy
+from coaxshell.structure.solid_transducers import inertia_left_out
 
 
 def solid_energy(motion: Motion, shell: int) -> WallEnergy:
@@ -26,24 +28,36 @@ def solid_energy(motion: Motion, shell: int) -> WallEnergy:
     assert isinstance(wall, ElasticWall)
     assert solid is not None
     pairs = [(part, place) for part in wall.basis(motion.modes) for place in range(part.orders.size)]
+    volts = volts_of(motion, shell)
 
     def of_order(pair: tuple[OrdersBasis, int]) -> FloatArray:
         part, place = pair
         order = part.members.start + place
         weight = 0.5 * motion.circle[order]
         loads = solid.loads[:, shell, :, order] * np.array(wall.wetted)[:, None, None]
-        return np.asarray(weight * sum(_of_parity(motion, part, place, loads[:, parity]) for parity in range(loads.shape[1])))
+        total = np.zeros((3, motion.grid.time[motion.kept].size))
+        for parity in range(loads.shape[1]):
+            forces = -part.faces[place].T @ loads[:, parity]
+            if volts is not None:
+                forces += inertia_left_out(part.squares[place], motion.grid.nodes) * (
+                    driven_at(wall, motion, order).T @ volts[:, parity, order]
+                )
+            total += _of_parity(motion, part, place, forces)
+        return np.asarray(weight * total)
 
     with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
         total = np.sum(list(pool.map(of_order, pairs)), axis=0)
-    return WallEnergy(*total)
+    found = WallEnergy(*total)
+    return found if volts is None else found._replace(piezoelectric=found.piezoelectric + open_fields(motion, shell, volts))
 
 
-def _of_parity(motion: Motion, part: OrdersBasis, place: int, loads: ComplexArray) -> FloatArray:
-    """Return sums of squares of one parity of an order, shape (3, kept instants): kinetic, strain, piezoelectric."""
+def _of_parity(motion: Motion, part: OrdersBasis, place: int, forces: ComplexArray) -> FloatArray:
+    """Return sums of squares of one parity of an order, shape (3, kept instants): kinetic, strain, piezoelectric.
+
+    ``forces`` act on the shapes, (shapes, nodes).
+    """
     grid, s = motion.grid, motion.grid.nodes
-    pressed = -part.faces[place].T @ loads
-    amplitude = pressed / (part.squares[place][:, None] + s * s)
+    amplitude = forces / (part.squares[place][:, None] + s * s)
     rate = grid.invert(amplitude * s)[:, motion.kept]
     amplitude_kept = grid.invert(amplitude)[:, motion.kept]
     whole = part.squares[place] @ amplitude_kept**2

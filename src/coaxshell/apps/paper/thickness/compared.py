@@ -87,7 +87,7 @@ def compare(system: System, resolution: Settings, theories: tuple[str, ...] = tu
     Raises
     ------
     InputError
-        Elastic walls do not know the system: it has feedback, or a ceramic without c44 or e15.
+        Elastic walls do not know the system: its actuators saturate, or a ceramic has no c44 or e15.
     """
     from coaxshell.response import simulate
 

@@ -1,0 +1,96 @@
+"""Voltages in walls of elastic solids: what actuators take from them, and what the fields of open circuits and of actuators hold."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.solid_transducers import inertia_left_out
+
+
+def volts_of(motion: Motion, shell: int) -> ComplexArray | None:
+    """Return the transforms of the voltages on the driven layers of a wall, (driven, parities, M + 1, nodes); None without any."""
+    wall, solid = motion.problem.shells[shell], motion.solid
+    assert isinstance(wall, ElasticWall)
+    assert solid is not None
+    loop = wall.loop(motion.modes, motion.grid.nodes)
+    return None if loop is None else np.asarray(np.einsum("jbmk,bhmk->jhmk", loop.volts, solid.loads[:, shell]))
+
+
+def driven_at(wall: ElasticWall, motion: Motion, order: int) -> FloatArray:
+    """Return the force on each shape of an order per volt on each driven layer, shape (driven, shapes)."""
+    for part, driven in zip(wall.basis(motion.modes), wall.driven(motion.modes), strict=True):
+        if part.members.start <= order < part.members.stop:
+            return np.asarray(driven.loads[order - part.members.start], dtype=np.float64)
+    raise IndexError(order)
+
+
+def _strokes(motion: Motion, shell: int, volts: ComplexArray) -> ComplexArray:
+    """Return d'x of every driven layer, what its voltage does work on, (driven, parities, M + 1, nodes)."""
+    wall, solid, s = motion.problem.shells[shell], motion.solid, motion.grid.nodes
+    assert isinstance(wall, ElasticWall)
+    assert solid is not None
+    found = np.empty_like(volts)
+    for part, driven in zip(wall.basis(motion.modes), wall.driven(motion.modes), strict=True):
+        for place in range(part.orders.size):
+            order = part.members.start + place
+            share = np.reciprocal(part.squares[place][:, None] + s * s)
+            for parity in range(volts.shape[1]):
+                loads = solid.loads[:, shell, parity, order] * np.array(wall.wetted)[:, None]
+                pushed = inertia_left_out(part.squares[place], s) * (driven.loads[place].T @ volts[:, parity, order])
+                forces = pushed - part.faces[place].T @ loads
+                found[:, parity, order] = driven.loads[place] @ (forces * share)
+    return found
+
+
+def solid_actuator_work(motion: Motion, shell: int) -> FloatArray:
+    """Return the work that the actuators of a wall have taken from it, minus the integral of u d'dx/dt over the circle, shape (T,)."""
+    wall, volts, grid = motion.problem.shells[shell], volts_of(motion, shell), motion.grid
+    assert isinstance(wall, ElasticWall)
+    assert wall.transducers is not None
+    assert volts is not None
+    strokes, total = _strokes(motion, shell, volts), np.zeros(grid.time.size)
+    for j in np.flatnonzero(wall.transducers.acting):
+        total -= SurfaceWork(grid, motion.circle, strokes[j] * grid.nodes)(volts[j])
+    return total
+
+
+def capacitances(wall: ElasticWall, motion: Motion) -> FloatArray:
+    """Return C of each driven layer per radian, shape (driven, M + 1)."""
+    return np.concatenate([one.capacitance for one in wall.driven(motion.modes)]).T
+
+
+def open_fields(motion: Motion, shell: int, volts: ComplexArray) -> FloatArray:
+    """Return the energy in the fields of open circuits, C y^2/2, at the kept instants."""
+    wall = motion.problem.shells[shell]
+    assert isinstance(wall, ElasticWall)
+    assert wall.transducers is not None
+    total = np.zeros(motion.grid.time[motion.kept].size)
+    for j in np.flatnonzero(wall.transducers.opened):
+        history = motion.grid.invert(volts[j].copy())[..., motion.kept]
+        total += 0.5 * np.einsum("m,hmt,hmt->t", capacitances(wall, motion)[j] * motion.circle, history, history)
+    return total
+
+
+def solid_electrical(motion: Motion, shell: int) -> tuple[FloatArray, FloatArray] | None:
+    """Return the energy from the amplifiers of a wall since the start and that in its actuators' fields, (T,); None without electrodes.
+
+    The charge of a driven layer is -d'x + C u per radian, in the sign in which u times its rate is the power of the amplifier.
+    """
+    wall, grid = motion.problem.shells[shell], motion.grid
+    assert isinstance(wall, ElasticWall)
+    if wall.gains is None or wall.transducers is None or not wall.transducers.electrodes:
+        return None
+    volts = volts_of(motion, shell)
+    assert volts is not None
+    strokes, held, supplied = _strokes(motion, shell, volts), np.zeros(grid.time.size), np.zeros(grid.time.size)
+    for j in np.flatnonzero(wall.transducers.acting):
+        capacitance = capacitances(wall, motion)[j]
+        charge = strokes[j] + capacitance[:, None] * volts[j]
+        supplied += SurfaceWork(grid, motion.circle, grid.nodes * charge)(volts[j])
+        history = grid.invert(volts[j].copy())
+        held += 0.5 * np.einsum("m,hmt,hmt->t", capacitance * motion.circle, history, history)
+    return supplied, held

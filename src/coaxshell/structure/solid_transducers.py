@@ -1,0 +1,253 @@
+"""Sensors and actuators in walls of elastic solids, as loads on their shapes and readings of them.
+
+A voltage u on a transducer loads a wall by d u; with x the displacements of its points, S readings of sensors,
+
+    K x + M d2x/dt2 = (loads on the faces) + sum over transducers of d_j u_j,
+
+and the voltages follow from the readings, u = L(s) y. With a_b what a load on face b does, D = d' a and Y = d per d (and so of readings),
+
+    u = (1 - L Y)^-1 L y_b q_b,      H_ab -> H_ab + D_a u_b/r_b,
+
+a change of the receptances whose rank is the number of transducers. det(1 - L Y) vanishes at the poles of the wall in vacuo.
+
+"electrodes": a layer between electrodes has the potential Phi = psi u, psi from 1/2 on its inner face to -1/2 on its outer one, which makes
+the enthalpy stationary within. It loads the wall by d'x = -int (psi' (e33 eps_r + e32 eps_theta) - psi (m/r) e15 gamma_r_theta) r dr, and
+an open circuit reads y = -d'x/C, C = psi'G psi its capacitance per radian, and stiffens its layer by d d'/C. Of a layer that is driven and
+read at once a bridge takes all that its own voltage does, the stretch of the thickness too, and the strain along the wall is left,
+y = int psi' e32~ eps_theta r dr/C~, C~ = C (1 + e33^2/(c33 mu33)). In a thin wall d is e32~ B(z_a) R.
+
+"paper": a sensor is the potential in the middle of its layer, whose faces are grounded; an actuator pushes along the radius alone, as the
+field's hoop stress does through u_r/r, with the paper's pressure per volt, spread evenly over the thickness of its layer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.structure.elastic_basis import OrdersBasis, layer_strains
+from coaxshell.structure.elastic_depth import STRESSES, Shown, place_in_layer, shown_by_shapes
+from coaxshell.structure.elastic_mesh import LayerMesh
+from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, RADIAL_HOOP
+
+ALONG = 2
+"""Shapes of each order that bend and stretch along the wall; all others move through its thickness.
+
+These answer voltages without inertia, and what sensors that are driven read of them is what loads on the faces make: resonances of the
+thickness, a thousand times faster than the shock, are no business of a control law, which would drive them without any bound.
+"""
+
+
+@dataclass(frozen=True)
+class Transducers:
+    """Which layers of a wall sense and act.
+
+    Attributes
+    ----------
+    electrodes : bool
+        Whether layers lie between electrodes, or sense and act as in the paper.
+    sensors, actuators : tuple of int
+        Numbers of the layers, from the inside out; one each in the paper.
+    push : float
+        In the paper: inward force per radian and volt.
+    limit : float
+        Of the voltage, V.
+    """
+
+    electrodes: bool
+    sensors: tuple[int, ...]
+    actuators: tuple[int, ...]
+    push: float = 0.0
+    limit: float = float("inf")
+
+    @property
+    def driven(self) -> tuple[int, ...]:
+        """Layers whose voltages load the wall: of electrodes sensors too, which charge themselves."""
+        return tuple(sorted({*self.sensors, *self.actuators})) if self.electrodes else self.actuators
+
+    @property
+    def opened(self) -> FloatArray:
+        """1 for each driven layer whose circuit is open, else 0."""
+        return np.array([float(self.electrodes and one not in self.actuators) for one in self.driven])
+
+    @property
+    def acting(self) -> FloatArray:
+        """1 for each driven layer that the control law drives, else 0."""
+        return np.array([float(one in self.actuators) for one in self.driven])
+
+    @property
+    def sensing(self) -> FloatArray:
+        """The share of each reading in what the control law reads: the mean of all sensors."""
+        if not self.electrodes:
+            return np.ones(1)
+        return np.array([float(one in self.sensors) / len(self.sensors) for one in self.driven])
+
+
+class Driven(NamedTuple):
+    """Transducers of some orders, per unit of each shape.
+
+    Attributes
+    ----------
+    loads : ndarray, shape (orders, driven, shapes)
+        d: the force on each shape per volt.
+    readings : ndarray, shape (orders, driven, shapes)
+        Volts per unit of each shape.
+    capacitance : ndarray, shape (orders, driven)
+        C per radian; 0 in the paper.
+    """
+
+    loads: FloatArray
+    readings: FloatArray
+    capacitance: FloatArray
+
+
+def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
+    """Return the loads and readings of the transducers of a wall."""
+    if not transducers.electrodes:
+        actuator, sensor = (basis.mesh.layers[one[0]] for one in (transducers.actuators, transducers.sensors))
+        mean = actuator.weights / (actuator.radius * actuator.layer.thickness)
+        push = -transducers.push * (basis.shapes[:, :, 0, actuator.nodes] @ mean)
+        middle = 0.5 * (sensor.layer.inner + sensor.layer.outer)
+        read = -shown_by_shapes(basis, transducers.sensors[0], middle, "potential")
+        return Driven(push[:, None], read[:, None], np.zeros((basis.orders.size, 1)))
+    found = [_between_electrodes(basis.mesh.layers[number], basis.orders) for number in transducers.driven]
+    loads, readings = [], []
+    for number, layer in zip(transducers.driven, found, strict=True):
+        shapes = basis.shapes[..., basis.mesh.layers[number].nodes]
+        load = np.einsum("mcp,mncp->mn", layer.load, shapes)
+        loads.append(load)
+        if number in transducers.actuators:
+            readings.append(-np.einsum("mcp,mncp->mn", layer.along, shapes) / layer.free[:, None])
+        else:
+            readings.append(-load / layer.capacitance[:, None])
+    return Driven(np.stack(loads, axis=1), np.stack(readings, axis=1), np.stack([one.capacitance for one in found], axis=1))
+
+
+class _Electroded(NamedTuple):
+    """One layer: d on displacements at its points, (orders, displacements, points), C, (orders,), and psi at the points.
+
+    ``along`` and ``free`` are d of the hoop strain alone and C where the thickness is free.
+    """
+
+    load: FloatArray
+    capacitance: FloatArray
+    profile: FloatArray
+    along: FloatArray
+    free: FloatArray
+
+
+def _between_electrodes(part: LayerMesh, orders: FloatArray) -> _Electroded:
+    layer, local, weights, slope = part.layer, layer_strains(part, orders, 0.0), part.weights, part.derivative
+    assert layer.coupling is not None
+    assert layer.permittivity is not None
+    e, mu, per_radius = np.array(layer.coupling), layer.permittivity, orders[:, None] / part.radius
+    electric = np.einsum("qi,q,qj->ij", slope, mu[0] * weights, slope) + np.zeros((orders.size, 1, 1))
+    places, last = np.arange(part.radius.size), part.radius.size - 1
+    electric[:, places, places] += mu[1] * weights * per_radius**2
+    profile = np.zeros((orders.size, part.radius.size))
+    profile[:, 0], profile[:, last] = 0.5, -0.5
+    at_faces = 0.5 * (electric[:, 1:-1, 0] - electric[:, 1:-1, last])
+    profile[:, 1:-1] = -np.linalg.solve(electric[:, 1:-1, 1:-1], at_faces[..., None])[..., 0]
+    radial = np.einsum("j,mjqcp->mqcp", e[0, [RADIAL, HOOP, AXIAL]], local[:, [RADIAL, HOOP, AXIAL]])
+    load = np.einsum("mq,mqcp->mcp", -weights * (profile @ slope.T), radial)
+    load += np.einsum("mq,mqcp->mcp", weights * per_radius * profile * e[1, RADIAL_HOOP], local[:, RADIAL_HOOP])
+    capacitance = np.einsum("mi,mij,mj->m", profile, electric, profile)
+    c33, c23 = layer.stiffness[RADIAL][RADIAL], layer.stiffness[RADIAL][HOOP]
+    reduced = e[0, HOOP] - e[0, RADIAL] * c23 / c33
+    along = reduced * np.einsum("mq,mqcp->mcp", -weights * (profile @ slope.T), local[:, HOOP])
+    return _Electroded(load, capacitance, profile, along, capacitance * (1.0 + e[0, RADIAL] ** 2 / (c33 * mu[0])))
+
+
+def field_of_volts(basis: OrdersBasis, transducers: Transducers, number: int, radius: float, what: Shown) -> FloatArray:
+    """Return what a volt on each driven layer adds by its field to a quantity at a radius of a layer, shape (orders, driven)."""
+    found = np.zeros((basis.orders.size, len(transducers.driven)))
+    if not transducers.electrodes or number not in transducers.driven or what not in STRESSES:
+        return found
+    part, at = place_in_layer(basis, number, radius)
+    profile = _between_electrodes(part, basis.orders).profile
+    e = np.array(part.layer.coupling)[:, STRESSES[what]]
+    along = e[1] * basis.orders / radius
+    found[:, transducers.driven.index(number)] = e[0] * (profile @ (at @ part.derivative)) - along * (profile @ at)
+    return found
+
+
+class Loop(NamedTuple):
+    """What transducers do to a wall, feedback and open circuits included.
+
+    Attributes
+    ----------
+    moved : ndarray, shape (2, driven, orders, nodes)
+        Inward displacement of each face per volt.
+    volts : ndarray, shape (driven, 2, orders, nodes)
+        Voltages per inward load on either face.
+    sensed : ndarray, shape (2, orders, nodes)
+        What the control law reads per inward load on either face.
+    characteristic : ndarray, shape (orders, nodes)
+        det(1 - L Y).
+    """
+
+    moved: ComplexArray
+    volts: ComplexArray
+    sensed: ComplexArray
+    characteristic: ComplexArray
+
+
+def loop_rows(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -> FloatArray:
+    """Return the weights of all shapes in D (2 J rows), in readings per load (2 J) and per volt (J J), shape (orders, rows, shapes)."""
+    size, shapes = basis.orders.size, basis.squares.shape[1]
+    moved = -basis.faces[:, :, None] * driven.loads[:, None]
+    pressed = -basis.faces * np.array(wetted)[:, None]
+    read = driven.readings[:, :, None] * pressed[:, None]
+    answer = driven.readings[:, :, None] * driven.loads[:, None]
+    moved[..., ALONG:] = answer[..., ALONG:] = 0.0
+    return np.concatenate([one.reshape(size, -1, shapes) for one in (moved, read, answer)], axis=1)
+
+
+def at_rest(basis: OrdersBasis, shown: FloatArray, driven: Driven) -> FloatArray:
+    """Return what voltages do through the thickness, where they find no inertia, shape (orders, quantities, driven).
+
+    ``shown`` are quantities per unit of each shape, (orders, quantities, shapes).
+    """
+    high = slice(ALONG, None)
+    return np.asarray(np.einsum("mqn,mjn,mn->mqj", shown[..., high], driven.loads[..., high], 1.0 / basis.squares[:, high]))
+
+
+def inertia_left_out(squares: FloatArray, s: ComplexArray) -> ComplexArray:
+    """Return by how much more a voltage pushes each shape that answers it without inertia, 1 + s^2/omega^2, shape (shapes, nodes)."""
+    factor = np.ones((squares.size, s.size), np.complex128)
+    factor[ALONG:] += s * s / squares[ALONG:, None]
+    return factor
+
+
+def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], transducers: Transducers, law: ComplexArray | float) -> Loop:
+    """Return the loop from the sums over all shapes of :func:`loop_rows` and the control law H(s), 0 without feedback.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (rows, orders, nodes)
+    resting : tuple of ndarray
+        Of :func:`at_rest`, inward displacements of the faces, (orders, 2, driven), and readings, (orders, driven, driven).
+    transducers : Transducers
+    law : ndarray or float
+        Broadcast to (orders, nodes).
+    """
+    count, shape = len(transducers.driven), sums.shape[1:]
+    opened, acting, sensing = transducers.opened, transducers.acting, transducers.sensing
+    moved = sums[: 2 * count].reshape(2, count, *shape) + np.moveaxis(resting[0], 0, -1)[..., None]
+    read = sums[2 * count : 4 * count].reshape(count, 2, *shape)
+    answer = sums[4 * count :].reshape(count, count, *shape) + np.moveaxis(resting[1] * opened[:, None], 0, -1)[..., None]
+    gains = np.broadcast_to(law, shape)
+    laws = np.diag(opened)[..., None, None] + np.multiply.outer(np.outer(acting, sensing), gains)
+    matrix = np.eye(count)[..., None, None] - np.einsum("ijmk,jlmk->ilmk", laws, answer)
+    asked = np.einsum("ijmk,jbmk->ibmk", laws, read)
+    if count == 1:
+        volts, characteristic = asked / matrix[:, :1], matrix[0, 0]
+    else:
+        square = np.moveaxis(matrix, (0, 1), (-2, -1))
+        volts = np.moveaxis(np.linalg.solve(square, np.moveaxis(asked, (0, 1), (-2, -1))), (-2, -1), (0, 1))
+        characteristic = np.linalg.det(square)
+    sensed = np.einsum("j,jbmk->bmk", sensing, read + np.einsum("ijmk,jbmk->ibmk", answer, volts))
+    return Loop(moved, volts, sensed, characteristic)
