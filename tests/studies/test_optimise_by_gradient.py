@@ -61,6 +61,15 @@ def test_robust_objectives_have_gradients(quick):
         assert robust.best.objectives[0] < 0.99 * robust.history[0].objectives[0]
 
 
+def test_absorbers_are_held_apart(quick):
+    """All neighbours are as near as they may be to begin with: each of them has a limit of its own."""
+    limit = "absorbers.spacing >= 0.62 m"
+    held = searched(quick, variables={"absorbers[*].angle": VARIABLES["absorbers[*].angle"]}, constraints=limit, evaluations=8)
+    assert held.best.feasible
+    assert held.best.objectives[0] < held.baseline.objectives[0]
+    assert held.best.targets["absorbers.spacing"] >= 0.62
+
+
 def test_limits_of_a_run_are_held_by_the_peak_itself(quick):
     limit = 110e3
     held = searched(quick, objectives="absorbers.mass", constraints=f"inner.peak_stress <= {limit} Pa", evaluations=14)

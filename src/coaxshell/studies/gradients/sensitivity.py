@@ -193,22 +193,21 @@ def _of_design(metric: Metric, system: System) -> dict[str, FloatArray]:
     if metric.quantity in ("absorber_mass", "total_mass"):
         found["mass"][:] = 1.0
     elif metric.quantity == "absorber_spacing":
-        closest = _closest_pair(system)
+        closest = min(neighbours(system), key=lambda pair: pair[3], default=None)
         if closest is not None:
-            one, other, radius = closest
+            one, other, radius, _ = closest
             found["angle"][[one, other]] = np.radians(radius) * np.array([-1.0, 1.0])
     return found
 
 
-def _closest_pair(system: System) -> tuple[int, int, float] | None:
-    """Return the two neighbours whose distance is the smallest, the second ahead of the first, and the radius of the shell beneath them."""
-    best, found = math.inf, None
-    listed = system.absorber_list
+def neighbours(system: System) -> list[tuple[int, int, float, float]]:
+    """Return every two neighbours among the absorbers of a gap: their numbers, the second ahead, the radius beneath, and the arc, m."""
+    found, listed = [], system.absorber_list
     for shell in {one.inner_shell for one in listed}:
         here = sorted((i for i, one in enumerate(listed) if one.inner_shell == shell), key=lambda i: listed[i].angle % 360.0)
         radius = system.shells[shell].radius
         for one, other in zip(here, [*here[1:], here[0]], strict=True):
-            distance = ((listed[other].angle - listed[one].angle) % 360.0 or 360.0) * radius
-            if one != other and distance < best:
-                best, found = distance, (one, other, radius)
+            if one != other:
+                turn = (listed[other].angle - listed[one].angle) % 360.0
+                found.append((one, other, radius, math.radians(turn) * radius))
     return found

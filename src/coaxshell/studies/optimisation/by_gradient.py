@@ -9,8 +9,10 @@ faster; one that has arrived begins anew elsewhere.
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from queue import Queue
 from typing import Any, NamedTuple
@@ -19,9 +21,11 @@ import numpy as np
 from scipy.stats import qmc
 
 from coaxshell.errors import InputError
+from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.studies.gradients.sensitivity import neighbours
 from coaxshell.studies.gradients.slopes import slope_metrics
-from coaxshell.studies.optimisation.targets import Target, Targets
+from coaxshell.studies.optimisation.targets import Limit, Target, Targets
 from coaxshell.studies.optimisation.variables import Space, Variable
 
 POWER = 64.0
@@ -29,6 +33,7 @@ POWER = 64.0
 STARTS = 4
 """Starts side by side, unless told otherwise."""
 _STATISTICS = ("", "mean", "worst")
+_ANGLE = re.compile(r"absorbers\[(\d+)\]\.angle")
 _PRECISION = 1e-8
 _UNSOLVED = 10.0
 """What a design that cannot be run is worse by than the last one, in units of the first: the step towards it is shortened."""
@@ -48,6 +53,13 @@ class Linear(NamedTuple):
     limit_slopes: FloatArray
 
 
+class Arc(NamedTuple):
+    """The distance between two neighbours, m, linear in the variables: offset + by x."""
+
+    offset: float
+    by: FloatArray
+
+
 @dataclass(frozen=True)
 class Slopes:
     """What a search by gradients reads from the metrics of a design.
@@ -56,11 +68,16 @@ class Slopes:
     ----------
     targets : Targets
         With the metrics that hold slopes.
-    variables : tuple of Variable
+    space : Space
     """
 
     targets: Targets
-    variables: tuple[Variable, ...]
+    space: Space
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """Those of the space."""
+        return self.space.variables
 
     @classmethod
     def of(cls, space: Space, targets: Targets, uncertain: set[str]) -> Slopes:
@@ -84,9 +101,9 @@ class Slopes:
             raise InputError("method", f'"gradient" knows mean and worst of uncertain properties, not {wrong}', 'use method="cma-es"')
         moved = [(*((path, 1.0) for path in one.paths), *((path, -1.0) for path in one.mirrored)) for one in space.variables]
         more = tuple(slope for metric in targets.metrics for slope in slope_metrics(metric, POWER, moved))
-        return cls(replace(targets, metrics=(*targets.metrics, *more)), space.variables)
+        return cls(replace(targets, metrics=(*targets.metrics, *more)), space)
 
-    def __call__(self, table: FloatArray, point: FloatArray) -> Linear:
+    def __call__(self, table: FloatArray, point: FloatArray, arcs: list[Arc]) -> Linear:
         """Return a design to first order.
 
         Parameters
@@ -94,13 +111,21 @@ class Slopes:
         table : ndarray, shape (samples, metrics)
         point : ndarray, shape (n,)
             Its place in the unit cube.
+        arcs : list of Arc
+            What a limit on the spacing holds.
         """
         stretch = np.array([_stretch(one, float(share)) for one, share in zip(self.variables, point, strict=True)])
         goal = self.targets.goals[0]
         searched, slope, _ = self._target(table, goal.target)
         sign = -1.0 if goal.maximise else 1.0
-        limits, slopes = [], []
+        limits: list[float] = []
+        slopes: list[FloatArray] = []
         for limit in self.targets.limits:
+            if _of_spacing(limit):
+                size = limit.limit or 1.0
+                limits += [(arc.offset + float(arc.by @ self._si(point)) - limit.limit) / size - _INSIDE for arc in arcs]
+                slopes += [arc.by * stretch / size for arc in arcs]
+                continue
             mean, by, exact = self._target(table, limit.target)
             scale = (1.0 if limit.least else -1.0) / (abs(limit.limit) or 1.0)
             limits.append(scale * (exact - limit.limit) - _INSIDE)
@@ -111,6 +136,31 @@ class Slopes:
             np.array(limits),
             np.array(slopes).reshape(len(limits), len(stretch)),
         )
+
+    def arcs(self, point: FloatArray) -> list[Arc]:
+        """Return the neighbours whose distance varies, as they stand at a point: the least of their arcs has corners, each has none.
+
+        Mirror images are left out, whose arcs say the same.
+        """
+        spaced = any(_of_spacing(limit) for limit in self.targets.limits)
+        system = self.space.system(self.space.values(point)) if spaced else None
+        if not isinstance(system, System):
+            return []
+        turned = np.zeros((len(system.absorber_list), len(self.variables)))
+        for column, variable in enumerate(self.variables):
+            for paths, sign in ((variable.paths, 1.0), (variable.mirrored, -1.0)):
+                for match in filter(None, map(_ANGLE.fullmatch, paths)):
+                    turned[int(match[1]), column] = sign
+        found: dict[tuple[float, ...], Arc] = {}
+        for one, other, radius, arc in neighbours(system):
+            by = np.radians(radius) * (turned[other] - turned[one])
+            if by.any():
+                found.setdefault((round(arc, 6), *by), Arc(arc - float(by @ self._si(point)), by))
+        return list(found.values())
+
+    def _si(self, point: FloatArray) -> FloatArray:
+        """Return the values of the variables at a point."""
+        return np.array(self.space.values(point), dtype=np.float64)
 
     def _target(self, table: FloatArray, target: Target) -> tuple[float, FloatArray, float]:
         """Return a target as it is searched, its slopes by the variables in SI, and its exact value."""
@@ -126,6 +176,11 @@ class Slopes:
         return float(means[worst]), slopes[worst], exact
 
 
+def _of_spacing(limit: Limit) -> bool:
+    """Return whether a limit holds absorbers apart."""
+    return limit.least and limit.target.metric.quantity == "absorber_spacing" and not limit.target.statistic
+
+
 def _stretch(variable: Variable, share: float) -> float:
     """Return what a variable changes by per unit of its place in the unit cube."""
     if variable.log:
@@ -135,6 +190,10 @@ def _stretch(variable: Variable, share: float) -> float:
 
 class _StoppedError(Exception):
     """The search has ended."""
+
+
+class _NowhereError(Exception):
+    """A descent would begin where nothing can be run."""
 
 
 class _Start(threading.Thread):
@@ -148,13 +207,15 @@ class _Start(threading.Thread):
         self._first, self._slopes, self._rng = first, slopes, np.random.default_rng([seed, number])
         self._at: FloatArray | None = None
         self._linear: Linear | None = None
+        self._arcs: list[Arc] = []
 
     def run(self) -> None:
         """Descend until the search ends; an error is handed to whoever waits."""
         point = self._first
         try:
             while True:
-                self._descend(point)
+                with suppress(_NowhereError):
+                    self._descend(point)
                 point = self._rng.random(point.size)
         except _StoppedError:
             pass
@@ -164,7 +225,7 @@ class _Start(threading.Thread):
     def _descend(self, point: FloatArray) -> None:
         from scipy.optimize import minimize
 
-        self._linear, self._size = None, 1.0
+        self._linear, self._size, self._arcs = None, 1.0, self._slopes.arcs(point)
         self._size = abs(self._at_point(np.asarray(point)).objective) or 1.0
         constraints: Any = []
         if self._slopes.targets.limits:
@@ -185,16 +246,15 @@ class _Start(threading.Thread):
             table = self.answer.get()
             if self.stopped:
                 raise _StoppedError
-            self._linear = self._slopes(table, point) if table is not None else self._worse(point)
+            self._linear = self._worse() if table is None else self._slopes(table, point, self._arcs)
             self._at = point.copy()
         return self._linear
 
-    def _worse(self, point: FloatArray) -> Linear:
-        """Return something in the place of a design that could not be run."""
-        last = self._linear
-        limits = np.zeros(len(self._slopes.targets.limits)) if last is None else last.limits
-        objective = 0.0 if last is None else last.objective + _UNSOLVED * self._size
-        return Linear(objective, np.zeros(point.size), limits, np.zeros((limits.size, point.size)))
+    def _worse(self) -> Linear:
+        """Return something in the place of a design that could not be run: the last one, but worse."""
+        if self._linear is None:
+            raise _NowhereError
+        return self._linear._replace(objective=self._linear.objective + _UNSOLVED * self._size)
 
 
 def search_by_gradient(tables: Tables, slopes: Slopes, start: FloatArray, starts: int | None, seed: int) -> None:

@@ -214,7 +214,7 @@ def searched(problem: Problem, run: Run, progress: Progress | None = None) -> Op
     confirmations: tuple[Confirmation, ...] = ()
     try:
         if by_gradient:
-            setting, slopes = problem.setting, Slopes(problem.targets, problem.space.variables)
+            setting, slopes = problem.setting, Slopes(problem.targets, problem.space)
             search_by_gradient(evaluations.tables, slopes, setting.start, setting.population, setting.seed)
         else:
             search(problem.method, evaluations, problem.setting)
