@@ -24,7 +24,7 @@ SMALLER = {
     "spectrum": COARSE,
     "modes": ["--order", "2"],
     "response": ["--frequency", "100,200", "--modes", "8"],
-    "participation": [*COARSE, "--up-to", "600 Hz"],
+    "participation": ["--up-to", "600 Hz", "--quiet"],
     "control": ["--modes", "4"],
     "figure": ["--quiet"],
     "snapshots": ["--times", "0.5", "--pixels", "40", "--quiet"],
