@@ -9,19 +9,28 @@ export function draw(system) {
   if (!shells.length) return;
   const outer = Math.max(...shells.map((shell) => shell.radius)), scale = SIZE.radius / outer;
   const picture = svg("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": words(system) });
+  const scene = svg("g", zoom(system.sea, outer));
+  picture.append(scene);
   shells.slice().reverse().forEach((shell) => {
     const wall = (shell.layers ?? []).reduce((sum, layer) => sum + Number(layer.thickness || 0), 0);
-    picture.append(svg("circle", { cx: SIZE.x, cy: SIZE.y, r: shell.radius * scale, fill: "var(--accent-soft)", "fill-opacity": 0.55, stroke: shell.rigid ? "var(--text)" : "var(--current)", "stroke-width": Math.max(wall * scale, shell.rigid ? 2.5 : 1.4) }));
+    scene.append(svg("circle", { cx: SIZE.x, cy: SIZE.y, r: shell.radius * scale, fill: "var(--accent-soft)", "fill-opacity": 0.55, stroke: shell.rigid ? "var(--text)" : "var(--current)", "stroke-width": Math.max(wall * scale, shell.rigid ? 2.5 : 1.4) }));
   });
-  picture.append(...planes(system.sea, scale));
+  scene.append(...planes(system.sea, scale));
   const sources = Array.isArray(system.source) ? system.source : [system.source];
-  picture.append(...absorbers(system, shells, scale), ...sources.flatMap((source) => shock(source, outer, scale)));
+  scene.append(...absorbers(system, shells, scale), ...sources.flatMap((source) => shock(source, outer, scale)));
   by("section").replaceChildren(picture, el("figcaption", {}, caption(system, outer)));
 }
 
 function point(radius, degrees) {
   const angle = (degrees * Math.PI) / 180;
   return [SIZE.x + radius * Math.cos(angle), SIZE.y - radius * Math.sin(angle)];
+}
+
+// Smaller where a plane of the sea is near, so that it is in the picture.
+function zoom(sea, outer) {
+  const near = [sea?.depth, sea?.bottom].map(Number).filter((far) => far > 0 && far < 4 * outer);
+  const factor = Math.min(1, (SIZE.y - 8) / (SIZE.radius * Math.max(1, ...near.map((far) => far / outer))));
+  return factor < 1 ? { transform: `translate(${SIZE.x} ${SIZE.y}) scale(${factor.toFixed(3)}) translate(${-SIZE.x} ${-SIZE.y})` } : {};
 }
 
 // Surface and bottom of the sea where they are in the picture.
