@@ -12,6 +12,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.apps.report import PARTS, report_cost
+from coaxshell.apps.report.system import _fitted
 from coaxshell.model.prefixes import engineering
 
 SHORT = {"duration": 2.0, "time_step": 0.05, "modes": 4}
@@ -111,6 +112,12 @@ def test_three_dimensions_and_elastic_walls(tmp_path):
     heading = found.files["stress.csv"].partition("\n")[0].split(",")
     assert "outer stress 0 deg z = 0.5 m (Pa)" in heading
     assert engineering(float(np.abs(peak).max()), "Pa") in found.text
+
+
+def test_the_sea_is_told(runs):
+    system = runs[1].system.replace(sea=cx.Sea(depth=20.0, bottom=30.0))
+    (told,) = (text for text in _fitted(system) if "sea" in text)
+    assert told == "In the sea: the axis lies 20.00 m below the surface, which is at 90°, a rigid bottom 30.00 m below it."
 
 
 def test_what_is_refused(tmp_path, runs):

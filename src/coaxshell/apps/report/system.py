@@ -76,6 +76,9 @@ def _fitted(system: System) -> Iterator[str]:
     if absorbers:
         per = "kg" if system.point_absorbers else "kg/m"
         yield f"{len(absorbers)} absorbers, together {sum(one.mass for one in absorbers):.4g} {per}."
+    if system.sea is not None:
+        bottom = f", a rigid bottom {engineering(system.sea.bottom, 'm')} below it" if system.sea.bottom is not None else ""
+        yield f"In the sea: the axis lies {engineering(system.sea.depth, 'm')} below the surface, which is at {system.sea.up:g}°{bottom}."
     if system.control is not None:
         shells = ", ".join(shell_name(i, len(system.shells)) for i in system.controlled_shells)
         yield f"Feedback on: {shells}; {'saturates at the field limit' if system.control.saturation else 'without saturation'}."
