@@ -76,7 +76,7 @@ class Slopes:
 
     @property
     def variables(self) -> tuple[Variable, ...]:
-        """Those of the space."""
+        """What the search varies: the variables of its space."""
         return self.space.variables
 
     @classmethod
