@@ -34,7 +34,7 @@ def fields_of(response: Response, progress: Progress | None = None) -> dict[str,
     - ``angle``: degrees from the head, 0 to 180 in steps of 2; ``snapshot time``; ``<region> radius``; ``<region> snapshot``
       (time, radius, angle), orders weighted by Lanczos's factors;
     - ``gap peak`` (radius): the largest magnitude on the head's ray in the gap up to t = 1;
-    - ``wall time``; ``inner wall``, ``outer wall`` (time, face, angle): on the inside and the outside of each shell;
+    - ``wall time``; ``inner wall``, ``outer wall`` (time, face, angle): inside and outside of each shell, where its fluids wet it;
     - ``rms time``, ``<region> rms`` over its area; ``energy time``, and J/m: ``stored``, ``dissipated`` (dampers), ``actuators``,
       ``radiated``, ``worked`` (by the exterior pressure), ``residual``.
 
@@ -63,15 +63,15 @@ def fields_of(response: Response, progress: Progress | None = None) -> dict[str,
         return np.asarray(found, dtype=np.float64) / peak
 
     kept["snapshot time"] = np.array([t for t in SNAPSHOTS if t <= last])
-    inner = response.system.shells[0].radius / response.system.reference_radius
-    regions = {"interior": (0.0, inner), "gap": (inner, 1.0), "exterior": (1.0, OUTERMOST)}
+    inner, outer = ([r / response.system.reference_radius for r in shell.wetted_radii] for shell in response.system.shells)
+    regions = {"interior": (0.0, inner[0]), "gap": (inner[1], outer[0]), "exterior": (outer[1], OUTERMOST)}
     for region, (start, stop) in list(regions.items())[: 2 if spatial else 3]:
         kept[f"{region} radius"] = start + (stop - start) * (np.arange(_RADII[region]) + 0.5) / _RADII[region]
         kept[f"{region} snapshot"] = polar(kept[f"{region} radius"], kept["snapshot time"])
     tell(0.3)
     kept["wall time"] = np.arange(0.5, last + 1e-9, 0.05)
-    for shell, radius in (("inner", inner), ("outer", 1.0)):
-        kept[f"{shell} wall"] = polar(np.array([radius - _FACE, radius + _FACE]), kept["wall time"])
+    for shell, faces in (("inner", inner), ("outer", outer)):
+        kept[f"{shell} wall"] = polar(np.array([faces[0] - _FACE, faces[1] + _FACE]), kept["wall time"])
     ray = response.pressure(radius=kept["gap radius"], angle=[head], time=np.arange(0.0, min(1.0, last), RESOLUTION))
     kept["gap peak"] = np.abs(np.asarray(ray, dtype=np.float64)).max(axis=(0, 2)) / peak
     tell(0.5)

@@ -16,8 +16,11 @@ if TYPE_CHECKING:
     from coaxshell.response import Response
     from coaxshell.solver.settings import Settings
 
-MODULES = ("setting", "bare")
-"""Of claims that are about histories alone; those about waves ask for the pressure at mid-surfaces, which lie within exact walls."""
+MODULES = ("setting", "bare", "waves")
+"""Of claims about the bare shells: their histories, and the waves around them, which are read where the fluids wet the walls."""
+
+ENERGY = "energy-is-radiated-away"
+"""What the sphere has no energy per length for."""
 
 
 def _each(wanted: Mapping[str, System], resolution: Settings, progress: Progress | None) -> Iterator[tuple[str, Response]]:
@@ -33,7 +36,7 @@ def judged_with_both(resolution: Settings = RESOLUTION) -> tuple[Judged, ...]:
     """Return the statements with what is found with thin walls, under the name of the corrected model, and with exact ones, "exact"."""
     known = {claim.name: claim for claim in claims()}
     variants = {CORRECTED: Runs(resolution), EXACT: Runs(resolution, solver=_each, variant=EXACT)}
-    names = (name for module in MODULES for name in topic(module).names)
+    names = [*(name for module in MODULES for name in topic(module).names), ENERGY]
     return tuple(Judged(known[name], {which: known[name].work(runs) for which, runs in variants.items()}) for name in names)
 
 
