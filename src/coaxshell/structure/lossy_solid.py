@@ -34,8 +34,12 @@ def is_soft(layer: SolidLayer, frequency: float) -> bool:
 
 
 def resolved(wall: ElasticWall, frequency: float) -> ElasticWall:
-    """Return a wall that resolves waves up to a frequency, radians per transit: by pieces if a layer is too soft for shapes."""
-    if not isinstance(wall, LossySolidWall) and any(is_soft(layer, frequency) for layer in wall.layers):
+    """Return a wall that resolves waves up to a frequency, radians per transit: by pieces if a layer is too soft for shapes.
+
+    A wall that senses or acts keeps its shapes, as pieces know no feedback.
+    """
+    plain = wall.gains is None and wall.transducers is None and not isinstance(wall, LossySolidWall)
+    if plain and any(is_soft(layer, frequency) for layer in wall.layers):
         return LossySolidWall.of(wall.layers, wall.core).resolving(frequency)
     return wall.resolving(frequency)
 
