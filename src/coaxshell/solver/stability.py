@@ -46,6 +46,10 @@ _BLOCK = 512
 _ROUGHLY = 1.15
 """How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
 _ITERATIONS = 40
+_HALVINGS = 8
+"""Times that the distance of nodes is halved where the ratio turns by more than _SPACING radians, beyond the resonances."""
+_STARTS = 12
+"""Places that Newton's method is started from until one leads to a pole that grows."""
 
 
 class UnstablePoles(NamedTuple):
@@ -244,6 +248,14 @@ def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedPart
     ends = np.unique(reached)
     nodes = contour.beyond(*ends.tolist())
     ratio = _ratio(problem, nodes, modes, shared, passive)
+    for _ in range(_HALVINGS):  # a pole of strong feedback may lie there, close to the contour
+        quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
+        if not quick.any():
+            break
+        between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
+        nodes, ratio = np.append(nodes, between), np.append(ratio, _ratio(problem, between, modes, shared, passive), axis=1)
+        ascending = np.argsort(nodes.imag)
+        nodes, ratio = nodes[ascending], ratio[:, ascending]
     for end in ends:
         turned[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
     return turned + np.angle(1.0 / ratio[:, -1])  # beyond the last node it tends to 1 without turning
@@ -301,13 +313,17 @@ def _pole(problem: Problem, modes: Modes, least: float) -> complex:
         return np.asarray(here * step / np.where(ahead == here, 1e-300, ahead - here))
 
     contour = Contour.of(problem, modes, least).nodes
-    s = contour[[int(np.abs(newton(contour)).argmin())]]  # the pole is nearer to the contour than any that does not grow
-    for _ in range(_ITERATIONS):
-        change = newton(s)
-        s = np.maximum((s - change).real, 0.5 * least) + 1j * (s - change).imag
-        if abs(change[0]) < 1e-9 * abs(s[0]):
-            break
-    return complex(max(s[0].real, least), s[0].imag)
+    nearest = contour[np.argsort(np.abs(newton(contour)))[:_STARTS]]  # the pole is nearer to the contour than any that does not grow
+    for start in nearest:
+        s = np.array([start])
+        for _ in range(_ITERATIONS):
+            change = newton(s)
+            s = np.maximum((s - change).real, 0.5 * least) + 1j * (s - change).imag
+            if abs(change[0]) < 1e-9 * abs(s[0]) or abs(s[0]) > 2.0 * abs(contour[-1]):
+                break
+        if abs(change[0]) < 1e-6 * abs(s[0]) and s[0].real >= 0.999 * least:
+            return complex(s[0])
+    return complex(least, nearest[0].imag)
 
 
 def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0) -> None:
