@@ -86,6 +86,16 @@ def head_to_tail(response):
     return head / tail
 
 
+@pytest.mark.parametrize("kind", ["pseudo_velocity", "absolute_acceleration", "relative_displacement"])
+def test_shock_spectra_are_metrics(response, value, kind):
+    spectrum = response.shock_spectrum("outer", np.arange(0.0, 181.0, 5.0), [300.0], kind=kind.replace("_", "-")).values[0]
+    np.testing.assert_allclose(value(f"outer.{kind}@300 Hz"), spectrum.max(), rtol=1e-12)
+    np.testing.assert_allclose(value(f"shells[1].{kind}_head@300"), spectrum[0], rtol=1e-12)
+    np.testing.assert_allclose(value(f"outer.{kind}_tail@0.3 kHz"), spectrum[-1], rtol=1e-12)
+    (metric,) = metrics_of([f"outer.{kind}@300 Hz"], response.system)
+    assert metric.units == {"pseudo_velocity": "m/s", "absolute_acceleration": "m/s^2", "relative_displacement": "m"}[kind]
+
+
 def test_functions_of_the_user(response, tmp_path):
     (tmp_path / "mine.py").write_text('def twice(response):\n    """Twice two."""\n    return 4\n\n\ntwice.units = "Pa"\n')
     asked = {"ratio": head_to_tail, "four": f"{tmp_path / 'mine.py'}:twice", "stress": "inner.peak_stress"}
@@ -111,6 +121,10 @@ def test_functions_of_the_user(response, tmp_path):
         ([3], "is not a metric"),
         ([lambda response: 0.0], "has no name"),
         (["missing.py:f"], "there is no Python file"),
+        (["inner.pseudo_velocity@500 kg"], r"metrics\[0\]: '500 kg'"),
+        (["inner.pseudo_velocity@0"], r"metrics\[0\]: 0 Hz is not allowed"),
+        (["inner.velocity@500 Hz"], "is not a known metric; give inner or another shell with relative_displacement"),
+        (["gap.pseudo_velocity@500 Hz"], "is not a known metric; give inner"),
     ],
 )
 def test_bad_metrics(hybrid, asked, message):

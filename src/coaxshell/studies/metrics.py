@@ -1,8 +1,9 @@
 """Named metrics: what a study asks of every case, as ``inner.peak_stress``, ``interior.rms_pressure`` or a function of the user's.
 
 A metric named in text is "PLACE.QUANTITY": a shell ("inner", "outer", "middle" of three, "shells[1]"; "shell" where there is one), a
-fluid ("interior", "gap", "exterior", "fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below. A function
-of the user's takes a Response and returns a number; in a study file it is written "file.py:function".
+fluid ("interior", "gap", "exterior", "fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below, or the value of
+a shock spectrum, "PLACE.pseudo_velocity@500 Hz". A function of the user's takes a Response and returns a number; in a study file it is
+written "file.py:function".
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from coaxshell.response.quantities import Where, shell_metrics
 from coaxshell.response.spatial_summary import SpatialSummary
 from coaxshell.response.summary import Summary
 from coaxshell.studies.reading import DesignReading, MetricSource
+from coaxshell.studies.spectrum_metrics import NAMES, SpectrumMetric
 from coaxshell.studies.user_functions import UserCode, UserFunction, from_callable, from_text
 
 MetricLike = str | Callable[[Response], float]
@@ -254,8 +256,11 @@ def _metric(asked: Any, name: str | None, system: System, where: str, code: User
     text = asked.strip()
     if ":" in text:
         return _of_function(from_text(text, where, code), name)
+    text, at, frequency = text.partition("@")
+    label = name or (f"{text}@{frequency}" if at else text)
     listing, item, quantity = _split(text)
-    label = name or text
+    if at:
+        return _of_spectrum(label, item, SpectrumMetric.of(quantity, frequency, where), system, where)
     if isinstance(item, str) and quantity in WITHOUT_SHELL.get(item, {}):
         attribute = WITHOUT_SHELL[item][quantity]
         if system.point_absorbers and attribute in _NOT_OF_POINTS:
@@ -298,6 +303,17 @@ def _lacks(wall: object, entry: MetricEntry) -> str | None:
 def _has_margin(wall: object, quantity: str) -> bool:
     """Return whether a quantity is no margin, or a layer of the wall has the strength that it is told against."""
     return quantity != "strength_margin" or (isinstance(wall, Shell) and any(layer.material.strength is not None for layer in wall.layers))
+
+
+def _of_spectrum(label: str, item: str | int, spectrum: SpectrumMetric | None, system: System, where: str) -> Metric:
+    shell = _shell(item, system)
+    if shell is None or spectrum is None:
+        allowed = f"{shell_place(0, len(system.shells))} or another shell with {', '.join(NAMES)} and a frequency"
+        raise InputError(where, f"{label!r} is not a known metric", f"give {allowed}, as in outer.pseudo_velocity@500 Hz")
+    lack = _lacks(system.shells[shell], MetricEntry("", ""))
+    if lack is not None:
+        raise InputError(where, f"{label!r} needs a shell that {lack}", suggestion(label, metric_names(system)))
+    return Metric(label, spectrum.units, f"{spectrum.long_name}, {shell_phrase(shell, len(system.shells))}", shell, spectrum.quantity)
 
 
 def _of_fluid(text: str, label: str, item: str | int, quantity: str, system: System, where: str) -> Metric:

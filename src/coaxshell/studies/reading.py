@@ -23,6 +23,7 @@ from coaxshell.response.voltages import actuator_limit, demanded_voltage, larges
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.wall_stress import usual_component
 from coaxshell.solver.electrodes import segment_length
+from coaxshell.studies.spectrum_metrics import SpectrumMetric
 
 
 class DesignReading:
@@ -94,6 +95,10 @@ class MetricSource(DesignReading):
 
         With stations the largest of them all.
         """
+        spectrum = SpectrumMetric.read(name)
+        if spectrum is not None:
+            assert isinstance(place, int)
+            return max(spectrum.largest(motion, place, self._head) for motion in self.response.motions)
         entry = shell_metrics().get(name)
         if entry is None:
             return super().number(name, place)
