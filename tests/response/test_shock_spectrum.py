@@ -47,6 +47,17 @@ def test_kinds_extremes_and_phases_belong_together(response):
     assert response.shock_spectrum("inner", 0, f).dims == ("frequency",)
 
 
+def test_mirror_images_are_equal_where_there_are_any(response):
+    f = [300.0, 2000.0]
+    found = response.shock_spectrum("outer", [-40.0, 40.0, 320.0, 50.0], f).values
+    assert np.all(found[:, :3] == found[:, 1:2])
+    assert np.all(found[:, 3] != found[:, 1])
+    turned = response.system.replace(source=(cx.PlaneShock(peak_pressure=1e5, decay_time=1e-4, angle=60.0),))
+    run = cx.simulate(turned, modes=4, time_step=0.02, duration=1.0)
+    left, right = run.shock_spectrum("outer", [-40.0, 40.0], 300.0).values.ravel()
+    assert abs(left - right) > 1e-2 * right
+
+
 def test_stations():
     system = cx.presets.load("bare").replace(source=cx.LineShock(peak_pressure=2.5e4, decay_time=1.3e-4, distance=5))
     settings = {"modes": 4, "time_step": 0.04, "duration": 2}

@@ -74,7 +74,6 @@ def figure_shock_spectra(
     for dash, section in zip(DASHES, sections.values(), strict=False):
         response = section.response
         circle = np.linspace(0.0, 360.0, ENVELOPE_ANGLES, endpoint=False)
-        circle = circle[circle <= 180.0] if response.solution.normal.shape[1] == 1 else circle  # the other half is its mirror image
         for index in response.system.shell_indices(shells):
             around = [*angles, *(circle if envelope else ())]
             found = response.shock_spectrum(index, around, frequency, station=section.station, quality_factor=quality_factor)

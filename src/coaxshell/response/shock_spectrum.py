@@ -107,14 +107,22 @@ def shock_spectrum(
         limit = f"is above {_NYQUIST / step:.4g} Hz, what the time step {step:.3g} s resolves"
         raise InputError("frequency", f"{hertz.max():g} Hz {limit}", "give lower ones, or run with a smaller time_step")
     oscillators = Oscillators(np.atleast_1d(hertz), quality, step)
-    base = shell_acceleration(motion, shell, np.atleast_1d(theta), component)
+    distinct, places = _distinct(np.atleast_1d(theta), mirrored=component == "normal" and motion.solution.normal.shape[1] == 1)
+    base = shell_acceleration(motion, shell, distinct, component)
     series = np.ascontiguousarray(base.to_numpy().T)
     end = oscillators.at_the_end(series)
     found = oscillators.after(end, kind) if during == "residual" else oscillators.during(series, end, kind)
     if during == "overall":
         found = found.joined(oscillators.after(end, kind))
     sides = {"positive": found.largest, "negative": -found.smallest, "maximax": np.maximum(found.largest, -found.smallest)}
-    return _labelled(motion.solution, sides[extreme], oscillators.frequency, theta, shell, (kind, extreme, during, component, quality))
+    return _labelled(
+        motion.solution, sides[extreme][:, places], oscillators.frequency, theta, shell, (kind, extreme, during, component, quality)
+    )
+
+
+def _distinct(theta: FloatArray, *, mirrored: bool) -> tuple[FloatArray, npt.NDArray[np.intp]]:
+    """Return the angles that differ, each once, and which of them each is; theta and -theta are one where halves are mirror images."""
+    return np.unique(np.abs((theta + 180.0) % 360.0 - 180.0) if mirrored else theta, return_inverse=True)
 
 
 def frequencies_of(frequency: npt.ArrayLike | None) -> FloatArray | None:

@@ -76,7 +76,6 @@ class SpectrumMetric(NamedTuple):
 
     def largest(self, motion: WallMotion, shell: int, head: float) -> float:
         """Return its value of a run (at a station), SI; *head* is the direction of the source in degrees."""
-        around = np.arange(0.0, 360.0 if motion.solution.normal.shape[1] == 2 else 180.0 + STEP, STEP)
-        angles = np.array([head + _TURNS[self.where]]) if self.where else head + around
+        angles = np.array([head + _TURNS[self.where]]) if self.where else head + np.arange(0.0, 360.0, STEP)
         found = shock_spectrum(motion, shell, angles, [self.frequency], quality_factor=QUALITY_FACTOR, kind=self.kind)
         return float(found.max())
