@@ -8,7 +8,8 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model.units import DIMENSIONS, to_si
-from coaxshell.response.shock_spectrum import UNITS, Kind, shock_spectrum
+from coaxshell.numerics.oscillators import Kind
+from coaxshell.response.shock_spectrum import UNITS, shock_spectrum
 from coaxshell.response.wall_motion import WallMotion
 
 QUALITY_FACTOR = 10.0
