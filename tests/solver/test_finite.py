@@ -90,14 +90,14 @@ def test_the_stage_is_named(name: str, index: tuple[int, ...], told: str, monkey
 
 
 def test_a_march_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    march = linked.march
+    march = linked.march_interface
 
     def poisoned(*given: Any, **options: Any) -> Any:
         found = march(*given, **options)
         found.force[3, 77] = np.nan
         return found
 
-    monkeypatch.setattr(linked, "march", poisoned)
+    monkeypatch.setattr(linked, "march_interface", poisoned)
     with pytest.raises(InputError, match=r"absorbers: the force of the absorbers is nan first at absorber \d+, side \d, t = 0.77"):
         cx.simulate(presets.load("hybrid"), **COARSE)
 
@@ -106,7 +106,7 @@ def test_a_failed_linear_solve_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*given: Any, **options: Any) -> Any:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(linked, "march", fails)
+    monkeypatch.setattr(linked, "march_interface", fails)
     with pytest.raises(InputError, match=r"leave the range of the computer \(Singular matrix\)"):
         cx.simulate(presets.load("hybrid"), **COARSE)
 

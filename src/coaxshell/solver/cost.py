@@ -23,7 +23,7 @@ from coaxshell.solver.spatial_cost import spatial_cost
 
 _BLOCK_PAIRS = 64 * 1024
 """Order-node pairs that a thread works on at a time."""
-_RECEPTANCE_BYTES = 32 * 1024 * 1024
+_RECEPTANCE_BYTES, _PAIR_BYTES = 8 * 1024 * 1024, 64 * 1024 * 1024
 _BLOCK_UNKNOWNS, _LONGEST_BLOCK = 512, 32
 _REFLECTION = 1e-8
 """Seconds of a pair of orders at a node in Graf's sum."""
@@ -171,8 +171,10 @@ def _exact_bytes(size: Size) -> tuple[float, float]:
         return spectra + 14.0 * size.plane, 0.0
     width = min(size.nodes, max(4, int(_RECEPTANCE_BYTES / (COMPLEX * size.points**2))))
     blocks = math.ceil(size.nodes / width)
-    each = COMPLEX * width * (2.5 * size.points**2 + size.points * size.orders)
-    return spectra + min(WORKERS, blocks) * each, 0.0
+    shares = REAL * float(size.points) ** 2 * size.orders  # of all pairs, which are kept where they are few
+    few = shares <= _PAIR_BYTES
+    each = COMPLEX * width * (3.5 * size.points**2 + (0.0 if few else size.parities * size.points * size.orders))
+    return spectra + (shares if few else 0.0) + min(WORKERS, blocks) * each, 0.0
 
 
 def _direct_bytes(size: Size) -> float:

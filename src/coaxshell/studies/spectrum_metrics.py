@@ -61,7 +61,7 @@ class SpectrumMetric(NamedTuple):
 
     @property
     def quantity(self) -> str:
-        """Its name, the frequency in Hz."""
+        """Name of the quantity, with the frequency in Hz."""
         return f"{self.kind.replace('-', '_')}{self.where}@{self.frequency!r}"
 
     @property
