@@ -95,6 +95,16 @@ def test_data_of_figures_can_be_saved(page, runs):
     assert {"loads.csv", "stress.csv", "relative-displacement.csv", "actuator-voltage.csv", "strokes.csv"} <= set(page.files)
 
 
+def test_the_map_of_the_largest_stress_can_be_saved(page, runs):
+    heading, *rows = csv.reader(io.StringIO(page.files["largest-stress.csv"]))
+    table = dict(zip(heading, np.array(rows, dtype=float).T, strict=True))
+    of_bare = [values for name, values in table.items() if name.startswith("bare inner layer ")]
+    assert len(of_bare) == 3 * 9
+    peak = runs[1].peak_stress("inner")
+    assert 0.99 * peak.value < max(values.max() for values in of_bare) <= 1.0001 * peak.value
+    assert np.array_equal(table["angle (deg)"], np.arange(0.0, 181.0))
+
+
 def test_it_can_be_repeated_from_what_it_holds(page, runs):
     assert cx.System.from_toml_string(page.files["scenario.toml"]) == runs[0].system
     assert cx.System.from_toml_string(page.files["scenario-compared.toml"]) == runs[1].system

@@ -67,7 +67,7 @@ def plot_wall_stress(
         return _draw(drawn, ax or new_figure(5.6, 3.2).add_subplot(), drawn.largest)
 
 
-class _Mapped(NamedTuple):
+class MappedWall(NamedTuple):
     """What a panel shows: the largest value with its place, and the maps of the layers by their materials."""
 
     response: Response
@@ -82,15 +82,15 @@ class _Mapped(NamedTuple):
         return max(float(values.max()) for _, _, values in self.maps)
 
 
-def _mapped(response: Response, shell: int, component: str, window: Sequence[float] | None, station: Any) -> _Mapped:
+def _mapped(response: Response, shell: int, component: str, window: Sequence[float] | None, station: Any) -> MappedWall:
     peak = response.peak_stress(shell, component, window=window, station=station)
     span = time_window(response.time, window)
     ((_, motion),) = response.stations_read(peak.station if response.stations is not None else None)
     maps = layer_maps(motion, shell, component, span)
-    return _Mapped(response, shell, peak, described_layers(response, shell), maps)
+    return MappedWall(response, shell, peak, described_layers(response, shell), maps)
 
 
-def _draw(drawn: _Mapped, ax: Axes, limit: float) -> Axes:
+def _draw(drawn: MappedWall, ax: Axes, limit: float) -> Axes:
     """Draw a map on colours from zero to a limit (Pa)."""
     peak, maps, shells = drawn.peak, drawn.maps, drawn.response.shells
     unit, per_pascal = ("MPa", 1e-6) if limit >= 1e4 else ("kPa", 1e-3)
@@ -139,15 +139,26 @@ def figure_wall_stress(
     InputError
         As :meth:`coaxshell.Response.peak_stress`.
     """
+    return draw_walls(mapped_walls(responses, shells, component))
+
+
+def mapped_walls(
+    responses: Mapping[str, Response] | Response, shells: Sequence[int | str] | int | str | None, component: str
+) -> dict[str, list[MappedWall]]:
+    """Return by run the maps of its walls that :func:`figure_wall_stress` draws."""
     runs = dict(responses) if isinstance(responses, Mapping) else {"": responses}
-    maps = {
+    return {
         name: [_mapped(response, shell, component, None, None) for shell in response.system.shell_indices(shells)]
         for name, response in runs.items()
     }
+
+
+def draw_walls(maps: Mapping[str, Sequence[MappedWall]]) -> Figure:
+    """Return the figure of the maps of walls by run."""
     rows = max(len(of_run) for of_run in maps.values())
     with style():
         figure = new_figure(PAGE_WIDTH, 2.1 * rows)
-        axes = figure.subplots(rows, len(runs), squeeze=False)
+        axes = figure.subplots(rows, len(maps), squeeze=False)
         for row in range(rows):
             largest = [of_run[row].largest for of_run in maps.values() if row < len(of_run)]
             together = max(largest) <= _ALIKE * min(largest)
@@ -156,12 +167,12 @@ def figure_wall_stress(
                     ax.remove()
                     continue
                 _draw(of_run[row], ax, max(largest) if together else of_run[row].largest)
-                phrase = shell_phrase(of_run[row].shell, runs[name].shells)
+                phrase = shell_phrase(of_run[row].shell, of_run[row].response.shells)
                 ax.set_title("")
                 ax.set_title(
                     literal(f"{name}, {phrase}" if name else phrase[:1].upper() + phrase[1:]), loc="left", fontweight="bold", pad=8
                 )
-                if len(runs) > 1:
+                if len(maps) > 1:
                     ax.set_xlabel("angle (degrees)")
     return figure
 

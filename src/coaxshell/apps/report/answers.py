@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from coaxshell.response.run_comparison import comparison_rows
 from coaxshell.response.summary_text import when
 
 if TYPE_CHECKING:
+    from coaxshell.plotting.wall_stress import MappedWall
     from coaxshell.response import Response
     from coaxshell.response.wall_stress import WallPeak
 
@@ -185,7 +186,7 @@ def _stations(found: Any) -> list[tuple[str, np.ndarray]]:
 
 def largest_stress(subject: Subject) -> Section:
     """Return the section on where the stress is largest: maps over angle and depth, and the largest of each layer."""
-    from coaxshell.plotting.wall_stress import figure_wall_stress
+    from coaxshell.plotting.wall_stress import draw_walls, mapped_walls
 
     readable = [shell for shell in subject.shells if _peak(subject.run, shell) is not None]
     if not readable:
@@ -195,10 +196,25 @@ def largest_stress(subject: Subject) -> Section:
     caption = "Largest von Mises stress over time by angle and depth; the star is the largest of all. Layers are told apart by lines."
     worst = max(told, key=lambda row: row[-1], default=None)
     said = f"{caption} Largest: {worst[0][0]}, {worst[0][3]} in {worst[0][1]} at {worst[0][5]}." if worst else caption
-    maps = drawn(figure_wall_stress(subject.labelled, list(subject.shells)), "largest-stress", said, caption)
+    walls = mapped_walls(subject.labelled, list(subject.shells), "von_mises")
+    maps = drawn(draw_walls(walls), "largest-stress", said, caption, _over_depths(walls))
     head = ("shell", "layer", "strength", "largest stress", "t (a/c)", "angle", "strength over stress")
     table = Table("Largest von Mises stress of each layer", head, [row for row, _ in told], 2)
     return Section("Where the stress is largest", [maps, table])
+
+
+def _over_depths(walls: Mapping[str, Sequence[MappedWall]]) -> Columns:
+    """Return the maps of walls as columns over the angles of the first, one a depth of each layer."""
+    table: dict[str, Any] = {}
+    for name, of_run in walls.items():
+        for wall in of_run:
+            label = " ".join(filter(None, [name, shell_name(wall.shell, wall.response.shells)]))
+            for number, ((angles, depths, values), material) in enumerate(zip(wall.maps, wall.layers, strict=False)):
+                around = table.setdefault("angle (deg)", angles)
+                for depth, row in zip(depths, values, strict=True):
+                    column = f"{label} layer {number} ({material}) {1e3 * depth:.4g} mm outside the middle (Pa)"
+                    table[column] = np.interp(around, angles, row)
+    return table
 
 
 def _rows_of_layers(subject: Subject) -> list[tuple[tuple[str, ...], float]]:
