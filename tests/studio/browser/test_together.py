@@ -55,6 +55,7 @@ def test_seven_tabs_of_one_browser_are_all_answered_and_share_one_stream(browser
 
 def test_the_page_outlives_a_restart_of_the_server(own_server, open_page, watched, free_port):
     watched.forgiven += ["ERR_CONNECTION_REFUSED", "ERR_INCOMPLETE_CHUNKED_ENCODING", "ERR_CONNECTION_RESET", "ERR_EMPTY_RESPONSE"]
+    watched.forgiven += ["503"]  # what was under way when the server began to end, such as a judgement on a slow machine, is answered so
     server = own_server(free_port)
     page = open_preset(open_page, server, SMALL, preset="hybrid", drawing=False)
     server.stop()
