@@ -10,7 +10,7 @@ import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.studies.gradients.sensitivity import MetricSensitivity
 from coaxshell.studies.metrics import metrics_of
-from coaxshell.studies.varied_fields import varied
+from coaxshell.studies.varied_fields import field_of, varied
 
 SETTINGS = {"duration": 1.0, "time_step": 0.02, "modes": 8}
 NAMES = ("angle", "mass", "damping", "linear_stiffness", "cubic_stiffness")
@@ -95,6 +95,66 @@ def test_mirror_images_that_are_carried_once(cubic):
     assert found.of("absorbers[0].angle") == 0.0
     changes = {"absorbers[1].angle": (120.0, 0.2), "absorbers[2].angle": (240.0, -0.1), "absorbers[2].mass": (8.0, 0.1)}
     assert_allclose(along(found, changes), difference(system, changes), rtol=1e-6)
+
+
+LAWS = (
+    cx.laws.Polynomial(coefficients=(1e9, 1e16, 1e23)),
+    cx.laws.Parallel(
+        laws=(cx.laws.Gap(clearance=1e-7, stiffness=5e9, restitution=0.6), cx.laws.Maxwell(stiffness=2e9, relaxation_time=1e-4))
+    ),
+    cx.laws.Sides(
+        inner=cx.laws.Friction(force=500.0, speed=0.02), outer=cx.laws.Table(stretch=(-1.0, 0.0, 2e-7, 1.0), force=(-1e9, 0.0, 50.0, 2e9))
+    ),
+    cx.laws.Parallel(laws=(cx.laws.Friction(force=50.0, stiffness=1e9), cx.laws.Bistable(k1=-1e8, k3=1e20, rest="outwards"))),
+)
+OF_LAWS = {
+    "absorbers[0].law.coefficients[1]": 0.01,
+    "absorbers[1].law.laws[0].stiffness": 0.001,
+    "absorbers[1].law.laws[0].clearance": 1e-4,
+    "absorbers[1].law.laws[0].restitution": 0.001,
+    "absorbers[1].law.laws[1].relaxation_time": 0.01,
+    "absorbers[2].law.inner.speed": 0.01,
+    "absorbers[2].law.outer.force[2]": 0.001,
+    "absorbers[3].law.laws[0].force": 1e-4,
+    "absorbers[3].law.laws[1].k3": 0.01,
+    "absorbers[0].inertance": 0.01,
+    "absorbers[1].damping": 0.01,
+    "absorbers[2].footprint": 0.01,
+    "absorbers[3].mass": 0.01,
+    "absorbers[1].angle": 0.001,
+    "shells[0].radius": 1e-5,
+}
+
+
+def of_laws(laws=LAWS):
+    """Absorbers of unlike laws at unlike angles, one on a shell alone."""
+    common = {"mass": 8.0, "damping": 1e6, "linear_stiffness": 1e9, "footprint": 0.05, "inertance": 1.0}
+    sides = ("both", "both", "both", "outer")
+    return BASE.replace(
+        absorbers=[cx.Absorber(angle=a, law=law, links=on, **common) for a, law, on in zip((10, 130, 200, 245), laws, sides, strict=True)]
+    )
+
+
+def relative(system, names):
+    found = {path: field_of(system, path).present for path in names}
+    return {path: (at, names[path] * abs(at)) for path, at in found.items()}
+
+
+def test_laws_of_absorbers_that_are_marched():
+    system, settings = of_laws(), {"duration": 0.7, "modes": 6}
+    changes = relative(system, OF_LAWS)
+    assert_allclose(along(sensitivity(system, **settings), changes), difference(system, changes, **settings), rtol=1e-6)
+    sticking = of_laws((cx.laws.Friction(force=500.0), *LAWS[1:]))
+    with pytest.raises(cx.InputError, match=r"absorbers.law: exact dry friction .* no gradient; give it a speed"):
+        sensitivity(sticking, **settings).of("absorbers[0].mass")
+
+
+def test_laws_of_absorbers_that_are_solved_at_each_node():
+    maxwell = cx.laws.Maxwell(stiffness=2e9, relaxation_time=1e-4)
+    system = of_laws((maxwell, cx.laws.Linear(stiffness=1e9, damping=1e5), cx.laws.Sides(outer=maxwell), None))
+    wanted = ("[0].law.relaxation_time", "[1].law.damping", "[2].law.outer.stiffness", "[0].inertance", "[3].mass", "[2].footprint")
+    changes = relative(system, {f"absorbers{path}": 0.01 for path in wanted})
+    assert_allclose(along(sensitivity(system), changes), difference(system, changes), rtol=1e-7)
 
 
 @pytest.mark.parametrize("cubic", [None, 0.0, 1e22])

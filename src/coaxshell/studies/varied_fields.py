@@ -94,9 +94,23 @@ def field_of(system: System, path: str) -> Field:
     if isinstance(node, Described) and last in type(node).model_fields:
         return _described(path, type(node), last, getattr(node, last))
     if isinstance(node, tuple) and (item := entry(system, [*way, last])) is not None:
-        return Field(path, "1", path, None, False, item)
+        quantity = _item_quantity(system, way) if isinstance(item, float) else None
+        return Field(path, (quantity.dimension.unit if quantity else "") or "1", path, quantity, False, item)
     system.with_overrides({path: 1.0})  # raises the error that names what is allowed there
     raise InputError(path, "is not a field of this system", EXAMPLE)
+
+
+def _item_quantity(system: System, way: list[str]) -> Quantity | None:
+    """Return what the numbers of a list are, such as those of a law's coefficients."""
+    owner = entry(system, way[:-1])
+    waiting = [type(owner).model_fields[way[-1]].annotation] if isinstance(owner, Described) and way[-1] in type(owner).model_fields else []
+    while waiting:
+        kind: Any = waiting.pop()
+        found = next((mark for mark in getattr(kind, "__metadata__", ()) if isinstance(mark, Quantity)), None)
+        if found is not None:
+            return found
+        waiting += get_args(kind)
+    return None
 
 
 def _described(path: str, kind: type[Described], name: str, present: Any) -> Field:

@@ -15,11 +15,13 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.solver.adjoint.backward import march_backwards
-from coaxshell.solver.adjoint.histories import marched_links
-from coaxshell.solver.adjoint.nodes import solve_transposed
+from coaxshell.solver.adjoint.backward import CubicBackwards, march_backwards
+from coaxshell.solver.adjoint.histories import marched_by_laws, marched_links
+from coaxshell.solver.adjoint.laws import AnyBackwards, ElementSensitivity
+from coaxshell.solver.adjoint.nodes import elements_at_nodes, solve_transposed
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 class Reading(NamedTuple):
@@ -29,20 +31,45 @@ class Reading(NamedTuple):
     tangential: ComplexArray
 
 
+class Around(NamedTuple):
+    """What a number changes by with the places of N absorbers.
+
+    Attributes
+    ----------
+    angle : ndarray, shape (N,)
+        Per degree.
+    shapes : ndarray, shape (2, N, M + 1)
+        Per unit of h_m, by which each link feels and presses each order: the mean of a footprint.
+    """
+
+    angle: FloatArray
+    shapes: FloatArray
+
+
 @dataclass(frozen=True)
 class LinkSensitivity:
-    """What a number changes by per unit of each property of the N absorbers carried, dimensionless; per degree of their angles."""
+    """What a number changes by per unit of each property of the N absorbers carried, dimensionless.
+
+    Attributes
+    ----------
+    mass, damping, linear, cubic : ndarray, shape (N,)
+    around : Around
+    elements : ElementSensitivity or None
+        Of the laws of their links, where there are such; the common damper and springs are the first two of each link.
+    """
 
     mass: FloatArray
     damping: FloatArray
     linear: FloatArray
     cubic: FloatArray
-    angle: FloatArray
+    around: Around
+    elements: ElementSensitivity | None = None
 
     @classmethod
     def none(cls) -> LinkSensitivity:
         """Return that of no absorbers."""
-        return cls(*np.zeros((5, 0)))
+        mass, damping, linear, cubic, angle = np.zeros((5, 0))
+        return cls(mass, damping, linear, cubic, Around(angle, np.zeros((2, 0, 1))))
 
 
 @dataclass(frozen=True)
@@ -106,20 +133,22 @@ def backwards(solved: SolvedSpectra, reading: Reading) -> Backwards:
     h = points.parities
     on_wall = reading.normal[:, :h] + structure.tangential_ratio[:, None] * reading.tangential[:, :h]
     per_pressure = np.einsum("ijmk,ihmk->jhmk", structure.compliance, on_wall)
-    return (_exact if solved.exact is not None else _marched)(solved, points, per_pressure, reading)
+    if solved.exact is not None:
+        return _exact(solved, points, per_pressure, reading)
+    return (_marched if solved.laws is None else _marched_by_laws)(solved, points, per_pressure, reading)
 
 
 def _marched(solved: SolvedSpectra, points: InterfacePoints, per_pressure: ComplexArray, reading: Reading) -> Backwards:
     """Return the answer of absorbers that were marched."""
     structure, absorbers, grid = solved.structure, solved.absorbers, solved.grid
-    first = np.array([int(np.flatnonzero(absorbers.member == i)[0]) for i in range(absorbers.count)])
+    first = _first(absorbers)
     force = solved.force[first].swapaxes(0, 1).reshape(2 * absorbers.count, -1)
     forward = marched_links(structure, absorbers, points, force, solved.displacement[first])
     pressure = grid.transform_linear_transposed(per_pressure)
     linear, cubic, damping = (np.tile(x, 2)[:, None] for x in (absorbers.linear, absorbers.cubic, absorbers.damping))
     tangent = linear + 3.0 * cubic * forward.stretch**2
-    load = points.project_transposed(pressure)
-    back = march_backwards(structure.kernels_transposed, absorbers, points, tangent, load, grid.time_step)
+    load, laws = points.project_transposed(pressure), CubicBackwards(damping[:, 0], tangent, 0.5 * grid.time_step)
+    back = march_backwards(structure.kernels_transposed, absorbers, points, laws, load, grid.time_step)
     pressure -= back.velocity
     walls = [
         (-back.force, forward.forced_velocity),
@@ -131,11 +160,61 @@ def _marched(solved: SolvedSpectra, points: InterfacePoints, per_pressure: Compl
         damping=_of_both(back.law, forward.stretch_rate),
         linear=_of_both(back.law, forward.stretch),
         cubic=_of_both(back.law, forward.stretch**3),
-        angle=_around(points, absorbers, (force, pressure), walls, [shell.radius for shell in solved.problem.shells]),
+        around=_around(solved, points, (force, pressure), walls),
     )
     displacement, velocity, forced = (points.evaluate_transposed(walls[k][0]) for k in (2, 1, 0))
     tighter = np.einsum("ihmt,ihmt->i", pressure, forward.modal_force)
     return Backwards(reading, links, Felt(displacement, velocity, forced, forward.modal_force), tighter)
+
+
+def _marched_by_laws(solved: SolvedSpectra, points: InterfacePoints, per_pressure: ComplexArray, reading: Reading) -> Backwards:
+    """Return the answer of absorbers whose links have laws, marched in the means over the steps; f is that of their middles."""
+    structure, absorbers, grid, done = solved.structure, solved.absorbers, solved.grid, solved.laws
+    assert done is not None
+    forward = marched_by_laws(structure, absorbers, points, done.force, solved.displacement[_first(absorbers)])
+    pressure = grid.transform_linear_transposed(per_pressure * np.exp(0.5 * grid.time_step * grid.nodes))
+    laws = AnyBackwards(absorbers, done.stretch, grid.time_step)
+    back = march_backwards(structure.kernels_transposed, absorbers, points, laws, points.project_transposed(pressure), grid.time_step)
+    pressure -= back.velocity
+    of_stretch = laws.stretch_slope.T
+    damping_of_start = _of_the_first_instant(structure, absorbers, points, of_stretch, back.law)
+    walls = [(-back.force, forward.forced_velocity), (-of_stretch, structure.linear_displacement)]
+    own = np.array([[bars[0][0], bars[0][1], bars[1][2]] if bars else np.zeros(3) for bars in laws.sensitivity.elements])
+    stiffness, damping, cubic = own.reshape(2, absorbers.count, 3).sum(axis=0).T
+    links = LinkSensitivity(
+        mass=np.einsum("nt,nt->n", back.mass, forward.mass_acceleration),
+        damping=damping + damping_of_start,
+        linear=stiffness,
+        cubic=cubic,
+        around=_around(solved, points, (done.force, pressure), walls),
+        elements=laws.sensitivity,
+    )
+    displacement, forced = points.evaluate_transposed(-of_stretch), points.evaluate_transposed(-back.force)
+    tighter = np.einsum("ihmt,ihmt->i", pressure, forward.modal_force)
+    return Backwards(reading, links, Felt(displacement, np.zeros_like(displacement), forced, forward.modal_force), tighter)
+
+
+def _of_the_first_instant(
+    structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, of_stretch: FloatArray, law: FloatArray
+) -> FloatArray:
+    """Set what the walls' displacement w_0 at the first instant changes, and return its part of the common dampers' slopes, (N,).
+
+    D begins at 0 and is twice the mean less the one before, so that w_0, which the inverse transform leaves at the first instant, stays
+    in it from step to step, D_n = -w_n + (-1)^n w_0; the dampers take the rate of w itself.
+    """
+    assert absorbers.elements is not None
+    dt, count = structure.grid.time_step, absorbers.count
+    signs = (-1.0) ** np.arange(law.shape[1])
+    signs[0] = 0.0
+    damping = np.tile(absorbers.damping, 2) * absorbers.elements.present
+    of_stretch[:, 0] = -(of_stretch @ signs) + damping * (law @ signs) * (2.0 / dt)
+    start = points.evaluate(structure.linear_displacement[..., 0])
+    return np.asarray((-2.0 / dt * (law @ signs) * start * absorbers.elements.present).reshape(2, count).sum(axis=0))
+
+
+def _first(absorbers: AbsorberSet) -> list[int]:
+    """Return the number in the description of the first absorber that each one carried stands for."""
+    return [int(np.flatnonzero(absorbers.member == i)[0]) for i in range(absorbers.count)]
 
 
 def _exact(solved: SolvedSpectra, points: InterfacePoints, per_pressure: ComplexArray, reading: Reading) -> Backwards:
@@ -147,14 +226,14 @@ def _exact(solved: SolvedSpectra, points: InterfacePoints, per_pressure: Complex
     stretch = np.tile(displacement, (2, 1)) - points.evaluate(solved.normal)
     felt = points.evaluate_transposed(back.force)
     pressure = per_pressure - np.einsum("ijmk,ihmk->jhmk", structure.compliance, felt)
+    there = np.ones(2 * absorbers.count) if absorbers.elements is None else absorbers.elements.present.astype(np.float64)
     links = LinkSensitivity(
         mass=-np.einsum("nk,nk->n", back.mass, s**2 * displacement).real,
-        damping=_of_both(back.law, s * stretch),
-        linear=_of_both(back.law, stretch),
+        damping=_of_both(back.law * there[:, None], s * stretch),
+        linear=_of_both(back.law * there[:, None], stretch),
         cubic=np.full(absorbers.count, np.nan),
-        angle=_around(
-            points, absorbers, (force, pressure), [(-back.force, solved.normal)], [shell.radius for shell in solved.problem.shells]
-        ),
+        around=_around(solved, points, (force, pressure), [(-back.force, solved.normal)]),
+        elements=None if absorbers.elements is None else elements_at_nodes(absorbers, s, back.law * stretch),
     )
     normal = reading.normal.copy()
     normal[:, : points.parities] -= felt
@@ -168,31 +247,31 @@ def _of_both(law: FloatArray | ComplexArray, part: FloatArray | ComplexArray) ->
 
 
 def _around(
+    solved: SolvedSpectra,
     points: InterfacePoints,
-    absorbers: AbsorberSet,
     force: tuple[FloatArray | ComplexArray, FloatArray | ComplexArray],
     walls: Sequence[tuple[FloatArray | ComplexArray, FloatArray | ComplexArray]],
-    radii: list[float],
-) -> FloatArray:
-    """Return what a number changes by per degree of each absorber's angle.
+) -> Around:
+    """Return what a number changes by with the angle of each absorber and the arcs of its links.
 
     Parameters
     ----------
+    solved : SolvedSpectra
     points : InterfacePoints
-    absorbers : AbsorberSet
     force : tuple
         Forces at the points, and what a unit of each modal pressure changes.
     walls : list of tuple
         What a unit of motion at the points changes, and that motion by modes.
-    radii : list of float
-        Of the shells, in a.
     """
-    modes, (load, pressures) = Modes.up_to(points.modes - 1), force
+    absorbers, modes, (load, pressures) = solved.absorbers, Modes.up_to(points.modes - 1), force
+    radii = [surface.radius for surface in solved.problem.surfaces]
     beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
-    multiplicity = np.tile(absorbers.multiplicity, 2)
+    multiplicity, held = np.tile(absorbers.multiplicity, 2), absorbers.held.ravel()
     angles = np.radians(np.tile(absorbers.angle, 2))[:, None] * modes.orders
-    slope = np.radians(modes.orders) * np.stack([-np.sin(angles), np.cos(angles)][: points.parities])
-    total = np.zeros(points.count)
+    means = absorbers.means(solved.problem, modes).reshape(points.count, -1) * held[:, None]
+    turned = np.radians(modes.orders) * np.stack([-np.sin(angles), np.cos(angles)][: points.parities]) * means
+    shaped = np.stack([np.cos(angles), np.sin(angles)][: points.parities]) * held[:, None]
+    total, shapes = np.zeros(points.count), np.zeros((points.count, modes.count))
     for i in np.unique(points.surface):
         here = np.flatnonzero(points.surface == i)
         share = (multiplicity[here, None] / beta_pi) / radii[i]
@@ -201,8 +280,9 @@ def _around(
             for weight, motion in walls:
                 if h < motion.shape[1]:
                     placed = placed + _product(weight[here], motion[i, h])
-            total[here] += (placed * slope[h, here]).sum(axis=1)
-    return np.asarray(total.reshape(2, -1).sum(axis=0))
+            total[here] += (placed * turned[h, here]).sum(axis=1)
+            shapes[here] += placed * shaped[h, here]
+    return Around(np.asarray(total.reshape(2, -1).sum(axis=0)), shapes.reshape(2, absorbers.count, -1))
 
 
 def _product(points: FloatArray | ComplexArray, modal: FloatArray | ComplexArray) -> FloatArray:

@@ -17,6 +17,7 @@ the number by sum_n lambda_n g_n.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -56,8 +57,57 @@ class BackwardMarch:
     velocity: FloatArray
 
 
+class Forces(NamedTuple):
+    """psi of a step backwards, ahead + at_once lambda; both of shape (2N,)."""
+
+    ahead: FloatArray
+    at_once: FloatArray
+
+
+class LawsBackwards(Protocol):
+    """What the laws of the links make of lambda, from the last step to the first."""
+
+    def forces(self) -> Forces:
+        """Return psi of the next step backwards."""
+        ...
+
+    def take(self, law: FloatArray) -> None:
+        """Go on with lambda of that step, (2N,)."""
+        ...
+
+
+class CubicBackwards:
+    """Dampers and springs of which the tangent is known: psi = c lambda + I^T (T lambda).
+
+    Parameters
+    ----------
+    damping : ndarray, shape (2N,)
+    tangent : ndarray, shape (2N, T)
+        T of every link at every step.
+    half : float
+        dt/2.
+    """
+
+    def __init__(self, damping: FloatArray, tangent: FloatArray, half: float) -> None:
+        self._damping, self._half = damping, half
+        self._slopes = np.ascontiguousarray(tangent.T[::-1])
+        self._integral, self._flow = np.zeros_like(damping), np.zeros_like(damping)
+        self._step = 0
+
+    def forces(self) -> Forces:
+        """Return psi of the next step backwards."""
+        self._ahead = self._integral + self._half * self._flow  # of I^T (T lambda)
+        return Forces(self._ahead, self._damping + self._half * self._slopes[self._step])
+
+    def take(self, law: FloatArray) -> None:
+        """Go on with lambda of that step."""
+        flow = self._slopes[self._step] * law
+        self._integral, self._flow = self._ahead + self._half * flow, flow
+        self._step += 1
+
+
 def march_backwards(
-    kernels: KernelTable, absorbers: AbsorberSet, points: InterfacePoints, tangent: FloatArray, load: FloatArray, time_step: float
+    kernels: KernelTable, absorbers: AbsorberSet, points: InterfacePoints, laws: LawsBackwards, load: FloatArray, time_step: float
 ) -> BackwardMarch:
     """March from the last step to the first.
 
@@ -67,8 +117,7 @@ def march_backwards(
         Step weights of the velocities with outputs and inputs exchanged.
     absorbers : AbsorberSet
     points : InterfacePoints
-    tangent : ndarray, shape (2N, T)
-        T of every link at every step.
+    laws : LawsBackwards
     load : ndarray, shape (2N, T)
         F.
     time_step : float
@@ -82,20 +131,20 @@ def march_backwards(
     length = max(1, min(_LONGEST_BLOCK, _BLOCK_UNKNOWNS // max(count, 1), steps - 1))
     weights = kernels.kernels[..., :length].swapaxes(0, 1)
     own = np.stack([points.immediate(weights[..., lag]).T for lag in range(weights.shape[-1])])
-    step = _LinkStep(absorbers, own[0], 0.5 * time_step)
+    step = _LinkStep(absorbers, own[0], laws, 0.5 * time_step)
     toeplitz = block_toeplitz(own)
     earlier = [toeplitz[k * count : (k + 1) * count, : k * count] for k in range(length)]
     sums, history = HistorySum(kernels, points.parities), History()
     law, psi, eta = np.zeros((steps, count)), np.zeros((steps, count)), np.zeros((steps, absorbers.count))
     velocity = np.zeros((points.surfaces, points.parities, points.modes, steps))
-    loads, slopes = np.ascontiguousarray(load.T[::-1]), np.ascontiguousarray(tangent.T[::-1])
+    loads = np.ascontiguousarray(load.T[::-1])
     for start in range(0, steps - 1, length):  # forces begin at step 1: the first instant is at rest
         block = slice(start, min(start + length, steps - 1))
         ahead = sums.forcing(history, block.stop - start)
         known = loads[block] - points.project_transposed(ahead).T
         for k in range(block.stop - start):
             before = psi[start : start + k].ravel()
-            law[start + k], psi[start + k], eta[start + k] = step(known[k] - earlier[k] @ before if k else known[k], slopes[start + k])
+            law[start + k], psi[start + k], eta[start + k] = step(known[k] - earlier[k] @ before if k else known[k])
         history, given = sums.push(history, points.evaluate_transposed(psi[block].T))
         velocity[..., block] = ahead + given
     return BackwardMarch(law[::-1].T, psi[::-1].T, eta[::-1].T, velocity[..., ::-1])
@@ -104,41 +153,39 @@ def march_backwards(
 class _LinkStep:
     """One step backwards: lambda, psi and eta from what is known of lambda.
 
-    Unknown is lambda alone: (1 + Z d) lambda = known - Z psi_known + B eta_known with d = c + T dt/2, Z the answer of points and masses
-    within the step. T changes little from step to step: an inverse is kept and the rest iterated.
+    Unknown is lambda alone: (1 + Z d) lambda = known - Z psi_known + B eta_known with d what it adds to psi at once, c + T dt/2, Z the
+    answer of points and masses within the step. d changes little from step to step: an inverse is kept and the rest iterated.
 
     Parameters
     ----------
     absorbers : AbsorberSet
     own : ndarray, shape (2N, 2N)
         V^T within the step.
+    laws : LawsBackwards
     half : float
         dt/2.
     """
 
-    def __init__(self, absorbers: AbsorberSet, own: FloatArray, half: float) -> None:
+    def __init__(self, absorbers: AbsorberSet, own: FloatArray, laws: LawsBackwards, half: float) -> None:
         n = absorbers.count
-        self._n, self._half, self._own = n, half, own
-        self._damping = np.tile(absorbers.damping, 2)
+        self._n, self._laws = n, laws
         self._heavy = absorbers.mass > 0
         self._mobility = np.divide(half, absorbers.mass, out=np.zeros(n), where=self._heavy)
         self._pairs = np.tile(np.eye(n), (2, 1))
         self._answer = own + (self._pairs * self._mobility) @ self._pairs.T
-        self._integral, self._flow, self._eta, self._sum = np.zeros(2 * n), np.zeros(2 * n), np.zeros(n), np.zeros(n)
+        self._eta, self._sum = np.zeros(n), np.zeros(n)
         self._inverse: FloatArray | None = None
 
-    def __call__(self, known: FloatArray, slope: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def __call__(self, known: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return lambda, psi and eta of the next step backwards."""
-        n, half = self._n, self._half
-        ahead = self._integral + half * self._flow  # of I^T (T lambda)
-        at_once = self._damping + half * slope
+        n = self._n
+        ahead, at_once = self._laws.forces()
         eta = self._eta - self._mobility * self._sum
         if self._heavy.all():
             law = self._solved(known - self._answer @ ahead + np.concatenate([eta, eta]), at_once)
         else:
             law, eta = self._with_massless(known, ahead, at_once, eta)
-        flow = slope * law
-        self._integral, self._flow = ahead + half * flow, flow
+        self._laws.take(law)
         psi = ahead + at_once * law
         self._sum = psi[:n] + psi[n:]
         self._eta = np.where(self._heavy, eta - self._mobility * self._sum, eta)
@@ -177,6 +224,6 @@ class _LinkStep:
             found = np.linalg.solve(system, right)
         except np.linalg.LinAlgError:
             remedy = "give them a linear stiffness, however small, such as 1 kN/m^2, or a mass"
-            raise InputError("absorbers", "without mass, cubic springs alone leave them loose at rest: no gradient", remedy) from None
+            raise InputError("absorbers", "without mass, springs that are slack at rest leave them loose: no gradient", remedy) from None
         held[loose] = found[2 * n :]
         return found[: 2 * n], held

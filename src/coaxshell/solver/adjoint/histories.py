@@ -41,6 +41,22 @@ class MarchedLinks:
     forced_velocity: FloatArray
 
 
+@dataclass(frozen=True)
+class MarchedByLaws:
+    """Histories of absorbers carried by a march by laws, as means over the steps, dimensionless.
+
+    Attributes
+    ----------
+    mass_acceleration : ndarray, shape (N, T)
+    modal_force, forced_velocity : ndarray, shape (shells, parities, M + 1, T)
+        Modal pressures of the links, and the velocities that they give to the walls.
+    """
+
+    mass_acceleration: FloatArray
+    modal_force: FloatArray
+    forced_velocity: FloatArray
+
+
 def marched_links(
     structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, force: FloatArray, displacement: FloatArray
 ) -> MarchedLinks:
@@ -61,6 +77,19 @@ def marched_links(
         acceleration[loose] = trapezoidal_derivative(velocity[loose], dt)
     stretch = np.tile(displacement, (2, 1)) - walls
     return MarchedLinks(force, stretch, np.tile(velocity, (2, 1)) - moving, velocity, acceleration, modal, forced)
+
+
+def marched_by_laws(
+    structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, force: FloatArray, displacement: FloatArray
+) -> MarchedByLaws:
+    """Return the histories of a march by laws, in the means over the steps, from forces (2N, T) and the masses' displacements (N, T)."""
+    dt = structure.grid.time_step
+    modal = points.project(force)
+    velocity = np.diff(displacement, axis=-1, prepend=0.0) / dt
+    heavy = absorbers.mass > 0
+    acceleration = -(force[: absorbers.count] + force[absorbers.count :]) / np.where(heavy, absorbers.mass, 1.0)[:, None]
+    acceleration[~heavy] = trapezoidal_derivative(velocity[~heavy], dt)
+    return MarchedByLaws(acceleration, modal, convolved(structure.kernels.kernels, modal))
 
 
 def convolved(kernels: FloatArray, inputs: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.solver.links.law import Links, StepForce
+from coaxshell.solver.links.law import LawSlopes, Links, StepForce
 
 
 class SpringDampers:
@@ -37,6 +37,11 @@ class SpringDampers:
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return k D^2/2."""
         return np.asarray(0.5 * self._stiffness * stretch**2)
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h."""
+        elastic, viscous = 0.5 * self._stiffness + np.zeros_like(after), self._damping / self._step
+        return LawSlopes.of_stretch(elastic + viscous, elastic - viscous)
 
     def impedance(self, s: ComplexArray) -> ComplexArray:
         """Return k + c s."""
@@ -79,6 +84,12 @@ class MaxwellBranches:
         """Return F^2/(2 k)."""
         return np.asarray(0.5 * state[0] ** 2 / self._stiffness)
 
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h and F_1, both linear."""
+        rise = self._stiffness / (1.0 + self._theta) + np.zeros_like(after)
+        kept = (1.0 - self._theta) / (1.0 + self._theta) + np.zeros_like(after)
+        return LawSlopes(0.5 * rise, -0.5 * rise, 0.5 * (1.0 + kept)[None], rise[None], -rise[None], kept[None, None])
+
     def impedance(self, s: ComplexArray) -> ComplexArray:
         """Return k s tau/(1 + s tau)."""
         turns = self._time * s[:, None]
@@ -119,6 +130,15 @@ class Inerters:
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return b [r_2^2 + (2 r_2 - r_1)^2]/4."""
         return np.asarray(0.25 * self._inertance * (state[0] ** 2 + (2.0 * state[0] - state[1]) ** 2))
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h and of the rates, all linear."""
+        share = 0.5 * self._inertance / self._step + np.zeros_like(after)
+        rate, nothing = np.full_like(after, 1.0 / self._step), np.zeros_like(after)
+        of_rates = np.stack([[nothing, nothing], [nothing + 1.0, nothing]])
+        moved = np.stack([rate, nothing])
+        rise = 3.0 * share / self._step
+        return LawSlopes(rise, -rise, np.stack([-4.0 * share, share]), moved, -moved, of_rates)
 
     def impedance(self, s: ComplexArray) -> ComplexArray:
         """Return b s^2."""

@@ -219,6 +219,36 @@ _MADE: Mapping[str, Maker] = {
 }
 
 
+class LawGroup(NamedTuple):
+    """Elements of one kind, no two of one link: the links that have them, and the elements."""
+
+    kind: str
+    links: Links
+    elements: list[Element]
+
+    def made(self, time_step: float, compliance: FloatArray | None = None) -> LinkLaw:
+        """Return their law, for steps of one length; dry friction needs the compliance of all links within a step."""
+        if self.kind == "dry friction":
+            assert compliance is not None
+            return DryFriction(self.links, *_pair_of(self.elements), compliance[self.links])
+        return _MADE[self.kind](self.links, self.elements, time_step)
+
+
+def grouped(elements: Sequence[Sequence[Element]], cubic: FloatArray | None = None) -> list[LawGroup]:
+    """Return the elements of links by laws, which hold no link twice; arguments as of :func:`assembled`."""
+    found: dict[tuple[str, int], list[tuple[int, Any]]] = {}
+    for link, several in enumerate(elements):
+        more = [Element("polynomial", (0.0, 0.0, float(cubic[link])))] if cubic is not None and cubic[link] else []
+        kinds: dict[str, int] = {}
+        for one in (*several, *more):  # a second of the same kind belongs to a law of its own
+            kinds[one.kind] = kinds.get(one.kind, 0) + 1
+            found.setdefault((one.kind, kinds[one.kind]), []).append((link, one))
+    return [
+        LawGroup(kind, np.array([link for link, _ in pairs], dtype=np.int64), [one for _, one in pairs])
+        for (kind, _), pairs in found.items()
+    ]
+
+
 def assembled(
     elements: Sequence[Sequence[Element]], time_step: float, cubic: FloatArray | None = None, compliance: FloatArray | None = None
 ) -> LinkLaws:
@@ -234,19 +264,4 @@ def assembled(
     compliance : ndarray, shape (links,), optional
         A of the links within a step; dry friction needs it.
     """
-    found: dict[tuple[str, int], list[tuple[int, Any]]] = {}
-    for link, several in enumerate(elements):
-        more = [Element("polynomial", (0.0, 0.0, float(cubic[link])))] if cubic is not None and cubic[link] else []
-        kinds: dict[str, int] = {}
-        for one in (*several, *more):  # laws hold no link twice: a second of the same kind is a law of its own
-            kinds[one.kind] = kinds.get(one.kind, 0) + 1
-            found.setdefault((one.kind, kinds[one.kind]), []).append((link, one))
-    made: list[LinkLaw] = []
-    for (kind, _), pairs in found.items():
-        links, parts = np.array([link for link, _ in pairs], dtype=np.int64), [one for _, one in pairs]
-        if kind == "dry friction":
-            assert compliance is not None
-            made.append(DryFriction(links, *_pair_of(parts), compliance[links]))
-        else:
-            made.append(_MADE[kind](links, parts, time_step))
-    return LinkLaws(len(elements), made)
+    return LinkLaws(len(elements), [one.made(time_step, compliance) for one in grouped(elements, cubic)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.links.law import Links, StepForce
+from coaxshell.solver.links.law import LawSlopes, Links, StepForce
 
 
 class SmoothedFriction:
@@ -37,6 +37,11 @@ class SmoothedFriction:
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return 0."""
         return np.zeros_like(stretch)
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h."""
+        rise = self.force(after, before, state).slope
+        return LawSlopes.of_stretch(rise, -rise)
 
 
 class HystereticFriction:
@@ -72,6 +77,12 @@ class HystereticFriction:
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return F_1^2/(2 k)."""
         return np.asarray(0.5 * state[0] ** 2 / self._stiffness)
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h and F_1: of a spring where the slider holds."""
+        held = (np.abs(state[0] + self._stiffness * (after - before)) < self._limit).astype(np.float64)
+        rise = self._stiffness * held
+        return LawSlopes(0.5 * rise, -0.5 * rise, 0.5 * (1.0 + held)[None], rise[None], -rise[None], held[None, None])
 
 
 class DryFriction:
@@ -112,6 +123,10 @@ class DryFriction:
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return A h^2."""
         return np.asarray(0.5 * state[0] ** 2 / self._stiffness)
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> None:
+        """Return None: whether it sticks is no smooth matter, and how it creeps belongs to the step."""
+        return
 
     def _tried(self, after: FloatArray, before: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the force that would stick, and the largest there is."""

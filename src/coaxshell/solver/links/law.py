@@ -28,6 +28,35 @@ class StepForce(NamedTuple):
     slope: FloatArray
 
 
+class LawSlopes(NamedTuple):
+    """What a law does with small changes of D_1, D_0 and of its v internal variables: of h, and of the variables after the step.
+
+    Attributes
+    ----------
+    after, before : ndarray, shape (n,)
+        dh/dD_1 and dh/dD_0.
+    state : ndarray, shape (v, n)
+        dh by each internal variable.
+    state_after, state_before : ndarray, shape (v, n)
+        Of the variables after the step, by D_1 and D_0.
+    state_state : ndarray, shape (v, v, n)
+        The same by the variables before it.
+    """
+
+    after: FloatArray
+    before: FloatArray
+    state: FloatArray
+    state_after: FloatArray
+    state_before: FloatArray
+    state_state: FloatArray
+
+    @classmethod
+    def of_stretch(cls, after: FloatArray, before: FloatArray) -> LawSlopes:
+        """Return those of a law that remembers nothing."""
+        nothing = np.zeros((0, *after.shape))
+        return cls(after, before, nothing, nothing, nothing, np.zeros((0, 0, *after.shape)))
+
+
 class LinkLaw(Protocol):
     """One kind of law of n links; constants only, what it remembers is handed to it."""
 
@@ -56,6 +85,10 @@ class LinkLaw(Protocol):
 
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return the energy E of every link, shape (n,), of a stretch (n,) and internal variables."""
+        ...
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes | None:
+        """Return what small changes do, for runs backwards; None where a law has no slopes. Arguments as of :meth:`force`."""
         ...
 
 

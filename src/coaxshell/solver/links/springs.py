@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.links.law import Links, StepForce
+from coaxshell.solver.links.law import LawSlopes, Links, StepForce
 
 
 class Polynomials:
@@ -50,6 +50,10 @@ class Polynomials:
             total = total + coefficient / (k + 1) * power
         return total
 
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h, which is the same if D_1 and D_0 change places."""
+        return LawSlopes.of_stretch(self.force(after, before, state).slope, self.force(before, after, state).slope)
+
 
 class BrokenLines:
     """f = k_0 D + sum_i k_i sigma_i x_i, x_i = max(sigma_i (D - d_i), 0): a slope at rest that changes by k_i beyond each corner d_i.
@@ -83,6 +87,10 @@ class BrokenLines:
         """Return V = k_0 D^2/2 + sum_i k_i x_i^2/2."""
         beyond = np.maximum(self._beyond(stretch), 0.0)
         return np.asarray(0.5 * (self._slope * stretch**2 + (self._changes * beyond**2).sum(axis=0)))
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h, which is the same if D_1 and D_0 change places."""
+        return LawSlopes.of_stretch(self.force(after, before, state).slope, self.force(before, after, state).slope)
 
     def _beyond(self, stretch: FloatArray) -> FloatArray:
         return np.asarray(self._signs * (stretch - self._corners))

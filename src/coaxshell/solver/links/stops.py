@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver.links.law import Links, StepForce, Truths
+from coaxshell.solver.links.law import LawSlopes, Links, StepForce, Truths
 from coaxshell.solver.links.springs import mean_beyond
 
 _NEARLY_ELASTIC = 1e-5
@@ -86,6 +86,39 @@ class Stops:
     def stored(self, stretch: FloatArray, state: FloatArray) -> FloatArray:
         """Return k x^2/2."""
         return np.asarray((0.5 * self._stiffness * np.maximum(self._beyond(stretch), 0.0) ** 2).sum(axis=0))
+
+    def slopes(self, after: FloatArray, before: FloatArray, state: FloatArray) -> LawSlopes:
+        """Return the slopes of h, v and the rate; where a contact begins, those of the rate that gives v.
+
+        With x the mean penetration, y = sigma D - g, and 1 + a r the factor, a = u/v:  dh = k sigma [(1 + a r) dx + x d(a r)].
+        """
+        end, start, change = self._beyond(after), self._beyond(before), self._signs * (after - before)
+        mean, by_end = mean_beyond(end, start, change)
+        by_start = mean_beyond(start, end, -change)[1]
+        rate, held = change / self._step, start > 0.0
+        speed = self._speed(held, rate, state)
+        safe = np.where(speed > 0.0, speed, 1.0)
+        growth = np.where(speed > 0.0, self._damping / safe, 0.0)
+        pushes = 1.0 + growth * rate > 0.0
+        factor = np.where(pushes, 1.0 + growth * rate, 0.0)
+        by_rate = np.where(pushes, mean * growth, 0.0)  # of mean * factor
+        by_speed = np.where(pushes & (speed > 0.0), -mean * growth * rate / safe, 0.0)
+        earlier = self._signs * state[2]
+        fresh = ~held & (speed > 0.0)
+        of_rate, of_earlier = fresh & (rate >= earlier), fresh & (rate < earlier)  # what v is made of
+        total_rate = by_rate + np.where(of_rate, by_speed, 0.0)
+        per = self._stiffness
+        rise = (per * (by_end * factor + total_rate / self._step)).sum(axis=0)
+        fall = (per * (by_start * factor - total_rate / self._step)).sum(axis=0)
+        signed = per * self._signs * by_speed
+        of_state = np.stack([*np.where(held, signed, 0.0), (np.where(of_earlier, signed, 0.0) * self._signs).sum(axis=0)])
+        stays = end > 0.0
+        moved = np.concatenate([np.where(stays & of_rate, self._signs, 0.0), np.ones_like(after)[None]]) / self._step
+        kept = np.zeros((3, 3, *after.shape))
+        for side in (0, 1):
+            kept[side, side] = stays[side] & held[side]
+            kept[side, 2] = np.where(stays[side] & of_earlier[side], self._signs[side], 0.0)
+        return LawSlopes(rise, fall, of_state, moved, -moved, kept)
 
     def _beyond(self, stretch: FloatArray) -> FloatArray:
         return np.asarray(self._signs * stretch - self._clearance)

@@ -19,7 +19,6 @@ from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import simulate
-from coaxshell.solver.dimensions import require_cubic_springs
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.studies.gradients.readings import has_gradient
 from coaxshell.studies.gradients.sensitivity import MetricSensitivity
@@ -113,14 +112,13 @@ def require_gradient(system: System, settings: Settings) -> None:
     if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
         raise InputError("sea", "what surface and bottom reflect is not run backwards yet", "leave the sea out")
     solid = any(isinstance(shell, Shell) and shell.theory == "elastic" for shell in system.shells)
-    if any(solid or one.footprint is not None for one in system.absorber_list):
-        remedy = 'hold them along lines, without footprint, of shells with theory = "thin"'
-        raise InputError("absorbers", "forces over arcs of the walls are not run backwards yet", remedy)
+    if solid and system.absorber_list:
+        remedy = 'hold them on shells with theory = "thin"'
+        raise InputError("absorbers", "forces on the faces of elastic walls are not run backwards yet", remedy)
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} has no gradient", 'use engine="spectral"')
     if settings.dimensions != 2:
         raise InputError("dimensions", "a run in three dimensions has no gradient yet", "use dimensions=2")
-    require_cubic_springs(system, "the gradient", "leave it out")
 
 
 def fields_of(system: System, variables: Sequence[str] | str) -> list[Field]:

@@ -14,8 +14,9 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
 from coaxshell.solver.adjoint.answer import Backwards, backwards
+from coaxshell.solver.adjoint.laws import ElementSensitivity
 from coaxshell.solver.adjoint.structure import StructureSensitivity
-from coaxshell.solver.interface.absorbers import properties
+from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set, properties
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.solved_spectra import SolvedSpectra
@@ -92,7 +93,8 @@ class MetricSensitivity:
         answer = {name: (per * share)[member] * float(scale[0]) for name, per, scale in zip(_FIELDS, per_unit, scales, strict=True)}
         angles = np.array([one.angle for one in system.absorber_list]).reshape(count)
         turned = np.remainder(angles - absorbers.angle[member] + 180.0, 360.0) - 180.0
-        answer["angle"] = (found.angle * share)[member] * np.where(np.abs(turned) < 1e-6, 1.0, -1.0)  # a mirror image turns the other way
+        facing = np.where(np.abs(turned) < 1e-6, 1.0, -1.0)  # a mirror image turns the other way
+        answer["angle"] = (found.around.angle * share)[member] * facing
         return answer
 
     @cached_property
@@ -166,8 +168,22 @@ class MetricSensitivity:
             totals.append(float(total))
         return totals[1] - totals[0]
 
+    def _change_of_links(self, sets: list[AbsorberSet], before: Problem, after: Problem) -> float:
+        """Return the change by the laws of links and by the arcs that they hold; *sets* carry every absorber of the description."""
+        found, carried, total = self._back.links, self._solved.absorbers, 0.0
+        share = 1.0 / carried.multiplicity[carried.member]
+        first, second = sets
+        if found.elements is not None and first.elements is not None and second.elements is not None:
+            each = [found.elements.elements[side * carried.count + i] for side in (0, 1) for i in carried.member]
+            besides = ElementSensitivity([bars[2:] for bars in each])  # the first two are the common damper and springs
+            total += float(besides.change(first.elements.elements, second.elements.elements) @ np.tile(share, 2))
+        if first.footprint is not None:
+            moved = second.means(after, self._solved.modes) - first.means(before, self._solved.modes)
+            total += float(np.einsum("snm,snm,n->", found.around.shapes[:, carried.member], moved, share))
+        return total
+
     def _change_of_absorbers(self, before: Problem, after: Problem) -> float:
-        """Return the change by the absorbers' dimensionless properties and angles."""
+        """Return the change by the absorbers' dimensionless properties and angles, their laws and footprints."""
         if not self.system.absorber_list:
             return 0.0
         lists = [problem.system.absorber_list for problem in (before, after)]
@@ -180,6 +196,10 @@ class MetricSensitivity:
         for name, scale, old, new in zip(_FIELDS, scales, first, second, strict=True):
             if np.any(old != new):
                 total += float((self._of_absorbers[name] / scale) @ (new - old))
+        if not self.metric.of_design:
+            total += self._change_of_links(
+                [absorber_set(problem, problem.system.absorber_list, 2) for problem in (before, after)], before, after
+            )
         turned = np.array([b.angle - a.angle for a, b in zip(*lists, strict=True)])
         if turned.any():
             total += float(self._of_absorbers["angle"] @ turned)
