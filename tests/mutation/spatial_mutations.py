@@ -281,6 +281,14 @@ SPATIAL = (
         "solver/test_point_absorbers.py",
     ),
     Mutation(
+        "points-on-faces",
+        "solver/axial/surfaces.py",
+        "faces[one.shell].inner if one.side == 0 else faces[one.shell].outer",
+        "faces[one.shell].outer if one.side == 0 else faces[one.shell].inner",
+        "which face of an elastic wall points move with",
+        "solver/test_points_on_exact_walls.py",
+    ),
+    Mutation(
         "unwanted-blocks",
         "solver/axial/blocks.py",
         "tally.wanted = False",

@@ -43,9 +43,6 @@ def require_sources_alone(system: System, dimensions: int) -> None:
             where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
             problem = f"a wave along the axis has complex wavenumbers, which shells[{solid}], an elastic wall, does not know"
             raise InputError(f"{where}.inclination", problem, f"use inclination = 0, {thin}")
-    if system.point_absorbers:
-        problem = f"a point force has no finite displacement on shells[{solid}], an elastic wall"
-        raise InputError("absorbers", problem, f"leave them out, {thin}")
     if system.absorber_list and dimensions == 3:
         raise InputError(
             "absorbers", f"lines are held on shells[{solid}], an elastic wall, in two dimensions only", f"use dimensions=2, {thin}"

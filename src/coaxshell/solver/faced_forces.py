@@ -120,12 +120,22 @@ def march_weights(problem: Problem, grid: LaplaceGrid, modes: Modes, progress: P
 
     The velocity of surface i at t_n is sum_k weights[i, j, :, k] p_j(t_(n - k)); ``grid`` is that of the march.
     """
-    fine = LaplaceGrid(grid.time_step / PARTS, grid.steps * PARTS)
-    s = np.asarray((2.0 / fine.time_step) * np.tanh(0.5 * fine.time_step * fine.nodes), dtype=np.complex128)
+    fine, s = trapezoidal_nodes(grid)
     spectrum = surface_compliance(problem.resolving(band(fine)), fine, s, modes, progress)
-    count, whole = len(problem.surfaces), np.ones(s.size)
+    count = len(problem.surfaces)
     found = np.empty((count, count, modes.count, grid.time.size))
     for i in range(count):
         for j in range(count):
-            found[i, j] = summed_weights(fine.invert(spectrum[i, j] * s, whole) * fine.time_step, PARTS, grid.time.size)
+            found[i, j] = step_weights(spectrum[i, j], fine, s, grid)
     return found
+
+
+def trapezoidal_nodes(grid: LaplaceGrid) -> tuple[LaplaceGrid, ComplexArray]:
+    """Return the grid at a third of the step of a march, and the s at which the trapezoidal rule has its nodes, shape (nodes,)."""
+    fine = LaplaceGrid(grid.time_step / PARTS, grid.steps * PARTS)
+    return fine, np.asarray((2.0 / fine.time_step) * np.tanh(0.5 * fine.time_step * fine.nodes), dtype=np.complex128)
+
+
+def step_weights(compliance: ComplexArray, fine: LaplaceGrid, s: ComplexArray, grid: LaplaceGrid) -> FloatArray:
+    """Return the step weights in velocities, shape (..., T), of displacements per force at the nodes of :func:`trapezoidal_nodes`."""
+    return summed_weights(fine.invert(compliance * s, np.ones(s.size)) * fine.time_step, PARTS, grid.time.size)

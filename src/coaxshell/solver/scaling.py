@@ -167,13 +167,16 @@ class Problem:
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The surfaces on which links act, from the inside out: one a wall; of one whose faces move differently those that look at gaps."""
+        """The surfaces on which links act, from the inside out: one a wall; of one whose faces move differently those that look at gaps.
+
+        In a system of one shell that which looks inward, on which masses hang.
+        """
         found: list[Surface] = []
         for i, wall in enumerate(self.shells):
             if wall.faces_move_alike:
                 found.append(Surface(i, None, wall.radius))
                 continue
-            found += [Surface(i, 0, wall.wetted[0])] if i > 0 else []
+            found += [Surface(i, 0, wall.wetted[0])] if i > 0 or len(self.shells) == 1 else []
             found += [Surface(i, 1, wall.wetted[1])] if i + 1 < len(self.shells) else []
         return tuple(found)
 

@@ -8,6 +8,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.response.energy.absorbers import AbsorberEnergy, held_energy
 from coaxshell.solver.axial.blocks import node_blocks, on_threads
+from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.linked import point_structure, solve_points
 from coaxshell.solver.axial.motion import WaveMotion
 from coaxshell.solver.axial.points import point_layout
@@ -33,6 +34,7 @@ class HeldPoints:
 
     def __init__(self, problem: Problem, grid: LaplaceGrid, sampling: AxialSampling) -> None:
         layout = point_layout(problem)
+        make_shapes(problem, sampling.modes)
         self._grid, self._layout = grid, layout
         self._structure = point_structure(problem, grid, sampling, layout, node_blocks(grid), on_threads)
         linked = solve_points(self._structure)
@@ -61,5 +63,5 @@ class HeldPoints:
     def _impedance(self) -> FloatArray:
         """Return Z, by which a force at a point and its images moves the wall's own mass within half a step, at all points carried."""
         structure, problem = self._structure, self._structure.problem
-        mass = np.array([problem.shells[i].mass for i in self._layout.carried.shell])
+        mass = np.array([problem.shells[problem.surfaces[i].shell].mass for i in self._layout.carried.surface])
         return np.asarray(2.0 * mass / (self._grid.time_step * np.diag(structure.immediate)))

@@ -54,8 +54,20 @@ class FacedWave:
         self.cascade = CascadeSystem(problem, s, modes, walls=receptances)
 
     def faces(self, family: Family, grid: LaplaceGrid, block: slice) -> list[list[FaceMotion]]:
-        """Return what the faces of all walls do under the sources of a family, for each parity around."""
-        return [self.cascade.solve_outside(load) for load in outside_loads(family, self.cascade.radial, grid, block)]
+        """Return what the faces of all walls do under the sources or the forces of a family, for each parity around."""
+        on_outermost = outside_loads(family, self.cascade.radial, grid, block)
+        forces = {} if family.forces is None else family.forces.loads(self.problem, self.modes, odd=family.odd_forces)
+        found = []
+        for parity in range(family.parities):
+            each = [self.cascade.solve_outside(on_outermost[parity])] if on_outermost else []
+            each += [self.under_pressure(surface, pressures[parity]) for surface, pressures in forces.items()]
+            found.append(each[0] if len(each) == 1 else [_together(moving) for moving in zip(*each, strict=True)])
+        return found
+
+    def under_pressure(self, surface: int, load: ComplexArray | float) -> list[FaceMotion]:
+        """Return what the faces of all walls do under an inward pressure on one of the surfaces on which links act, by its number."""
+        shell, side, _ = self.problem.surfaces[surface]
+        return self.cascade.solve(shell, load, side)
 
     def read(self, faces: list[FaceMotion], layers: int) -> ComplexArray:
         """Return what all walls are read for, (9 + layers, shells, orders, nodes), from the motion of their faces and the loads on them."""
@@ -78,6 +90,11 @@ class FacedWave:
             found[len(READ) + number] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
 
 
+def _together(moving: tuple[FaceMotion, ...]) -> FaceMotion:
+    """Return the sum of several motions of one wall."""
+    return FaceMotion(*(np.sum(parts, axis=0) for parts in zip(*moving, strict=True)))
+
+
 def _alike(wall: ShellModel, operator: WallOperator) -> FaceReceptance:
     """Return the receptance of a wall with one W."""
     both = np.reciprocal(wall.radius * operator.impedance)
@@ -85,7 +102,7 @@ def _alike(wall: ShellModel, operator: WallOperator) -> FaceReceptance:
 
 
 def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
-    """Return what walls are read for in wave j under each family's sources, (9 + layers, shells, parities, orders, nodes)."""
+    """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes)."""
     wave = FacedWave(problem, grid.nodes[block], waves.modes[j])
     return [np.stack([wave.read(faces, layers) for faces in wave.faces(family, grid, block)], axis=2) for family in waves.families]
 
@@ -103,7 +120,7 @@ def motions_and_faces(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGri
 
 
 def faces_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
-    """Return what the faces of all walls do in wave j under each family's sources, (4, shells, parities, orders, nodes).
+    """Return what the faces of all walls do in wave j under each family's loads, (4, shells, parities, orders, nodes).
 
     Displacements of the inner and of the outer faces and the loads on them, all positive inward; nothing within elastic walls is read.
     """

@@ -32,5 +32,5 @@ class WallForces(Protocol):
         ...
 
     def loads(self, problem: Problem, modes: Modes, *, odd: bool) -> dict[int, list[ComplexArray]]:
-        """Return the pressure amplitudes on each shell, of the functions even or odd along z: one (orders, nodes) a parity around."""
+        """Return the pressure amplitudes on surfaces, by number, even or odd along z: one (orders, nodes) a parity around."""
         ...

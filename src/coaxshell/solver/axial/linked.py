@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeVar
 
@@ -14,16 +14,18 @@ from coaxshell.numerics.convolution import KernelTable, summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress, of_stage
-from coaxshell.solver.axial.blocks import BlockMap
+from coaxshell.solver.axial.blocks import BlockMap, node_blocks
 from coaxshell.solver.axial.point_forces import PointForces
-from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_sums
+from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_receptance, point_sums
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.faced_forces import step_weights, trapezoidal_nodes
 from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, side_admittance
 from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion, motion_of_laws
 from coaxshell.solver.kernels import exponential_weights, initial_decay
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import LawHistories, middles_transform
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.step_error import SHARES
 from coaxshell.solver.structure_spectra import StructureSpectra
 
@@ -86,7 +88,9 @@ class PointStructure(StructureSpectra):
     receptance : ndarray, shape (carried points, carried points, nodes)
         w of a point per force at another and at all its images.
     immediate : ndarray, shape (carried points, carried points)
-        What of it answers at once: the sum of the orders' shares, between points of one shell.
+        What of it answers at once: the sum of the orders' shares, between points of one surface.
+    weights : ndarray, shape (carried points, carried points, T), or None
+        Step weights of a march, where walls have faces that move differently (:mod:`coaxshell.solver.faced_forces`).
     """
 
     def __init__(
@@ -97,9 +101,12 @@ class PointStructure(StructureSpectra):
         motion: ComplexArray,
         receptance: ComplexArray,
         immediate: FloatArray,
+        weights: FloatArray | None = None,
     ) -> None:
         super().__init__(problem, grid, Modes.up_to(0))
         self.layout, self.motion, self.receptance, self.immediate = layout, motion, receptance, immediate
+        if weights is not None:
+            self.units.kernels = KernelTable(weights[:, :, None])
 
     @property
     def linear_displacement(self) -> FloatArray:
@@ -119,10 +126,10 @@ class PointStructure(StructureSpectra):
     def kernels(self) -> KernelTable:
         """Step weights of forces in the velocities of the points; see :mod:`coaxshell.solver.kernels`.
 
-        Points of one shell answer at once by its mass: (immediate/M)/(s + b) is inverted in closed form.
+        Points of one thin shell answer at once by its mass: (immediate/M)/(s + b) is inverted in closed form.
         """
         if self.units.kernels is None:
-            grid, shell = self.grid, self.layout.carried.shell
+            grid, shell = self.grid, self.layout.carried.surface
             hat, weights = grid.hat * grid.time_step, np.empty((shell.size, shell.size, 1, grid.time.size))
             for a, i in enumerate(shell):
                 mass = self.problem.shells[i].leading(self.modes).mass
@@ -155,11 +162,34 @@ def point_structure(
         if i == j:
             at_once[share.numbers] = sum(share.at(modes, sampling, wave).sum(axis=1) for wave, modes in enumerate(sampling.modes))
     receptance, immediate = _over_images(layout, classes, by_class), _over_images(layout, classes, at_once)
+    weights = None
+    if problem.two_faced and not layout.absorbers.is_linear:
+        weights = _over_images(layout, classes, _march_weights(problem, grid, sampling, layout, classes, on, progress))
     if layout.absorbers.elements is not None:  # what a core holds does not move, and nobody feels the force on it
         held = layout.absorbers.held.ravel()
         motion, immediate = motion * held[:, None], held[:, None] * immediate * held
         receptance = held[:, None, None] * receptance * held[:, None]
-    return PointStructure(problem, grid, layout, motion, receptance, immediate)
+        weights = None if weights is None else held[:, None, None] * weights * held[:, None]
+    return PointStructure(problem, grid, layout, motion, receptance, immediate, weights)
+
+
+def _march_weights(
+    problem: Problem,
+    grid: LaplaceGrid,
+    sampling: AxialSampling,
+    layout: PointLayout,
+    classes: PairClasses,
+    on: BlockMap,
+    progress: Progress | None,
+) -> FloatArray:
+    """Return the step weights of forces in velocities by class, (classes, T), of walls whose faces move differently."""
+    fine, s = trapezoidal_nodes(grid)
+    resolving, waves = problem.resolving(band(fine)), replace(sampling)  # its modes keep these walls' shapes, as long as this takes
+    found, blocks = np.empty((classes.moved.size, s.size), np.complex128), node_blocks(fine)
+    work = partial(point_receptance, resolving, s, waves, layout, classes)
+    for block, part in zip(blocks, on(work, blocks, of_stage(progress, "step weights of the absorbers")), strict=True):
+        found[:, block] = part["receptance"]
+    return step_weights(found, fine, s, grid)
 
 
 def _over_images(layout: PointLayout, classes: PairClasses, values: Numbers) -> Numbers:

@@ -31,6 +31,7 @@ from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import amplitudes_of
 from coaxshell.solver.excitation import incident_of, source_parities
+from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import FacedMotion
 from coaxshell.solver.spectral import node_blocks
@@ -84,9 +85,10 @@ class WaveMotion:
         k, found = float(self.modes.wavenumber), np.empty((points.count, self.normal.shape[-1]), np.complex128)
         along = points.along(k) * np.array([np.cos(k * points.z), -np.sin(k * points.z)])[: self._shares.shape[1]]
         shapes = [points.around(self._problem, self.modes, parity) for parity in range(self._around)]
-        for n, shell in enumerate(points.shell):
+        moved = self.normal if self.solid is None else surface_motion(self._problem, self.normal, self.solid.faces)
+        for n, surface in enumerate(points.surface):
             columns = np.concatenate([share * shape[n] for share in along[:, n] for shape in shapes])
-            found[n] = columns @ self.normal[shell].reshape(columns.size, -1)
+            found[n] = columns @ moved[surface].reshape(columns.size, -1)
         return found
 
 

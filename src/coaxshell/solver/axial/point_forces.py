@@ -1,6 +1,6 @@
 """Points of walls that are held over a patch, and forces there as loads on the waves of a three-dimensional run.
 
-A force F at theta_b, z_b on a wall of radius R, spread evenly over a square patch of side f, is the pressure of amplitude
+A force F at theta_b, z_b on a surface of radius R, spread evenly over a square patch of side f, is the pressure of amplitude
 
     P(m, k) = F h_m h_k [cos, sin](m theta_b) [cos, sin](k z_b)/(beta_m pi R),        h_m = sinc(m f/2R),  h_k = sinc(k f/2),
 
@@ -27,14 +27,15 @@ class WallPoints:
 
     Attributes
     ----------
-    shell : ndarray of int, shape (P,)
+    surface : ndarray of int, shape (P,)
+        Of the problem (:attr:`coaxshell.solver.scaling.Problem.surfaces`).
     angle : ndarray, shape (P,)
         Degrees.
     z, side : ndarray, shape (P,)
         Axial position and side of the patch, in a.
     """
 
-    shell: npt.NDArray[np.int64]
+    surface: npt.NDArray[np.int64]
     angle: FloatArray
     z: FloatArray
     side: FloatArray
@@ -42,24 +43,29 @@ class WallPoints:
     @property
     def count(self) -> int:
         """P."""
-        return int(self.shell.size)
+        return int(self.surface.size)
 
     def subset(self, chosen: npt.NDArray[np.int64]) -> WallPoints:
         """Return some of the points."""
-        return WallPoints(self.shell[chosen], self.angle[chosen], self.z[chosen], self.side[chosen])
+        return WallPoints(self.surface[chosen], self.angle[chosen], self.z[chosen], self.side[chosen])
 
     def around(self, problem: Problem, modes: Modes, parity: int) -> FloatArray:
         """Return h_m cos m theta or, for parity 1, h_m sin m theta: shape (P, orders)."""
         shapes = np.array([modes.projection(float(angle), parity)[:, 0] for angle in self.angle]).reshape(self.count, -1)
-        radius = np.array([problem.shells[i].radius for i in self.shell])
-        return np.asarray(shapes * patch(np.multiply.outer(self.side / (2.0 * radius), modes.orders)), dtype=np.float64)
+        return np.asarray(shapes * self.means(problem, modes), dtype=np.float64)
+
+    def radius(self, problem: Problem) -> FloatArray:
+        """Return R of the surfaces that they lie on, in a, shape (P,)."""
+        return np.array([problem.surfaces[i].radius for i in self.surface])
+
+    def means(self, problem: Problem, modes: Modes) -> FloatArray:
+        """Return h_m, shape (P, orders)."""
+        return patch(np.multiply.outer(self.side / (2.0 * self.radius(problem)), modes.orders))
 
     def pressed(self, problem: Problem, modes: Modes, parity: int) -> FloatArray:
         """Return the pressure of each order per unit force at a point, but for the axis: shape (P, orders)."""
-        radius = np.array([problem.shells[i].radius for i in self.shell])
-        return np.asarray(
-            self.around(problem, modes, parity) / (np.pi * np.where(modes.orders == 0, 2.0, 1.0) * radius[:, None]), dtype=np.float64
-        )
+        beta_pi = np.pi * np.where(modes.orders == 0, 2.0, 1.0)
+        return np.asarray(self.around(problem, modes, parity) / (beta_pi * self.radius(problem)[:, None]), dtype=np.float64)
 
     def along(self, wavenumber: float) -> FloatArray:
         """Return h_k, shape (P,)."""
@@ -89,14 +95,16 @@ class PointForces:
         return PointForces(self.points, self.force[:, nodes], self.parities)
 
     def loads(self, problem: Problem, modes: Modes, *, odd: bool) -> dict[int, list[ComplexArray]]:
-        """Return the pressure amplitudes on each shell, of the functions even or odd along z: one (orders, nodes) a parity around."""
+        """Return the pressure amplitudes on surfaces, of the functions even or odd along z: one (orders, nodes) a parity around."""
         k = modes.wavenumber
         assert isinstance(k, float)  # forces make no waves of a complex wavenumber
         found: dict[int, list[ComplexArray]] = {}
-        for shell in np.unique(self.points.shell):
-            chosen = np.flatnonzero(self.points.shell == shell)
+        for surface in np.unique(self.points.surface):
+            chosen = np.flatnonzero(self.points.surface == surface)
             here = self.points.subset(chosen)
             along = here.along(k) * (np.sin(k * here.z) if odd else np.cos(k * here.z))
             columns = np.ascontiguousarray(self.force[chosen] * along[:, None]).view(np.float64)
-            found[int(shell)] = [(here.pressed(problem, modes, parity).T @ columns).view(np.complex128) for parity in range(self.parities)]
+            found[int(surface)] = [
+                (here.pressed(problem, modes, parity).T @ columns).view(np.complex128) for parity in range(self.parities)
+            ]
         return found

@@ -29,8 +29,8 @@ from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import axial_position, wave_sets
 from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.sums import motions_of, pair_count
-from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.axial.sums import pair_count
+from coaxshell.solver.axial.surfaces import SurfaceWave
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.links.described import LinkScales, link_elements, side_of
@@ -109,25 +109,27 @@ def point_layout(problem: Problem) -> PointLayout:
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([one.angle for one in listed]),
         parities=2,
-        surfaces=np.array([[_end(one, side, moving) for one in carried] for side in (0, 1)], dtype=np.int64).reshape(2, len(carried)),
+        surfaces=np.array([[_end(problem, one, side) for one in carried] for side in (0, 1)], dtype=np.int64).reshape(2, len(carried)),
         elements=link_elements(carried, moving, LinkScales(a, problem.scales.pressure * a**2, problem.scales.time)),
     )
-    parts = [_wall_point(problem, one, _end(one, side, moving)) for side in (0, 1) for one in listed]
-    shell, angle, z, width = (np.array(column) for column in zip(*parts, strict=True))
-    points = WallPoints(shell.astype(np.int64), angle, z / a, width / a)
+    parts = [_wall_point(problem, one, _end(problem, one, side)) for side in (0, 1) for one in listed]
+    surface, angle, z, width = (np.array(column) for column in zip(*parts, strict=True))
+    points = WallPoints(surface.astype(np.int64), angle, z / a, width / a)
     return PointLayout(points, absorbers, [np.array(members) for members in images], 1 if around else 2)
 
 
-def _end(one: PointAbsorber, side: int, moving: list[bool]) -> int:
-    """Return the shell of a link, or that of the other link where there is none or a core: the point counts, but not what it does."""
-    inner = side_of(one, len(moving))
-    return inner + side if inner + side >= 0 and moving[inner + side] else inner + 1 - side
+def _end(problem: Problem, one: PointAbsorber, side: int) -> int:
+    """Return the surface of a link, or that of the other link where there is none or a core: the point counts, but not what it does."""
+    inner = side_of(one, len(problem.shells))
+    moves = inner + side >= 0 and problem.shells[inner + side].moves
+    held = side if moves else 1 - side
+    return problem.surface_facing(inner + held, 1 - held)
 
 
-def _wall_point(problem: Problem, one: PointAbsorber, shell: int) -> tuple[float, float, float, float]:
-    wall = problem.system.shells[shell]
+def _wall_point(problem: Problem, one: PointAbsorber, surface: int) -> tuple[float, float, float, float]:
+    wall = problem.system.shells[problem.surfaces[surface].shell]
     assert isinstance(wall, Shell)  # absorbers link elastic shells
-    return float(shell), one.angle, one.z, wall.thickness if one.footprint is None else one.footprint
+    return float(surface), one.angle, one.z, wall.thickness if one.footprint is None else one.footprint
 
 
 def _properties(absorbers: Sequence[PointAbsorber], scales: Scales) -> dict[str, FloatArray]:
@@ -175,13 +177,13 @@ class PairClasses:
 
 
 def pair_classes(layout: PointLayout) -> PairClasses:
-    """Return the classes of all pairs: by shells, patches, and distances around and along."""
+    """Return the classes of all pairs: by surfaces, patches, and distances around and along."""
     carried, points = layout.carried, layout.points
     turned = np.abs(carried.angle[:, None] - points.angle)
     turned = np.minimum(turned % 360.0, (360.0 - turned % 360.0) % 360.0)
     columns = [
-        np.broadcast_to(carried.shell[:, None], turned.shape),
-        np.broadcast_to(points.shell, turned.shape),
+        np.broadcast_to(carried.surface[:, None], turned.shape),
+        np.broadcast_to(points.surface, turned.shape),
         np.round(turned / _SAME),
         np.round(np.abs(carried.z[:, None] - points.z) / _SAME),
         np.broadcast_to(np.round(carried.side[:, None] / _SAME), turned.shape),
@@ -195,7 +197,7 @@ def pair_classes(layout: PointLayout) -> PairClasses:
 
 @dataclass(frozen=True, eq=False)
 class _ClassShares:
-    """What the classes on shell i pressed on shell j need: their numbers, (classes, orders), distances along, and their patches' h_k."""
+    """What the classes on surface i pressed on surface j need: numbers, shares (classes, orders), distances along, patches' h_k."""
 
     numbers: npt.NDArray[np.int64]
     around: FloatArray
@@ -211,15 +213,14 @@ class _ClassShares:
 
 
 def class_shares(problem: Problem, layout: PointLayout, classes: PairClasses, max_order: int) -> dict[tuple[int, int], _ClassShares]:
-    """Return the shares of all classes by the shells (i moved, j pressed)."""
+    """Return the shares of all classes by the surfaces (i moved, j pressed)."""
     moved, pressed = layout.carried.subset(classes.moved), layout.points.subset(classes.pressed)
     modes, found = Modes.up_to(max_order), {}
-    for i, j in sorted({(int(i), int(j)) for i, j in zip(moved.shell, pressed.shell, strict=True)}):
-        numbers = np.flatnonzero((moved.shell == i) & (pressed.shell == j))
+    for i, j in sorted({(int(i), int(j)) for i, j in zip(moved.surface, pressed.surface, strict=True)}):
+        numbers = np.flatnonzero((moved.surface == i) & (pressed.surface == j))
         a, b = moved.subset(numbers), pressed.subset(numbers)
-        apart = WallPoints(b.shell, a.angle - b.angle, b.z, b.side).pressed(problem, modes, 0)
-        own = patch(np.multiply.outer(a.side / (2.0 * problem.shells[i].radius), modes.orders))
-        found[i, j] = _ClassShares(numbers, apart * own, a.z - b.z, a, b)
+        apart = WallPoints(b.surface, a.angle - b.angle, b.z, b.side).pressed(problem, modes, 0)
+        found[i, j] = _ClassShares(numbers, apart * a.means(problem, modes), a.z - b.z, a, b)
     return found
 
 
@@ -239,31 +240,43 @@ def point_sums(
     done, whole = 0, pair_count(sets) + (sum(modes.count for modes in sampling.modes) if apart else 0)
     for waves in sets:
         for j, modes in enumerate(waves.modes):
-            system = ModalSystem(problem, s, modes)
+            system = SurfaceWave(problem, s, modes)
             along = patch(0.5 * np.asarray(modes.wavenumber) * carried.side[:, None])
             for family in waves.families:
-                normal = motions_of(problem, system, family, grid, block)[0]
+                moved = system.under(family, grid, block)
                 even = np.asarray(family.even[:, j]).reshape(carried.count, -1) * along
-                for a, shell in enumerate(carried.shell):
-                    for parity, shape in enumerate(shapes):
-                        motion[a] += even[a] * (shape[a, : modes.count] @ normal[shell, parity])
+                for a, surface in enumerate(carried.surface):
+                    for shape, each in zip(shapes, moved, strict=True):
+                        motion[a] += even[a] * (shape[a, : modes.count] @ each[surface])
             if waves.modes is sampling.modes:
                 _add_receptance(receptance, system, shares, sampling, j)
             done += modes.count
             tell_share(done / whole)
     for j, modes in enumerate(sampling.modes if apart else ()):
-        _add_receptance(receptance, ModalSystem(problem, s, modes), shares, sampling, j)
+        _add_receptance(receptance, SurfaceWave(problem, s, modes), shares, sampling, j)
         done += modes.count
         tell_share(done / whole)
     return {"motion": motion, "receptance": receptance}
 
 
+def point_receptance(
+    problem: Problem, s: ComplexArray, sampling: AxialSampling, layout: PointLayout, classes: PairClasses, block: slice
+) -> Found:
+    """Return "receptance" alone, as :func:`point_sums`, at a slice of any nodes."""
+    receptance = np.zeros((classes.moved.size, s[block].size), np.complex128)
+    shares = class_shares(problem, layout, classes, sampling.max_order)
+    for j, modes in enumerate(sampling.modes):
+        _add_receptance(receptance, SurfaceWave(problem, s[block], modes), shares, sampling, j)
+        tell_share((j + 1) / len(sampling.modes))
+    return {"receptance": receptance}
+
+
 def _add_receptance(
-    receptance: ComplexArray, system: ModalSystem, shares: dict[tuple[int, int], _ClassShares], sampling: AxialSampling, wave: int
+    receptance: ComplexArray, system: SurfaceWave, shares: dict[tuple[int, int], _ClassShares], sampling: AxialSampling, wave: int
 ) -> None:
     """Add what one wavenumber contributes to the receptance of all classes."""
     for pressed in sorted({j for _, j in shares}):
-        compliance = system.solve(pressed, 1.0)
+        compliance = system.under_pressure(pressed)
         for (i, j), share in shares.items():
             if j == pressed:
                 columns = np.ascontiguousarray(compliance[i]).view(np.float64)

@@ -24,11 +24,10 @@ from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PointLayout
 from coaxshell.solver.axial.samples import Sample, samples_of, spherical_samples
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.sums import amplitudes_of, mean_squares, motions_of
-from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.axial.sums import amplitudes_of, mean_squares
+from coaxshell.solver.axial.surfaces import SurfaceWave
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.orders_left_out import mean_tangent
-from coaxshell.solver.point_forces import patch
 from coaxshell.solver.sampled_orders import NODES
 from coaxshell.solver.scaling import Problem
 
@@ -69,18 +68,18 @@ def softness(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, layou
     s, points, count = grid.nodes[NODES], layout.carried, layout.absorbers.count
     found = np.zeros((2, count, 2, 2, s.size), np.complex128)
     for sample in spherical_samples(sampling):
-        system, felt = ModalSystem(problem, s, sample.modes), _felt(problem, layout, sample)
-        for shell in np.unique(points.shell):
-            answers = system.solve(int(shell), 1.0)
-            share = sample.waves / (np.pi * problem.shells[shell].radius * np.where(sample.modes.orders == 0, 2.0, 1.0))
+        system, felt = SurfaceWave(problem, s, sample.modes), _felt(problem, layout, sample)
+        for surface in np.unique(points.surface):
+            answers = system.under_pressure(int(surface))
+            share = sample.waves / (np.pi * problem.surfaces[surface].radius * np.where(sample.modes.orders == 0, 2.0, 1.0))
             share *= 2.0 / sampling.period
-            for pressed in np.flatnonzero(points.shell == shell):
+            for pressed in np.flatnonzero(points.surface == surface):
                 b, n = divmod(int(pressed), count)
                 for a in (0, 1):
                     here = a * count + n
                     weight = felt[here] * felt[pressed] * share
                     for cause, mask in enumerate((sample.higher_order, ~sample.higher_order)):
-                        found[cause, n, a, b] += (weight * mask) @ answers[points.shell[here]]
+                        found[cause, n, a, b] += (weight * mask) @ answers[points.surface[here]]
     return found
 
 
@@ -90,10 +89,10 @@ def _moved_by_sources(problem: Problem, grid: LaplaceGrid, sampling: AxialSampli
     found = np.zeros((2, points.count, s.size))
     for waves in wave_sets(problem, sampling, np.zeros(1), s):
         for sample in samples_of(problem, sampling, waves):
-            system, felt = ModalSystem(problem, s, sample.modes), _felt(problem, layout, sample)
+            system, felt = SurfaceWave(problem, s, sample.modes), _felt(problem, layout, sample)
             for family in waves.families:
-                normal = motions_of(problem, system, family, grid, NODES)[0]
-                squares = (np.abs(normal) ** 2).sum(axis=1)[points.shell] * (felt**2 * sample.weight * float(family.mean[-1]))[..., None]
+                normal = np.asarray(system.under(family, grid, NODES))
+                squares = (np.abs(normal) ** 2).sum(axis=0)[points.surface] * (felt**2 * sample.weight * float(family.mean[-1]))[..., None]
                 for cause, mask in enumerate((sample.higher_order, ~sample.higher_order)):
                     found[cause] += squares[:, mask].sum(axis=1)
     return found
@@ -102,8 +101,7 @@ def _moved_by_sources(problem: Problem, grid: LaplaceGrid, sampling: AxialSampli
 def _felt(problem: Problem, layout: PointLayout, sample: Sample) -> FloatArray:
     """Return h_m h_k of every point carried, shape (points, orders)."""
     points, k = layout.carried, float(np.max(np.abs(sample.modes.wavenumber)))
-    radius = np.array([problem.shells[i].radius for i in points.shell])
-    return patch(np.multiply.outer(points.side / (2.0 * radius), sample.modes.orders)) * points.along(k)[:, None]
+    return points.means(problem, sample.modes) * points.along(k)[:, None]
 
 
 def _tangent(structure: PointStructure, linked: PointSolution) -> AbsorberSet:

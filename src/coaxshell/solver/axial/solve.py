@@ -75,10 +75,12 @@ def solve_spatial(
     stopwatch.lap("stability of the feedback")
     run = {"scenario": system.canonical(), "resolution": settings.arguments()}
     with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:
-        linked = _linked(problem, grid, sampling, progress, on)
+        waves = with_shapes(problem, sampling, on)
+        linked = _linked(problem, grid, waves, progress, on)
         stopwatch.lap("absorbers")
         forces = None if linked is None else linked.forces
-        spectra, squares = _summed(problem, grid, sampling, settings, forces, progress, on)
+        spectra, squares = _summed(problem, grid, waves, settings, forces, progress, on)
+        del waves
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
     histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in (spectra | _voltage_rates(problem, grid, spectra)).items()}
@@ -123,8 +125,8 @@ def station_spectra(solution: SpatialSolution) -> StationSpectra:
         return solution.spectra
     solution.at(0).need_every_instant("what is computed from its transforms (velocity and acceleration of shells)")
     grid = laplace_grid(solution.settings)
-    forces = forces_of(solution)
-    spectra, _ = _summed(solution.problem, grid, solution.sampling, solution.settings, forces, None, on_threads)
+    waves = with_shapes(solution.problem, solution.sampling, on_threads)
+    spectra, _ = _summed(solution.problem, grid, waves, solution.settings, forces_of(solution), None, on_threads)
     return StationSpectra(grid, spectra["w"], spectra["v"])
 
 
@@ -150,7 +152,8 @@ def histories_within(solution: SpatialSolution, shell: int, depth: float) -> dic
     wall = solution.problem.shells[shell]
     shells = tuple(replace(wall, depth_read=depth) if one is wall else one for one in solution.problem.shells)  # type: ignore[call-arg]
     problem, grid = replace(solution.problem, shells=shells), laplace_grid(solution.settings)
-    spectra, _ = _summed(problem, grid, solution.sampling, solution.settings, None, None, on_threads)
+    waves = with_shapes(problem, solution.sampling, on_threads)
+    spectra, _ = _summed(problem, grid, waves, solution.settings, forces_of(solution), None, on_threads)
     keep = slice(None, None, solution.settings.refinement)
     return {name: grid.invert(spectra[name][:, shell])[..., keep] for name in READ if name in spectra}
 
@@ -158,7 +161,8 @@ def histories_within(solution: SpatialSolution, shell: int, depth: float) -> dic
 def forces_of(solution: SpatialSolution) -> WallForces | None:
     """Return the transforms of the forces of a finished run's absorbers, solved again if it was loaded; None without absorbers."""
     if not solution.forces:
-        linked = _linked(solution.problem, laplace_grid(solution.settings), solution.sampling, None, on_threads)
+        waves = with_shapes(solution.problem, solution.sampling, on_threads)
+        linked = _linked(solution.problem, laplace_grid(solution.settings), waves, None, on_threads)
         if linked is None:
             return None
         solution.forces.append(linked.forces)
@@ -168,6 +172,16 @@ def forces_of(solution: SpatialSolution) -> WallForces | None:
 def laplace_grid(settings: Settings) -> LaplaceGrid:
     """Return the nodes and instants of a run, its refinement included."""
     return LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+
+
+def with_shapes(problem: Problem, sampling: AxialSampling, on: BlockMap) -> AxialSampling:
+    """Return the same waves, whose modes keep the shapes of elastic walls as long as what is returned is in use."""
+    if not problem.two_faced:
+        return sampling
+    waves = replace(sampling)
+    if on is on_threads:
+        make_shapes(problem, waves.modes)
+    return waves
 
 
 def _linked(
@@ -194,10 +208,6 @@ def _summed(
     """Return the transforms of the motion at all stations, and its mean squares along the axis, from those of blocks of nodes in turn."""
     stations = np.array(settings.stations) / problem.scales.length
     blocks = node_blocks(grid)
-    if problem.two_faced:
-        sampling = replace(sampling)  # its modes keep the shapes of elastic walls, as long as this takes
-        if on is on_threads:
-            make_shapes(problem, sampling.modes)
     work = partial(station_sums, problem, grid, sampling, stations, forces)
     spectra: dict[str, ComplexArray] = {}
     squares: FloatArray = np.zeros(1)

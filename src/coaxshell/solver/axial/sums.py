@@ -108,7 +108,7 @@ def normals_of(problem: Problem, system: ModalSystem, family: Family, grid: Lapl
     forces = {} if family.forces is None else family.forces.loads(problem, modes, odd=family.odd_forces)
     for parity in range(family.parities):
         each = [system.solve_outside(on_outermost[parity])] if on_outermost else []
-        each += [system.solve(shell, pressures[parity]) for shell, pressures in forces.items()]
+        each += [system.solve(surface, pressures[parity]) for surface, pressures in forces.items()]
         found.append([np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)])
     return found
 

@@ -19,9 +19,10 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.blocks import node_blocks
 from coaxshell.solver.axial.faced import FacedWave, make_shapes
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import SpatialSolution
-from coaxshell.solver.axial.solve import laplace_grid
+from coaxshell.solver.axial.solve import forces_of, laplace_grid
 from coaxshell.solver.axial.sums import TOGETHER, of_odd
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
@@ -60,7 +61,7 @@ def stresses_through(solution: SpatialSolution, shell: int, asked: Sequence[Aske
     assert isinstance(wall, ElasticWall)
     kept = tuple(replace(wall, keeps_shapes=True) if one is wall else one for one in problem.shells)
     z = solution.stations[list(stations)] / problem.scales.length
-    spectra = _Pass(replace(problem, shells=kept), grid, solution.sampling, shell, tuple(asked)).at(z)
+    spectra = _Pass(replace(problem, shells=kept), grid, solution.sampling, shell, tuple(asked), forces_of(solution)).at(z)
     every = slice(None, None, settings.refinement)
     return np.stack([grid.invert(one)[..., every] * problem.scales.pressure for one in spectra])
 
@@ -74,11 +75,16 @@ class _Pass:
     sampling: AxialSampling
     shell: int
     asked: tuple[Asked, ...]
+    forces: WallForces | None = None
 
     def at(self, stations: FloatArray) -> ComplexArray:
         """Return the transforms at stations (z in a), shape (stresses, stations, parities, M + 1, nodes)."""
-        blocks, parities = node_blocks(self.grid), source_parities(self.problem)
-        per_block = [wave_sets(self.problem, self.sampling, stations, self.grid.nodes[block]) for block in blocks]
+        blocks, parities, forces = node_blocks(self.grid), source_parities(self.problem), self.forces
+        parities = parities if forces is None else max(parities, forces.parities)
+        per_block = [
+            wave_sets(self.problem, self.sampling, stations, self.grid.nodes[block], None if forces is None else forces.at(block))
+            for block in blocks
+        ]
         shape = (len(self.asked), stations.size, parities, self.sampling.max_order + 1)
         found = np.zeros((*shape, self.grid.nodes.size), np.complex128)
         with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
