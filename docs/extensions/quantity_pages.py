@@ -23,7 +23,13 @@ Further metrics, among them voltages over a segment of the wall and as the contr
 | name | metrics | summary | tables, files, comparisons |
 |---|---|---|---|
 """
-_NEEDS = {"": "–", "elastic": "an elastic wall", "sensor": "a sensor layer", "control": "sensor, actuator and control"}
+_NEEDS = {
+    "": "–",
+    "elastic": "an elastic wall",
+    "sensor": "a sensor layer",
+    "control": "sensor, actuator and control",
+    "electrodes": "control by electrodes, two dimensions",
+}
 
 
 def quantity_table() -> str:

@@ -65,7 +65,7 @@ def test_interpolated_grids_equal_exact_ones(answer, quantity):
     times = [0.35, 1.2, 2.0]
     read = getattr(answer, quantity)
     whole = read(AXIS, AXIS, time=times).values
-    assert scattered.raster_radii(answer._spectra.problem, _Asked, np.linspace(0, 3.5, 9)) < 1000
+    assert scattered.raster_radii(answer.motion.spectra.problem, _Asked, np.linspace(0, 3.5, 9)) < 1000
     for row in (3, 44, 61):
         exact = read(AXIS, AXIS[row], time=times).values[..., 0, :]
         assert abs(whole[..., row, :] - exact).max() < 5e-4 * abs(whole).max()
@@ -144,12 +144,12 @@ def test_a_late_source_comes_late(double):
 
 
 def test_the_two_inversions_agree(lopsided):
-    grid = band(lopsided._spectra.grid, 0.01)
+    grid = band(lopsided.motion.spectra.grid, 0.01)
     times = grid.time[3] + grid.time_step * np.concatenate([np.arange(150), 0.37 + np.arange(150)])
     fast, slow = Inversion(grid, times), Inversion(grid, times[::7])
     assert fast.by_fft
     assert not slow.by_fft
-    spectra = lopsided._spectra.normal[1, :, :5, : grid.nodes.size] * grid.nodes
+    spectra = lopsided.motion.spectra.normal[1, :, :5, : grid.nodes.size] * grid.nodes
     one, other = fast(spectra * fast.weight)[..., ::7], slow(spectra * slow.weight)
     np.testing.assert_allclose(one, other, atol=1e-11 * abs(one).max())
 

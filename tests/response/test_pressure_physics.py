@@ -52,7 +52,7 @@ def inside(radius: float) -> float:
 
 def motion(answer: Response, shell: int, derivatives: int, time: np.ndarray) -> np.ndarray:
     """Return the derivatives of w in time at ANGLES, SI, from the spectra, (times, angles)."""
-    spectra = answer._spectra
+    spectra = answer.motion.spectra
     history = spectra.grid.invert(spectra.normal[shell] * spectra.grid.nodes**derivatives)
     theta, m = np.radians(ANGLES)[:, None], np.arange(M + 1)
     w = np.cos(theta * m) @ history[0] + np.sin(theta * m) @ history[1]
@@ -90,7 +90,7 @@ def test_the_normal_acceleration_is_that_of_the_shell_on_both_faces(answer, shel
 @pytest.mark.parametrize("shell", [0, 1])
 def test_the_pressure_jump_is_the_shells_load(answer, shell):
     # I w'' + K (v, w) = p outside - p inside, order by order; orders summed at angles.
-    spectra, problem = answer._spectra, answer.solution.problem
+    spectra, problem = answer.motion.spectra, answer.solution.problem
     radius, grid, m = (0.5, 1.0)[shell], spectra.grid, all_orders(M)
     stiffness = problem.shells[shell].stiffness(Modes(m))
     inertia = problem.shells[shell].mass * grid.nodes**2
@@ -106,7 +106,7 @@ def test_order_by_order_walls_and_loads_agree_in_the_laplace_domain(shells, wate
     # A sharp shock, every order and node: slopes are (rho/rho_e) s^2 W on every face, jumps are Z W.
     source = cx.SphericalShock(distance=5.0, peak_pressure=2.5e4, decay_time=1.314e-4)
     answer = cx.simulate(cx.System(shells=shells, fluids=[water, sea, water], source=source), duration=1.0, time_step=5e-3, modes=30)
-    spectra, problem = answer._spectra, answer.solution.problem
+    spectra, problem = answer.motion.spectra, answer.solution.problem
     grid, ones = spectra.grid, np.ones(spectra.grid.nodes.size)
     modal = ModalSystem(problem, grid.nodes, Modes.up_to(30))
     incident_and_diffracted = SurfaceLoads(problem, grid, modal.modes)(modal.radial, slice(None))[0]
@@ -193,7 +193,7 @@ def test_nothing_outruns_the_fastest_wave(answer):
 
 
 def test_fast_transfer_equals_the_slow_one(answer):
-    spectra, ones = answer._spectra, np.ones(61)
+    spectra, ones = answer.motion.spectra, np.ones(61)
     grid = LaplaceGrid(spectra.grid.period / 120, 59, fewest=0)
     np.testing.assert_allclose(grid.nodes, spectra.grid.nodes[:61], rtol=1e-12)
     orders = all_orders(M)

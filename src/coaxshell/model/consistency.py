@@ -7,9 +7,11 @@ from itertools import pairwise
 
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
+from coaxshell.model.control import PDControl
+from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Vacuum
 from coaxshell.model.layers import Shell, serves
-from coaxshell.model.parts import SystemParts
+from coaxshell.model.parts import SystemParts, laws_of, shells_under
 from coaxshell.model.sea import require_possible
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import UnderwaterExplosion
@@ -123,38 +125,53 @@ def _absorbers(system: SystemParts) -> None:
 
 
 def _control(system: SystemParts) -> None:
-    if system.control is None:
-        return
-    for shell in () if system.control.shells == "all" else system.control.shells:
+    several = isinstance(system.control, tuple)
+    owner: dict[int, str] = {}
+    for place, law in enumerate(laws_of(system)):
+        where = f"control[{place}]" if several else "control"
+        _law(system, law, where)
+        for number in shells_under(system, law):
+            if number in owner:
+                told = f"shells[{number}] is under {owner[number]} already"
+                raise InputError(f"{where}.shells", told, "name other shells: each has one law")
+            owner[number] = where
+        if several and law.saturation:
+            remedy = "use saturation = false and compare voltage and limit, or one law with a list of gains"
+            raise InputError(f"{where}.saturation", "several laws are not known to saturate", remedy)
+
+
+def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:
+    """Check one control law against the shells that it names."""
+    for shell in () if law.shells == "all" else law.shells:
         try:
             system.shell_index(shell)
         except InputError as error:
-            raise InputError("control.shells", error.problem, error.remedy) from None
-    numbers = system.controlled_shells
+            raise InputError(f"{where}.shells", error.problem, error.remedy) from None
+    numbers = shells_under(system, law)
     for name in ("proportional", "derivative"):
-        gains = getattr(system.control, name, None)
+        gains = getattr(law, name, None)
         if isinstance(gains, tuple) and len(gains) != len(numbers):
             raise InputError(
-                f"control.{name}",
+                f"{where}.{name}",
                 f"the list has {len(gains)} for {len(numbers)} shell(s) under control",
                 f"must be 1 or {len(numbers)} gains",
             )
     if len(set(numbers)) < len(numbers):
-        raise InputError("control.shells", f"{list(system.control.shells)!r} names a shell twice", "must name each shell once")
+        raise InputError(f"{where}.shells", f"{list(law.shells)!r} names a shell twice", "must name each shell once")
     for number in numbers:
         shell_ = system.shells[number]
         if isinstance(shell_, RigidShell):
             raise InputError(
-                "control.shells", f"shells[{number}] is rigid and cannot be controlled", "name the shells to control, e.g. shells = [1]"
+                f"{where}.shells", f"shells[{number}] is rigid and cannot be controlled", "name the shells to control, e.g. shells = [1]"
             )
         for role in ("sensor", "actuator"):
             if getattr(shell_, role) is None:
                 raise InputError(
-                    "control.shells",
+                    f"{where}.shells",
                     f"shells[{number}] has no {role} layer",
                     "give it one, or name only the shells that have both, e.g. shells = ['outer']",
                 )
-            if system.control.transducers == "paper":
+            if law.transducers == "paper":
                 _one_of_each(shell_, number, role)
 
 

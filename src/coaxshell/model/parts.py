@@ -70,10 +70,20 @@ def _as_control(value: Any) -> Any:
         return None
     if isinstance(value, PDControl | Feedback):
         return value
+    if isinstance(value, list | tuple):
+        laws = _several(value, _as_law)
+        return (laws[0] if len(laws) == 1 else laws) if laws else None
+    return _as_law(value)
+
+
+def _as_law(value: Any) -> PDControl | Feedback:
+    if isinstance(value, PDControl | Feedback):
+        return value
     if isinstance(value, Mapping):
         other = not LAW.isdisjoint(value) and {"proportional", "derivative"}.isdisjoint(value)
         return (Feedback if other else PDControl).model_validate(dict(value))
-    raise InputError("", f"{shown(value)} is not a control law", "give a PDControl, a Feedback or a table of the entries of one")
+    remedy = "give a PDControl, a Feedback, a table of the entries of one, or a list of these, each for other shells"
+    raise InputError("", f"{shown(value)} is not a control law", remedy)
 
 
 def _unless_none(value: Any) -> Any:
@@ -93,8 +103,8 @@ class SystemParts(Described):
     """The source, or several."""
     absorbers: Annotated[AbsorberRing | tuple[Absorber | PointAbsorber, ...], BeforeValidator(_as_absorbers)] = ()
     """A ring of equal absorbers, or single ones; point absorbers in three dimensions."""
-    control: Annotated[PDControl | Feedback | None, BeforeValidator(_as_control)] = None
-    """The controller, if there is one."""
+    control: Annotated[PDControl | Feedback | tuple[PDControl | Feedback, ...] | None, BeforeValidator(_as_control)] = None
+    """The controller, if there is one, or several, each for shells of its own."""
     sea: Annotated[Sea | None, BeforeValidator(_unless_none)] = None
     """The sea around it, if its surface, its bottom or its pressure counts."""
 
@@ -105,7 +115,7 @@ class SystemParts(Described):
         fluids: Sequence[Fluid | Vacuum | str | Mapping[str, Any]] = UNSTATED,
         source: Source | Sequence[Source] | Mapping[str, Any] = UNSTATED,
         absorbers: AbsorberRing | Absorber | PointAbsorber | Sequence[Absorber | PointAbsorber] | Mapping[str, Any] | None = (),
-        control: PDControl | Feedback | Mapping[str, Any] | None = None,
+        control: PDControl | Feedback | Sequence[PDControl | Feedback] | Mapping[str, Any] | None = None,
         sea: Sea | Mapping[str, Any] | None = None,
         name: str = "",
         **unknown: Any,
@@ -165,11 +175,7 @@ class SystemParts(Described):
     @property
     def controlled_shells(self) -> tuple[int, ...]:
         """Numbers of the shells under control, in order; empty without control."""
-        if self.control is None:
-            return ()
-        if self.control.shells == "all":
-            return tuple(range(len(self.shells)))
-        return tuple(sorted(self.shell_index(shell) for shell in self.control.shells))
+        return tuple(sorted(shell for law in laws_of(self) for shell in shells_under(self, law)))
 
     def shell_index(self, shell: int | str) -> int:
         """Return the number of a shell given as a number, a text of digits, "inner", "outer" or another name; InputError otherwise."""
@@ -186,3 +192,14 @@ class SystemParts(Described):
         if shells is None:
             return [i for i, shell in enumerate(self.shells) if not isinstance(shell, RigidShell)]
         return [self.shell_index(shell) for shell in ([shells] if isinstance(shells, int | str) else shells)]
+
+
+def laws_of(system: SystemParts) -> tuple[PDControl | Feedback, ...]:
+    """Return the control laws of a system, always as a tuple."""
+    control = system.control
+    return control if isinstance(control, tuple) else () if control is None else (control,)
+
+
+def shells_under(system: SystemParts, law: PDControl | Feedback) -> tuple[int, ...]:
+    """Return the numbers of the shells that a control law is for, in order."""
+    return tuple(range(len(system.shells))) if law.shells == "all" else tuple(sorted(system.shell_index(one) for one in law.shells))

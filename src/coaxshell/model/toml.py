@@ -13,7 +13,7 @@ from coaxshell.model.control import PDControl
 from coaxshell.model.gains import gains_of
 from coaxshell.model.materials import Material, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
-from coaxshell.model.parts import SystemParts
+from coaxshell.model.parts import SystemParts, laws_of, shells_under
 from coaxshell.model.paths import within
 from coaxshell.model.pulses import Sampled
 from coaxshell.model.sources import OFF_THE_PLANE, LineWave, PlaneWave, Source, SphericalWave
@@ -102,11 +102,14 @@ def canonical(system: SystemParts) -> dict[str, Any]:
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
     data["absorbers"] = [_plain(absorber) for absorber in (*system.absorber_list, *system.point_absorbers)]
     if system.control is not None:
-        if isinstance(system.control, PDControl):
-            gains = [gains_of(system, number) for number in system.controlled_shells]
-            each = zip(("proportional", "derivative"), zip(*gains, strict=True), strict=True)
-            data["control"] |= {name: x[0] if len(set(x)) == 1 else list(x) for name, x in each}
-        data["control"]["shells"] = list(system.controlled_shells)
+        several = isinstance(system.control, tuple)
+        for law, written in zip(laws_of(system), data["control"] if several else [data["control"]], strict=True):
+            numbers = shells_under(system, law)
+            if isinstance(law, PDControl):
+                gains = [gains_of(system, number) for number in numbers]
+                each = zip(("proportional", "derivative"), zip(*gains, strict=True), strict=True)
+                written |= {name: x[0] if len(set(x)) == 1 else list(x) for name, x in each}
+            written["shells"] = list(numbers)
     return _nameless(data)  # type: ignore[no-any-return]
 
 

@@ -308,7 +308,7 @@ def modal(solution: ModalSolution | WallMotion, shell: int, quantity: str = "dis
         If the quantity is unknown or the shell has none.
     """
     motion = solution if isinstance(solution, WallMotion) else WallMotion(solution)
-    linear = [name for name, entry in QUANTITIES.items() if entry.gain is not None]
+    linear = [name for name, entry in QUANTITIES.items() if entry.gain is not None or entry.modal is not None]
     quantity = arguments.one_of("quantity", quantity, ["tangential", *linear])
     entry = QUANTITIES["tangential_displacement" if quantity == "tangential" else quantity]
     values, parities = entry.amplitudes(motion, shell)(slice(None)), PARITIES[entry.component]

@@ -7,191 +7,28 @@ in a study, and stands in the tables, files and pages that the entry names.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Literal, Protocol
+from collections.abc import Iterator
 
 import numpy as np
 
-from coaxshell.model import Shell, System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response.labels import ALONG_AXIS, COUNTERCLOCKWISE, INWARD, TENSION
 from coaxshell.response.modal import (
     amplitudes,
     axial_gain,
-    combined,
     displacement_gain,
     stress_gain_of,
     tangential_gain,
     voltage_gain,
 )
-from coaxshell.response.peaks import Amplitudes, Peak
-from coaxshell.response.relaxing import Relaxing
+from coaxshell.response.quantity import PLACES, Quantity, Where
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.response.translation import relative_gain, relative_tangential_gain
 from coaxshell.response.voltages import actuator_values, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
-from coaxshell.response.wall_stress import largest_of_the_core, largest_through_wall, of_the_core, searchable, through_wall
-from coaxshell.solver.solution import ModalSolution
-from coaxshell.structure.shell_model import FieldGain, Gain
+from coaxshell.response.wall_stress import largest_of_the_core, largest_through_wall, of_the_core, through_wall
 
-Where = Literal["head", "tail", "anywhere", "rms"]
-Needs = Literal["", "elastic", "sensor", "control"]
-
-_ROLES: dict[Needs, tuple[str, ...]] = {"": (), "elastic": (), "sensor": ("sensor",), "control": ("sensor", "actuator")}
-_PLACES: dict[Where, str] = {"head": "at head", "tail": "at tail", "anywhere": "anywhere", "rms": "RMS"}
-_SUFFIXES: dict[Where, str] = {"head": "_head", "tail": "_tail", "anywhere": "", "rms": "_rms"}
-
-
-class Largest(Protocol):
-    """The largest magnitude of a quantity within a window of time, as a mean over a segment of the wall."""
-
-    def __call__(self, solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
-        """Return the largest magnitude, the length in m; and what the lower half of the orders gives, where that is told and ``halved``."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """One output of a shell.
-
-    Attributes
-    ----------
-    name : str
-        By which it is asked for.
-    label : str
-        What an axis says, without the unit.
-    noun : str
-        What a row of a table says before the place, as in "stress at head".
-    long_name, unit, sign : str
-        Attributes of its histories: what it is, in which SI unit, which direction counts positive.
-    gain : callable (solution, shell), or None
-        Value per unit V and W of each order; None for what is no linear combination of them.
-    values : callable (motion, shell, angles in degrees), or None
-        Values at angles, shape (T, A); None where the gain gives them.
-    largest : callable, or None
-        Where the summary shows means over a segment of the wall.
-    rate : int
-        Order of the time derivative, 0, 1 or 2, of what the gain gives; from the transforms (:mod:`coaxshell.response.wall_motion`).
-    needs : str
-        What a shell must have: "" nothing, "elastic" a wall that is not rigid, "sensor" that layer, "control" both layers and gains.
-    component : str
-        "normal" for what has cos(m theta) in parity 0, "tangential" for sin(m theta).
-    partner : str
-        Name of the tangential component, for what is a vector.
-    shown : tuple (str, float)
-        Unit in which it is drawn, and how many of these one SI unit is.
-    colour : str
-        Of its curve, a name of :data:`coaxshell.plotting.COLOURS`.
-    column : bool
-        Whether tables, exports, comparisons and the studio hold it at head and tail.
-    drifts : bool
-        Whether it holds the translation of the section, which grows for as long as water flows past.
-    array : str
-        Name of its labelled arrays, where that is another.
-    relaxes : bool
-        Whether losses of a wall's layers are in it.
-    through : bool
-        Whether the depths of a wall are searched, which thin walls tell alone.
-    summary, metrics : tuple of str
-        Where the summary shows its largest magnitude, and where a study can ask for it: "head", "tail", "anywhere"; "rms".
-    dimensions : int
-        3 for what only a station of a three-dimensional run has.
-    """
-
-    name: str
-    label: str
-    noun: str
-    long_name: str
-    unit: str
-    sign: str
-    gain: Callable[[ModalSolution, int], Gain | FieldGain | Relaxing] | None = None
-    values: Callable[[WallMotion, int, FloatArray], FloatArray] | None = None
-    largest: Largest | None = None
-    rate: int = 0
-    needs: Needs = "elastic"
-    component: str = "normal"
-    partner: str = ""
-    shown: tuple[str, float] = ("", 1.0)
-    colour: str = "blue"
-    column: bool = False
-    drifts: bool = False
-    array: str = ""
-    relaxes: bool = False
-    through: bool = False
-    summary: tuple[Where, ...] = ()
-    metrics: tuple[Where, ...] = ()
-    dimensions: int = 2
-
-    @property
-    def stem(self) -> str:
-        """Name of the quantity within the names of metrics."""
-        return self.name.removeprefix("shell_")
-
-    def key(self, where: Where) -> str:
-        """Return the name of its largest magnitude at a place in the summary."""
-        return self.name + _SUFFIXES[where]
-
-    def metric(self, where: Where) -> str:
-        """Return the name by which a study asks for it at a place."""
-        return f"rms_{self.stem}" if where == "rms" else f"peak_{self.stem}{_SUFFIXES[where]}"
-
-    @property
-    def summary_keys(self) -> list[str]:
-        """Names of all that the summary shows of it."""
-        return [self.key(where) for where in self.summary]
-
-    @property
-    def words(self) -> str:
-        """Name of the quantity in headings."""
-        return self.name.replace("_", " ")
-
-    @property
-    def axis(self) -> str:
-        """Label of an axis, with the unit drawn."""
-        return f"{self.label} ({self.shown[0] or self.unit})"
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        """Layers that a shell must have, by their roles."""
-        return _ROLES[self.needs]
-
-    def lack(self, system: System, shell: int) -> str | None:
-        """Return what a shell would have to be for it to have this quantity, as in "is not rigid"; None if it has."""
-        wall = system.shells[shell]
-        if not self.needs:
-            return None
-        if not isinstance(wall, Shell):
-            return "is not rigid"
-        missing = next((role for role in self.roles if getattr(wall, role) is None), None)
-        if missing is not None:
-            return f"has a layer with the role {missing!r}"
-        return "is controlled" if self.needs == "control" and shell not in system.controlled_shells else None
-
-    def at(self, motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
-        """Return its values at angles (degrees), SI, shape (T, A)."""
-        if self.values is not None:
-            return self.values(motion, shell, theta)
-        assert self.gain is not None
-        if self.rate:
-            parities, modes = motion.solution.normal.shape[1:3]
-            basis = angle_basis(np.atleast_1d(theta), modes, parities, self.component)
-            gain = self.gain(motion.solution, shell)
-            assert not isinstance(gain, Relaxing)  # no rate of a stress is a quantity
-            return motion.rates_at(shell, gain, self.rate, basis)
-        return combined(motion.solution, shell, self.gain(motion.solution, shell), theta, self.component)
-
-    def amplitudes(self, motion: WallMotion, shell: int) -> Amplitudes:
-        """Return what gives its modal amplitudes, SI, at a slice of time indices."""
-        assert self.gain is not None
-        return motion.amplitudes(shell, self.gain(motion.solution, shell), self.rate)
-
-    def given(self, motion: WallMotion, shell: int) -> bool:
-        """Return whether a run gives it for a shell: the shell has it, and where its transform is needed the run all its instants."""
-        solution = motion.solution
-        wall = solution.problem.shells[shell]
-        there = (self.dimensions == 2 or solution.along is not None) and (not self.through or searchable(solution, shell))
-        needed = self.rate or int(self.relaxes and wall.relaxes)
-        return there and motion.has_rate(needed) and self.lack(solution.problem.system, shell) is None
+__all__ = ["QUANTITIES", "Quantity", "Where", "columns", "shell_metrics", "summary_rows"]
 
 
 def _displacement(motion: WallMotion, shell: int, theta: FloatArray, component: str = "normal") -> FloatArray:
@@ -211,6 +48,18 @@ def _sensor_voltage(motion: WallMotion, shell: int, theta: FloatArray) -> FloatA
 
 def _actuator_voltage(motion: WallMotion, shell: int, theta: FloatArray) -> FloatArray:
     return actuator_values(motion.solution, shell, theta)
+
+
+def _charge(motion: WallMotion, shell: int) -> FloatArray:
+    from coaxshell.response.electrical import charge  # with energies, which take long to import
+
+    return charge(motion, shell)
+
+
+def _current(motion: WallMotion, shell: int) -> FloatArray:
+    from coaxshell.response.electrical import current
+
+    return current(motion, shell)
 
 
 _TABLE: tuple[Quantity, ...] = (
@@ -388,6 +237,36 @@ _TABLE: tuple[Quantity, ...] = (
 
 _TABLE += (
     Quantity(
+        name="actuator_charge",
+        label="actuator charge",
+        noun="actuator charge",
+        long_name="charge of all actuators per area",
+        unit="C/m^2",
+        sign="of the voltage that it comes with",
+        modal=_charge,
+        rate=1,
+        needs="electrodes",
+        shown=("mC/m²", 1e3),
+        colour="green",
+        summary=("anywhere",),
+        metrics=("anywhere",),
+    ),
+    Quantity(
+        name="actuator_current",
+        label="actuator current",
+        noun="actuator current",
+        long_name="current of the amplifier into all actuators per area",
+        unit="A/m^2",
+        sign="of rising charge",
+        modal=_current,
+        rate=1,
+        needs="electrodes",
+        shown=("A/m²", 1.0),
+        colour="purple",
+        summary=("anywhere",),
+        metrics=("anywhere",),
+    ),
+    Quantity(
         name="axial_stress",
         label="axial stress",
         noun="axial stress",
@@ -473,7 +352,7 @@ def columns(dimensions: int = 2) -> Iterator[Quantity]:
 def summary_rows(dimensions: int = 2) -> list[tuple[str, str, str]]:
     """Return (key, label, unit) of the rows of a shell's summary, in the order of the tables."""
     return [
-        (quantity.key(where), quantity.noun + (f" {_PLACES[where]}" if len(quantity.summary) > 1 else ""), quantity.unit)
+        (quantity.key(where), quantity.noun + (f" {PLACES[where]}" if len(quantity.summary) > 1 else ""), quantity.unit)
         for quantity in QUANTITIES.values()
         for where in quantity.summary
         if quantity.dimensions <= dimensions

@@ -17,6 +17,7 @@ from coaxshell.numerics.late import Late, supplied
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, errors, histories, storage, wall_stress
+from coaxshell.response.effort import ControlEffort, control_effort
 from coaxshell.response.history_spectrum import history_spectrum
 from coaxshell.response.margins import stability_margins
 from coaxshell.response.participation import ParticipationOptions, participation
@@ -33,7 +34,6 @@ from coaxshell.solver.electrodes import Segment
 from coaxshell.solver.finite import require_finite_solution
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import Estimates, ModalSolution
-from coaxshell.solver.solved_spectra import SolvedSpectra
 
 if TYPE_CHECKING:  # no run needs them, and importing them takes as long as a tenth of one
     from coaxshell.response import energy, fields
@@ -94,7 +94,7 @@ class Response:
     @property
     def shells(self) -> int:
         """Number of shells."""
-        return len(self.solution.problem.shells)
+        return len(self.system.shells)
 
     @property
     def stations(self) -> FloatArray | None:
@@ -214,9 +214,9 @@ class Response:
 
     def stations_read(self, station: Any) -> list[tuple[float | None, WallMotion]]:
         """Return what is read at stations, all unless some are named, with their positions (m); two dimensions have none."""
-        if station is not None:
-            raise InputError("station", f"{shown(station)} belongs to three dimensions", "run with dimensions=3 and stations=")
-        return [(None, self.motion)]
+        if station is None:
+            return [(None, self.motion)]
+        raise InputError("station", f"{shown(station)} belongs to three dimensions", "run with dimensions=3 and stations=")
 
     def shell_velocity(
         self, shell: int | str, angle: npt.ArrayLike = HEAD_AND_TAIL, component: str = "normal", *, station: Any = None
@@ -338,7 +338,7 @@ class Response:
         A *z* belongs to three dimensions. See :func:`coaxshell.response.fields.evaluate.pressure`.
         """
         _refuse_z(z)
-        return fields.pressure(self._spectra, x, y, **options)
+        return fields.pressure(self.motion.spectra, x, y, **options)
 
     def velocity(
         self,
@@ -352,7 +352,7 @@ class Response:
         See :func:`coaxshell.response.fields.evaluate.velocity`.
         """
         _refuse_z(z)
-        return fields.velocity(self._spectra, x, y, **options)
+        return fields.velocity(self.motion.spectra, x, y, **options)
 
     def intensity(
         self,
@@ -366,14 +366,14 @@ class Response:
         See :func:`coaxshell.response.fields.evaluate.intensity`.
         """
         _refuse_z(z)
-        return fields.intensity(self._spectra, x, y, **options)
+        return fields.intensity(self.motion.spectra, x, y, **options)
 
     def pressure_rms(self, region: str | int, radius: float | None = None, **options: Unpack[fields.RmsOptions]) -> xr.DataArray:
         """Return the RMS of the total pressure over a region, Pa, dims (time,): "interior", "gap", its number, or "exterior" to *radius*.
 
         See :func:`coaxshell.response.fields.rms.pressure_rms`.
         """
-        return fields.pressure_rms(self._spectra, region, radius, **options)
+        return fields.pressure_rms(self.motion.spectra, region, radius, **options)
 
     def cavitation(
         self, x: npt.ArrayLike | None = None, y: npt.ArrayLike | None = None, **options: Unpack[fields.CavitationOptions]
@@ -383,16 +383,12 @@ class Response:
         Options are *radius* and *angle* instead of x and y, *time* and *vapour_pressure*; see
         :func:`coaxshell.response.fields.cavitation.cavitation`.
         """
-        return fields.cavitation(self._spectra, x, y, **options)
+        return fields.cavitation(self.motion.spectra, x, y, **options)
 
     def _read(self, station: Any, read: Callable[[WallMotion], xr.DataArray]) -> xr.DataArray:
         """Return what is read of the motion of the walls; two dimensions have no stations."""
         ((_, motion),) = self.stations_read(station)
         return read(motion)
-
-    @property
-    def _spectra(self) -> SolvedSpectra:
-        return self.motion.spectra
 
     def absorber_displacement(self) -> xr.DataArray:
         """Return the displacement of the absorbers' masses, m, positive inward, dims (absorber, time)."""
@@ -412,7 +408,14 @@ class Response:
         Takes ten to thirty seconds at the paper's resolution; *progress* is told how far it is.
         See :func:`coaxshell.response.energy.energy`.
         """
-        return energy.energy(self.solution, every, progress, spectra=self._spectra)
+        return energy.energy(self.solution, every, progress, spectra=self.motion.spectra)
+
+    def control_effort(self, *, segment: Segment = None, **limits: float | None) -> ControlEffort:
+        """Return what control costs: voltage, field, charge, current, power of each shell, against limits of material and amplifier.
+
+        Print it for a table. Limits are *voltage*, *current*, *apparent_power*: see :func:`coaxshell.response.effort.control_effort`.
+        """
+        return control_effort(self.motion, segment, **limits)
 
     def stability_margins(self) -> xr.Dataset:
         """Return gain, phase and delay margins of the feedback of each shell by order; see :func:`coaxshell.stability_margins`."""
@@ -429,8 +432,7 @@ class Response:
     def without_transforms(self) -> Response:
         """Return the response without the transforms that a run keeps as long as it is in use: for keeping many responses at a time.
 
-        They take a few times the memory of the histories, half a gigabyte at most, and make fields, energies, velocities and
-        accelerations start at once. Without them all of these are the same, and begin with making them again.
+        They take a few times the memory of the histories. Without them fields, energies and rates are the same, and make them again.
         """
         return Response(replace(self.solution))
 
@@ -465,10 +467,8 @@ class Response:
 
         Columns carry their units; they are those of :func:`coaxshell.export.export_csv`.
         """
-        columns = self.history_table()
-        time = columns.pop("time (a/c)")
-        rows = xr.Dataset({name: ("time (a/c)", values) for name, values in columns.items()}, coords={"time (a/c)": time})
-        return rows.to_dataframe()
+        columns = {name: ("time (a/c)", values) for name, values in self.history_table().items()}
+        return xr.Dataset(columns).to_dataframe()
 
     def history_table(self) -> dict[str, FloatArray]:
         """Return all histories at head and tail as columns by names with units; see :func:`coaxshell.response.tables.history_table`."""

@@ -17,7 +17,7 @@ from coaxshell.response.peaks import Peak, made_once, peak_anywhere, peak_at, ro
 from coaxshell.response.quantities import QUANTITIES, Quantity, Where
 from coaxshell.response.summary_text import summary_html, summary_text
 from coaxshell.response.translation import still_grows
-from coaxshell.response.voltages import actuator_limit
+from coaxshell.response.voltages import actuator_limit, largest_mean
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import Segment, segment_length
 from coaxshell.solver.solution import ModalSolution
@@ -211,6 +211,8 @@ def _largest(
     solution, wanted = motion.solution, quantity.summary
     if quantity.largest is not None:
         return {quantity.name: quantity.largest(solution, shell, span, length, halved=judged)}
+    if quantity.modal is not None:
+        return {quantity.name: largest_mean(solution, shell, quantity.amplitudes(motion, shell), span, length, halved=judged)}
     head, time = solution.problem.system.sources[0].angle, solution.time
     width = len(circle_angles(solution.normal.shape[2], solution.normal.shape[1]))
     amplitudes = made_once(quantity.amplitudes(motion, shell), span)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.model.control import PDControl
+from coaxshell.model.parts import laws_of
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
@@ -78,8 +79,8 @@ def _kept(time: FloatArray, every: int, window: Sequence[float] | None) -> slice
 
 def _rates(solution: ModalSolution) -> dict[str, Any]:
     """Return the rates of change that derivative control reads, where the engine kept none."""
-    control = solution.problem.system.control
-    if not isinstance(control, PDControl) or not control.derivative or solution.normal_rate is not None or not solution.whole:
+    laws = [law for law in laws_of(solution.problem.system) if isinstance(law, PDControl) and law.derivative]
+    if not laws or solution.normal_rate is not None or not solution.whole:
         return {}
     step = solution.settings.time_step
     return {"normal_rate": time_derivative(solution.normal, step), "tangential_rate": time_derivative(solution.tangential, step)}

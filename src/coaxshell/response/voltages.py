@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.gains import law_of
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
@@ -46,7 +47,7 @@ def actuator_limit(solution: ModalSolution, shell: int) -> ActuatorLimit:
     """Return field limit times thickness of the actuator, V (section 5 of the theory); InputError if the shell has none."""
     if not elastic_wall(solution.problem, shell).has("actuator"):
         raise InputError(f"shells[{shell}].layers", "there is no actuator", 'give a piezoelectric layer the role "actuator"')
-    control = solution.problem.system.control
+    control = law_of(solution.problem.system, shell)
     return ActuatorLimit(voltage_limit(solution.problem, shell), control is not None and control.saturation)
 
 
@@ -151,6 +152,12 @@ def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice,
     voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant
     share = mean_shares(solution, shell, length)[:, None]
     return _largest(solution, lambda block: voltage[:, :, block] * share, window, halved)
+
+
+def largest_mean(solution: ModalSolution, shell: int, quantity: Amplitudes, window: slice, length: float, *, halved: bool = True) -> Peak:
+    """Return the largest magnitude of any quantity of amplitudes, as a mean over a segment of a length (m; 0 a point)."""
+    share = mean_shares(solution, shell, length)[:, None]
+    return _largest(solution, lambda block: quantity(block) * share, window, halved)
 
 
 def _largest(solution: ModalSolution, quantity: Amplitudes, window: slice, halved: bool) -> Peak:

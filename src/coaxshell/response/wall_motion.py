@@ -8,8 +8,9 @@ differences that it is made of.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.structure.elastic_depth import Shown
 from coaxshell.structure.shell_model import FieldGain, Gain
 
+Made = TypeVar("Made")
 _KEPT_DEPTHS = 8
 """Quantities within elastic walls that are kept."""
 
@@ -49,6 +51,7 @@ class WallMotion:
     def __init__(self, solution: ModalSolution) -> None:
         self.solution = solution
         self._within: dict[tuple[int, str, float], FloatArray] = {}
+        self._made: dict[Hashable, Any] = {}
 
     @cached_property
     def spectra(self) -> SolvedSpectra:
@@ -72,6 +75,13 @@ class WallMotion:
                 self._within.pop(next(iter(self._within)))
             self._within[key] = through.within(self.spectra, shell, what, depth)[..., :: self.solution.settings.refinement]
         return self._within[key]
+
+    def kept(self, key: Hashable, make: Callable[[], Made]) -> Made:
+        """Return what is made of this motion once, by its key."""
+        if key not in self._made:
+            self._made[key] = make()
+        found: Made = self._made[key]
+        return found
 
     def has_rate(self, rate: int) -> bool:
         """Return whether derivatives of an order can be given: 0 always, others of a run with all its instants."""

@@ -12,6 +12,8 @@ import numpy as np
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
+from coaxshell.model.gains import law_of, saturates
+from coaxshell.model.parts import laws_of
 from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
 from coaxshell.model.prefixes import engineering
@@ -81,8 +83,7 @@ def after(problem: Problem, estimates: Estimates, settings: Settings) -> list[st
     """Return the warnings about the error estimates, one a cause and shell: of displacement or stress, whichever is worse."""
     order = settings.modes
     assert isinstance(order, int)
-    control = problem.system.control
-    saturating = control is not None and control.saturation  # of which "auto" does not know
+    saturating = saturates(problem.system)  # of which "auto" does not know
     step, more = settings.time_step, f"modes={min(2 * order, MAX_MODES)}" + ("" if saturating else ' or modes="auto"')
     causes = [
         (f"orders above {order} would change", estimates.orders, TRUNCATION_LIMIT, more),
@@ -165,7 +166,7 @@ def actuators(*motions: ModalSolution) -> list[str]:
     """
     warnings, problem = [], motions[0].problem
     for i, shell in enumerate(problem.shells):
-        control = problem.system.control
+        control = law_of(problem.system, i)
         if control is None or shell.gains is None:
             continue
         limit = voltage_limit(problem, i)
@@ -193,16 +194,17 @@ def actuators(*motions: ModalSolution) -> list[str]:
 
 def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
     """Return the warning that feedback by electrodes is computed without any delay, with that which it would stand."""
-    control = problem.system.control
-    if control is None or control.transducers != "electrodes":
+    laws = [law for law in laws_of(problem.system) if law.transducers == "electrodes"]
+    if not laws:
         return []
     assert isinstance(settings.modes, int)
     margin = delay_margin(problem, settings.modes, settings.duration)
     if margin is None or margin.delay > USUAL_DELAY:
         return []
-    if isinstance(control, Feedback) and control.delay:
+    known = max(law.delay if isinstance(law, Feedback) else 0.0 for law in laws)
+    if known:
         return [
-            f"control: {engineering(margin.delay, 's')} more than the loop's delay of {engineering(control.delay, 's')} would make order "
+            f"control: {engineering(margin.delay, 's')} more than the loop's delay of {engineering(known, 's')} would make order "
             f"{margin.order} grow, and electronics take about {engineering(USUAL_DELAY, 's')}; lower the gains, or feed fewer orders back"
         ]
     return [
@@ -266,13 +268,13 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     if error.value <= SLICE_LIMIT:
         return []
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
-    control = problem.system.control
-    changed = " without saturation" if control is not None and control.saturation else ""
-    if control is not None and control.transducers == "electrodes":
+    laws = laws_of(problem.system)
+    changed = " without saturation" if saturates(problem.system) else ""
+    if any(law.transducers == "electrodes" for law in laws):
         changed = ' with transducers="paper"'
     if problem.two_faced and problem.system.absorber_list:
         changed += " without absorbers"
-    if problem.two_faced and control is not None:
+    if problem.two_faced and laws:
         changed = " without feedback" if not problem.system.absorber_list else " without absorbers and feedback"
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
@@ -309,8 +311,7 @@ def thin_walls(problem: Problem, duration: float) -> list[str]:
             f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, error.at_faces, THIN_LIMIT)
         )
         remedies = [f'wetted = "faces" (about {faces} %)'] if error.at_faces < FACES_HELP * error.value else []
-        saturates = system.control is not None and system.control.saturation
-        remedies.append('theory = "elastic"' + (", which does not know saturation, to see by how much" if saturates else ""))
+        remedies.append('theory = "elastic"' + (", which does not know saturation, to see by how much" if saturates(system) else ""))
         where = "faces" if error.wetted == "faces" else "mid-surface"
         found.append(
             f"{shell_phrase(error.shell, len(problem.shells))}: thin-wall theory with fluids at its {where} leaves its hoop stress about "

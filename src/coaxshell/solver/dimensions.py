@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
+from coaxshell.model.gains import saturates
 from coaxshell.model.layers import Shell
+from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
@@ -51,22 +53,22 @@ def require_sources_alone(system: System, dimensions: int) -> None:
         raise InputError(
             "control", f"feedback on shells[{solid}], an elastic wall, is known in two dimensions only", f"use dimensions=2, {thin}"
         )
-    if system.control is not None and system.control.saturation:
+    if saturates(system):
         problem = f"the voltage on shells[{solid}], an elastic wall, has no limit that is marched yet"
         raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {thin}")
 
 
 def _require_plane_electrodes(system: System, dimensions: int) -> None:
     """Raise InputError if feedback by electrodes or by any law is asked for in three dimensions, or is to saturate."""
-    if isinstance(system.control, Feedback) and dimensions == 3:
+    if any(isinstance(law, Feedback) for law in laws_of(system)) and dimensions == 3:
         problem = "Feedback is solved in two dimensions only"
         raise InputError("control", problem, 'use dimensions=2, or PDControl with transducers = "paper"')
-    if system.control is None or system.control.transducers != "electrodes":
+    if not any(law.transducers == "electrodes" for law in laws_of(system)):
         return
     paper = 'or transducers = "paper"'
     if dimensions == 3:
         raise InputError("control.transducers", "'electrodes' is solved in two dimensions only", f"use dimensions=2, {paper}")
-    if system.control.saturation:
+    if saturates(system):
         problem = "electrodes push along the wall too, where no limit of the voltage is marched yet"
         raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {paper}")
 
@@ -85,9 +87,9 @@ def require_cubic_springs(system: System, what: str, remedy: str) -> None:
 
 def require_mid_surfaces(system: System) -> None:
     """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know, or of other feedback."""
-    if isinstance(system.control, Feedback):
+    if any(isinstance(law, Feedback) for law in laws_of(system)):
         raise InputError("control", "Feedback is not known to the direct engine, which steps PDControl", 'use engine="spectral"')
-    if system.control is not None and system.control.transducers == "electrodes":
+    if any(law.transducers == "electrodes" for law in laws_of(system)):
         problem = "'electrodes' push along the wall too, and the direct engine knows the paper's pressure alone"
         raise InputError("control.transducers", problem, 'use engine="spectral", or transducers = "paper"')
     for number, shell in enumerate(system.shells):

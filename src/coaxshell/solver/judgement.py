@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from coaxshell.model.gains import saturates
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver import checks, estimates
 from coaxshell.solver.finite import numerical_failures
@@ -38,13 +39,13 @@ def judgement(solution: ModalSolution, *, solved: SolvedSpectra, asked_for: Sett
 
 def _judgement(solution: ModalSolution, solved: SolvedSpectra, asked_for: Settings, asked: FloatArray | None) -> Judgement:
     problem, settings, stopwatch = solution.problem, solution.settings, Stopwatch(solution.timings)
-    structure, order, control = solved.structure, solved.modes.max_order, problem.system.control
+    structure, order = solved.structure, solved.modes.max_order
     interface = interface_of(solved, solution.normal, slice(None, None, settings.refinement), asked)
     spectra, histories = (solved.normal, solved.tangential), (solution.normal, solution.tangential)
     errors = estimates.estimated_errors(solved.passive, spectra, histories, settings.time_step, interface)
     stopwatch.lap("error estimates")
     warnings = [*structure.notes, *checks.absorbers(solved, settings.refinement), *checks.before(problem, solved.grid, order)]
-    warnings += tolerance_missed(asked_for, order, errors, saturating=control is not None and control.saturation)
+    warnings += tolerance_missed(asked_for, order, errors, saturating=saturates(problem.system))
     warnings += checks.after(problem, errors, settings) + checks.tension(
         problem, tensions(problem, solved.grid, *solved.face_motion, structure.returned)
     )

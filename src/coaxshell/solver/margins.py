@@ -8,6 +8,7 @@ answer came later by (arg L)/omega there. Between nodes log L is taken as linear
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -79,6 +80,61 @@ def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
 def loop_margins(problem: Problem, modes: Modes, least: float) -> dict[int, LoopMargins]:
     """Return the margins of the loop of each shell that feeds anything back, by its number, in a stable system."""
     return {shell: margins_of(modes.orders, *loop) for shell, loop in loops(problem, modes, least).items()}
+
+
+def common_loop(problem: Problem, modes: Modes, least: float) -> list[Loop]:
+    """Return the eigenvalues of all loops together, one Loop each: with a common factor z on all laws D_m/D0_m = prod (1 - z lambda).
+
+    With one shell under control that is its L. D_m/D0_m is a polynomial in z, 1 at z = 0, known from as many other places as there are
+    loops. Eigenvalues are followed from node to node by the permutation that moves them least.
+    """
+    shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
+    places = np.array([(-1.0) ** j * (1.0 - (j // 2) / len(shells)) for j in range(len(shells))])
+    contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
+    scaled = [_times(problem, float(z)) for z in places]
+    powers = np.linalg.inv(np.vander(places, len(shells) + 1, increasing=True)[:, 1:])
+    nodes, passive = contour.nodes, problem.open_loop
+    values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
+    for start in range(0, nodes.size, _BLOCK):
+        block = nodes[start : start + _BLOCK]
+        open_loop = opened(problem, passive, block, modes, None)
+        closed = np.stack([open_loop.closed(one, block, modes) - 1.0 for one in scaled])
+        values[..., start : start + _BLOCK] = _eigenvalues(np.einsum("kj,jmn->kmn", powers, closed))
+    return [Loop(nodes, one) for one in followed(values)]
+
+
+def _eigenvalues(coefficients: ComplexArray) -> ComplexArray:
+    """Return the roots of x^n + c_1 x^(n-1) + ... + c_n, shape (n, ...) as the coefficients have."""
+    count = len(coefficients)
+    if count == 1:
+        return -coefficients
+    companion = np.zeros((*coefficients.shape[1:], count, count), dtype=np.complex128)
+    companion[..., 0, :] = -np.moveaxis(coefficients, 0, -1)
+    companion[..., np.arange(1, count), np.arange(count - 1)] = 1.0
+    return np.asarray(np.moveaxis(np.linalg.eigvals(companion), -1, 0), dtype=np.complex128)
+
+
+def followed(values: ComplexArray) -> ComplexArray:
+    """Return values, (n, orders, nodes), in an order in which they move least from node to node."""
+    if len(values) == 1:
+        return values
+    if len(values) == 2:
+        one, other = values[:, :, :-1], values[:, :, 1:]
+        crossed = np.abs(other[::-1] - one).sum(axis=0) < np.abs(other - one).sum(axis=0)
+        turned = np.concatenate([np.zeros((len(crossed), 1), np.int64), np.cumsum(crossed, axis=1)], axis=1) % 2
+        return np.where(turned == 1, values[::-1], values)
+    orders, turns, found = np.arange(values.shape[1])[:, None], np.array(list(permutations(range(len(values))))), values.copy()
+    for node in range(1, values.shape[2]):
+        before, here = found[:, :, node - 1], values[:, :, node]
+        least = np.abs(here[turns] - before).sum(axis=1).argmin(axis=0)
+        found[:, :, node] = here[turns[least], orders].T
+    return found
+
+
+def _times(problem: Problem, factor: float) -> Problem:
+    return replace(
+        problem, shells=tuple(wall.with_gains(None if wall.gains is None else wall.gains.times(factor)) for wall in problem.shells)
+    )
 
 
 def _without(problem: Problem, shell: int) -> Problem:

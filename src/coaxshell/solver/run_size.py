@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from coaxshell.model.gains import saturates
 from coaxshell.model.pulses import Sampled
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import source_parities
@@ -99,10 +100,10 @@ def size_of(problem: Problem, settings: Settings) -> Size:
     orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
     feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
     solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
-    saturates = system.control is not None and system.control.saturation
+    limited = saturates(system)
     return Size(
         shells=len(problem.shells),
-        controlled=len(feedback) if saturates else 0,
+        controlled=len(feedback) if limited else 0,
         feedback=bool(feedback),
         points=2 * links.count,
         nonlinear=not links.is_linear,

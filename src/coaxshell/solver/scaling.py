@@ -16,7 +16,7 @@ from coaxshell.acoustics.sources import SourceGeometry
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.gains import gains_of
+from coaxshell.model.gains import gains_of, law_of
 from coaxshell.model.layers import serves
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
@@ -229,7 +229,8 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
     gains, faces = _gains(system, index, scales.time), shell.wetted == "faces"
     thin: type[ThinWall] = ThinWall
     lossy: type[LossyWall] = LossyWall
-    if gains is not None and system.control is not None and system.control.transducers == "electrodes":
+    law = law_of(system, index)
+    if gains is not None and law is not None and law.transducers == "electrodes":
         shell, thin, lossy = with_plane_stress(shell), ElectrodedWall, LossyElectrodedWall
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     if not any(loses(layer.material) for layer in shell.layers):
@@ -251,13 +252,15 @@ def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band)
             )
         return LossySolidWall.of(layers, core)
     wall = ElasticWall.of(layers, core)
-    return wall if gains is None else replace(wall, gains=gains, transducers=_transducers(system, shell, scales))
+    return wall if gains is None else replace(wall, gains=gains, transducers=_transducers(system, index, scales))
 
 
-def _transducers(system: System, shell: Shell, scales: Scales) -> Transducers:
+def _transducers(system: System, index: int, scales: Scales) -> Transducers:
     """Return what senses and acts in an elastic wall under control."""
-    assert system.control is not None
-    electrodes = system.control.transducers == "electrodes"
+    shell, law = system.shells[index], law_of(system, index)
+    assert isinstance(shell, Shell)
+    assert law is not None
+    electrodes = law.transducers == "electrodes"
     thin = section(with_plane_stress(shell) if electrodes else shell)
     in_units = thin.in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     sensors, actuators = (tuple(i for i, layer in enumerate(shell.layers) if serves(layer.role, role)) for role in ("sensor", "actuator"))
@@ -267,8 +270,8 @@ def _transducers(system: System, shell: Shell, scales: Scales) -> Transducers:
 
 
 def _gains(system: System, index: int, time: float) -> ControlLaw | None:
-    control = system.control
-    if control is None or index not in system.controlled_shells:
+    control = law_of(system, index)
+    if control is None:
         return None
     if isinstance(control, Feedback):
         return RationalLaw.of(*control.polynomials, control.delay, control.weights, time)

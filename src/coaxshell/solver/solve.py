@@ -10,6 +10,8 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
+from coaxshell.model.gains import saturates
+from coaxshell.model.parts import laws_of
 from coaxshell.model.system import System
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
@@ -137,7 +139,7 @@ def _solved(
     settings = replace(asked_for, modes=structure.modes.max_order)
     system, grid, keep = problem.system, structure.grid, slice(None, None, settings.refinement)
     links = absorber_set(problem, system.absorber_list, source_parities(problem))
-    saturate = system.control is not None and system.control.saturation
+    saturate = saturates(system)
     (structure.open_loop if saturate else structure).solve(units=links.count > 0 or saturate)
     stopwatch.lap("modal system at all Laplace nodes")
     solved = reflected(structure, lambda one: solve_linked(one, links, progress, saturate=saturate), progress)
@@ -152,7 +154,7 @@ def _solved(
         potentials = grid.invert(solved.solid.potentials)[..., keep] if solved.solid.potentials.size else None
     correction = np.zeros_like(w) if saturate else None
     w_rate = v_rate = asked = voltage = None
-    if isinstance(system.control, Feedback) or (system.control is not None and problem.two_faced):
+    if any(isinstance(law, Feedback) for law in laws_of(system)) or (laws_of(system) and problem.two_faced):
         voltage = grid.invert(voltage_asked(solved))[..., keep]
     elif any(shell.gains is not None for shell in problem.shells):
         w_rate, v_rate = (grid.invert(x * grid.nodes)[..., keep] for x in (solved.normal, solved.tangential))

@@ -27,6 +27,7 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
+from coaxshell.model.parts import laws_of, shells_under
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -333,35 +334,50 @@ def require_stable(problem: Problem, max_order: int, duration: float, shared: Sh
     unstable = unstable_poles(problem, max_order, duration, shared, wavenumber)
     if unstable.orders.size == 0:
         return
-    control = problem.system.control
-    assert control is not None
     fastest = fastest_growth(problem, unstable.orders, 1.0 / duration, wavenumber)
-    names, said = _guilty(control, problem, max_order, duration, wavenumber)
+    names, said = _guilty(problem, max_order, duration, wavenumber)
     where = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
     listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5])
     listed += f", ..., {unstable.orders[-1]:.0f} ({unstable.orders.size} in all)" if unstable.orders.size > 5 else ""
     hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
     told = f"order {fastest.order} by e^({fastest.rate:.3g} t), t in transits, at {engineering(hertz, 'Hz')}"
     raise InputError(
-        " and ".join(f"control.{name}" for name in names),
+        " and ".join(names),
         f"{said} makes the closed loop unstable: order {listed}{where} grows without bound, fastest {told}",
         _remedy(problem),
     )
 
 
-def _guilty(control: PDControl | Feedback, problem: Problem, max_order: int, duration: float, wavenumber: float) -> tuple[list[str], str]:
+def _guilty(problem: Problem, max_order: int, duration: float, wavenumber: float) -> tuple[list[str], str]:
     """Return which entries of the control make the loop unstable, and their values."""
+    control = problem.system.control
+    if isinstance(control, tuple):
+        return _guilty_of(control, problem, max_order, duration, wavenumber)
     if isinstance(control, Feedback):
         if control.delay and not unstable_poles(_at_once(problem), max_order, duration, wavenumber=wavenumber).orders.size:
-            return ["delay"], engineering(control.delay, "s")
-        return ["numerator"], _shown(control.numerator)
+            return ["control.delay"], engineering(control.delay, "s")
+        return ["control.numerator"], _shown(control.numerator)
+    assert control is not None
     gains = {name: getattr(control, name) for name in ("proportional", "derivative")}
     alone = {
         "proportional": unstable_poles(with_gains(problem, 1.0, 0.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
         "derivative": unstable_poles(with_gains(problem, 0.0, 1.0), max_order, duration, wavenumber=wavenumber).orders.size > 0,
     }
     guilty = [name for name, bad in alone.items() if bad] or list(gains)
-    return guilty, " and ".join(_shown(gains[name]) for name in guilty)
+    return [f"control.{name}" for name in guilty], " and ".join(_shown(gains[name]) for name in guilty)
+
+
+def _guilty_of(
+    laws: Sequence[PDControl | Feedback], problem: Problem, max_order: int, duration: float, wavenumber: float
+) -> tuple[list[str], str]:
+    """Return which of several laws are unstable by themselves, all if none is."""
+    found = []
+    for place, law in enumerate(laws):
+        shells = shells_under(problem.system, law)
+        alone = (wall if i in shells else wall.with_gains(None) for i, wall in enumerate(problem.shells))
+        if unstable_poles(replace(problem, shells=tuple(alone)), max_order, duration, wavenumber=wavenumber).orders.size:
+            found.append(f"control[{place}]")
+    return found or ["control"], "this law" if len(found) == 1 else "these laws together"
 
 
 def _at_once(problem: Problem) -> Problem:
@@ -377,14 +393,12 @@ def _shown(gain: float | tuple[float, ...]) -> str:
 def _remedy(problem: Problem) -> str:
     """Return what makes a loop stable: signs and sizes, and with electrodes where sensors and actuators are."""
     system = problem.system
-    control = system.control
-    assert control is not None
-    if isinstance(control, Feedback) and control.delay:
+    if any(isinstance(law, Feedback) and law.delay for law in laws_of(system)):
         return (
             "answer sooner, use less gain, feed fewer orders back (control.weights) or give the walls a loss_factor: "
             "without losses of the walls any delay is fatal to some order"
         )
-    if control.transducers == "paper":
+    if all(law.transducers == "paper" for law in laws_of(system)):
         return "use a smaller magnitude or the other sign (negative gains stiffen and damp)"
     other = "use a smaller magnitude or the other sign (positive gains stiffen and damp)"
     for number in system.controlled_shells:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
 
@@ -45,6 +45,10 @@ class ControlLaw(ABC):
     @abstractmethod
     def late(self, delay: float) -> Self:
         """Return the law that answers by as much later."""
+
+    @abstractmethod
+    def times(self, factor: float) -> Self:
+        """Return the law with a factor on its gain."""
 
     @property
     def zero(self) -> bool:
@@ -98,6 +102,10 @@ class ControlGains(ControlLaw):
     def zero(self) -> bool:
         """Whether both gains are 0."""
         return self.proportional == self.derivative == 0.0
+
+    def times(self, factor: float) -> ControlGains:
+        """Return the law with a factor on both gains."""
+        return self.scaled(factor, factor)
 
     def scaled(self, proportional: float, derivative: float) -> ControlGains:
         """Return the gains times a factor each."""
@@ -176,7 +184,11 @@ class RationalLaw(ControlLaw):
 
     def late(self, delay: float) -> RationalLaw:
         """Return the law that answers by as much later."""
-        return RationalLaw(self.numerator, self.denominator, self.delay + delay, self.weights)
+        return replace(self, delay=self.delay + delay)
+
+    def times(self, factor: float) -> RationalLaw:
+        """Return the law with a factor on its numerator."""
+        return replace(self, numerator=tuple(factor * x for x in self.numerator))
 
     @property
     def zero(self) -> bool:

@@ -372,6 +372,10 @@ class ShellModel(ABC):
         """Return what a unit gain takes off the relative stiffness along the hoop, without feedback: nothing of a normal pressure."""
         return 0.0
 
+    def driven_along(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
+        """Return V per volt of control while W is held: 0 under a normal pressure."""
+        return 0.0
+
     def fastest_rate(self, modes: Modes) -> FloatArray:
         """Return the highest rate of each order that steps have to resolve, that of strong damping included."""
         return self.highest_frequency(modes)

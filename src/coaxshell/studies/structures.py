@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+from coaxshell.model.gains import saturates
 from coaxshell.model.system import System
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import PreparedSystem, Response, prepare, simulate
@@ -38,9 +39,8 @@ class Structures:
 
     def response(self, system: System) -> Response:
         """Return the response of a system; InputError as :func:`coaxshell.response.simulate`."""
-        saturates = system.control is not None and system.control.saturation
         prepares = self.resolution.engine == "spectral" and self.resolution.dimensions == 2
-        if not prepares or not (system.absorber_list or saturates):
+        if not prepares or not (system.absorber_list or saturates(system)):
             return simulate(system, progress=self._progress, settings=self.resolution)
         structure = structure_of(system)
         if self._prepared is None or self._structure != structure:

@@ -100,7 +100,7 @@ def _reference() -> Iterator[str]:
     yield "[absorbers.law]: what the links of an absorber exert besides its damper and springs"
     for law in laws.LAWS.values():
         yield from _kind(law)
-    yield "[control]: piezoelectric feedback from each shell's sensor layer to its actuator layer"
+    yield "[control]: piezoelectric feedback from a shell's sensors to its actuators; or [[control]], several laws, each for its shells"
     yield from _entries(PDControl)
     yield "  or of any other law:"
     yield from _entries(Feedback)

@@ -11,6 +11,7 @@ from coaxshell.acoustics.pulse_histories import pulse_impulse
 from coaxshell.apps.report.parts import Beside, Drawing, Section, Subject, Table, drawn
 from coaxshell.model import Fluid, RigidShell, System, UnderwaterExplosion
 from coaxshell.model.display import cross_section
+from coaxshell.model.gains import saturates
 from coaxshell.model.places import region_name, shell_name
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.sources import Source
@@ -81,7 +82,7 @@ def _fitted(system: System) -> Iterator[str]:
         yield f"In the sea: the axis lies {engineering(system.sea.depth, 'm')} below the surface, which is at {system.sea.up:g}°{bottom}."
     if system.control is not None:
         shells = ", ".join(shell_name(i, len(system.shells)) for i in system.controlled_shells)
-        yield f"Feedback on: {shells}; {'saturates at the field limit' if system.control.saturation else 'without saturation'}."
+        yield f"Feedback on: {shells}; {'saturates at the field limit' if saturates(system) else 'without saturation'}."
 
 
 def _differences(subject: Subject) -> str:

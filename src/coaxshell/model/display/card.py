@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from html import escape
 
 from coaxshell.model.absorbers import AbsorberRing
+from coaxshell.model.control import PDControl
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid, Vacuum
-from coaxshell.model.gains import gains_of
-from coaxshell.model.parts import SystemParts
+from coaxshell.model.gains import gains_of, saturates
+from coaxshell.model.parts import SystemParts, laws_of, shells_under
 from coaxshell.model.places import region_side, shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.sea import Sea
@@ -31,9 +32,10 @@ def system_line(system: SystemParts) -> str:
         parts.append(f"{len(system.absorber_list)} absorbers")
     if system.point_absorbers:
         parts.append(f"{len(system.point_absorbers)} point absorbers")
-    if system.control is not None:
-        words = "control by electrodes" if system.control.transducers == "electrodes" else "control"
-        parts.append(f"saturating {words}" if system.control.saturation else words)
+    if laws_of(system):
+        words = "control by electrodes" if all(law.transducers == "electrodes" for law in laws_of(system)) else "control"
+        words = words if len(laws_of(system)) == 1 else f"{len(laws_of(system))} laws of {words}"
+        parts.append(f"saturating {words}" if saturates(system) else words)
     if system.sea is not None:
         parts.append(f"{system.sea.depth:g} m deep in the sea")
     name = f"{system.name!r}, " if system.name else ""
@@ -93,21 +95,23 @@ def _parts(system: SystemParts) -> list[Cells]:
         rows.append(("", "absorbers", _absorbers(system)))
     if system.point_absorbers:
         rows.append(("", "point absorbers", _point_absorbers(system)))
-    if system.control is not None:
-        control = system.control
-        stop = ", by electrodes" if control.transducers == "electrodes" else ""
-        stop += ", stops at the field limit" if control.saturation else ""
-        if isinstance(control, Feedback):
-            laws = _law(control, [shell_phrase(i, len(system.shells)) for i in system.controlled_shells])
-        else:
-            each: dict[tuple[float, float], list[str]] = {}
-            for i in system.controlled_shells:
-                each.setdefault(gains_of(system, i), []).append(shell_phrase(i, len(system.shells)))
-            laws = "; ".join(f"k_p = {p:g}, k_d = {d:g} on {', '.join(names)}" for (p, d), names in each.items())
-        rows.append(("", "control", f"{laws}{stop}"))
+    rows += [("", "control", _control(system, law)) for law in laws_of(system)]
     if system.sea is not None:
         rows.append(("", "sea", _sea(system.sea)))
     return rows
+
+
+def _control(system: SystemParts, control: PDControl | Feedback) -> str:
+    """Return what a control law is and which shells it is for."""
+    stop = ", by electrodes" if control.transducers == "electrodes" else ""
+    stop += ", stops at the field limit" if control.saturation else ""
+    numbers = shells_under(system, control)
+    if isinstance(control, Feedback):
+        return _law(control, [shell_phrase(i, len(system.shells)) for i in numbers]) + stop
+    each: dict[tuple[float, float], list[str]] = {}
+    for i in numbers:
+        each.setdefault(gains_of(system, i), []).append(shell_phrase(i, len(system.shells)))
+    return "; ".join(f"k_p = {p:g}, k_d = {d:g} on {', '.join(names)}" for (p, d), names in each.items()) + stop
 
 
 def _law(law: Feedback, names: Sequence[str]) -> str:

@@ -28,7 +28,7 @@ def driven_at(wall: ElasticWall, motion: Motion, order: int) -> FloatArray:
     raise IndexError(order)
 
 
-def _strokes(motion: Motion, shell: int, volts: ComplexArray) -> ComplexArray:
+def strokes(motion: Motion, shell: int, volts: ComplexArray) -> ComplexArray:
     """Return d'x of every driven layer, what its voltage does work on, (driven, parities, M + 1, nodes)."""
     wall, solid, s = motion.problem.shells[shell], motion.solid, motion.grid.nodes
     assert isinstance(wall, ElasticWall)
@@ -52,9 +52,9 @@ def solid_actuator_work(motion: Motion, shell: int) -> FloatArray:
     assert isinstance(wall, ElasticWall)
     assert wall.transducers is not None
     assert volts is not None
-    strokes, total = _strokes(motion, shell, volts), np.zeros(grid.time.size)
+    moved, total = strokes(motion, shell, volts), np.zeros(grid.time.size)
     for j in np.flatnonzero(wall.transducers.acting):
-        total -= SurfaceWork(grid, motion.circle, strokes[j] * grid.nodes)(volts[j])
+        total -= SurfaceWork(grid, motion.circle, moved[j] * grid.nodes)(volts[j])
     return total
 
 
@@ -86,10 +86,10 @@ def solid_electrical(motion: Motion, shell: int) -> tuple[FloatArray, FloatArray
         return None
     volts = volts_of(motion, shell)
     assert volts is not None
-    strokes, held, supplied = _strokes(motion, shell, volts), np.zeros(grid.time.size), np.zeros(grid.time.size)
+    moved, held, supplied = strokes(motion, shell, volts), np.zeros(grid.time.size), np.zeros(grid.time.size)
     for j in np.flatnonzero(wall.transducers.acting):
         capacitance = capacitances(wall, motion)[j]
-        charge = strokes[j] + capacitance[:, None] * volts[j]
+        charge = moved[j] + capacitance[:, None] * volts[j]
         supplied += SurfaceWork(grid, motion.circle, grid.nodes * charge)(volts[j])
         history = grid.invert(volts[j].copy())
         held += 0.5 * np.einsum("m,hmt,hmt->t", capacitance * motion.circle, history, history)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from coaxshell.model.gains import saturates
 from coaxshell.model.places import shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.response.frequency.request import Asked
@@ -77,8 +78,7 @@ def _cubic(problem: Problem) -> list[str]:
 
 
 def _saturating(problem: Problem) -> list[str]:
-    control = problem.system.control
-    if control is None or not control.saturation:
+    if not saturates(problem.system):
         return []
     return ["control.saturation: the linear law is taken, whatever the voltage; simulate cuts it at the limit"]
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
+from coaxshell.model.gains import saturates
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -59,7 +60,7 @@ def solve_by_marching(system: System, settings: Settings, progress: Progress | N
     require_stable(problem, order, settings.duration)
     stopwatch.lap("stability of the feedback")
     links = absorber_set(problem, system.absorber_list, source_parities(problem))
-    saturate = system.control is not None and system.control.saturation
+    saturate = saturates(system)
     with numerical_failures(grid):
         result = march_directly(problem, grid, order, links, saturate=saturate, progress=progress)
     stopwatch.lap("time steps")

@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.acoustics.operators import all_orders
+from coaxshell.model.gains import law_of
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import linalg
 from coaxshell.solver.scaling import Problem
@@ -148,6 +149,6 @@ class SaturatedShell:
 
 def voltage_limit(problem: Problem, index: int) -> float:
     """Return the largest voltage of a shell's actuator: field limit times thickness."""
-    control = problem.system.control
+    control = law_of(problem.system, index)
     field = None if control is None or control.field_limit is None else control.field_limit * problem.scales.length
     return problem.shells[index].voltage_limit(field)

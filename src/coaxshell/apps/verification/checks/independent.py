@@ -16,6 +16,7 @@ from coaxshell.apps.verification.systems import GAINS, SMOOTH, cubic_ring, smoot
 from coaxshell.model import laws, presets
 from coaxshell.model.absorbers import Absorber
 from coaxshell.model.fluids import VACUUM, Fluid
+from coaxshell.model.gains import saturates
 from coaxshell.model.sources import PlaneWave
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
@@ -110,7 +111,7 @@ def compare(bench: Bench, system: System, time_step: float, other_step: float, *
 
 
 def _saturates(system: System) -> bool:
-    return system.control is not None and system.control.saturation
+    return saturates(system)
 
 
 def _sheet(bench: Bench, system: System) -> Sheet:

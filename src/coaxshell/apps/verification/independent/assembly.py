@@ -19,7 +19,8 @@ from coaxshell.apps.verification.independent.walls import Wall
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.gains import gains_of
+from coaxshell.model.gains import gains_of, law_of, saturates
+from coaxshell.model.parts import laws_of
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
@@ -64,8 +65,8 @@ class Assembly:
     def of(cls, system: System, duration: float, element: float, wavenumber: float = 0.0) -> Assembly:
         """Return the assembly of a system of elastic shells for a duration in transits, at an axial wavenumber in 1/a."""
         a, c, rho = system.reference_radius, system.exterior.sound_speed, system.exterior.density
-        if system.control is not None and system.control.transducers == "electrodes":
-            if wavenumber or system.control.saturation:
+        if any(law.transducers == "electrodes" for law in laws_of(system)):
+            if wavenumber or saturates(system):
                 raise NotImplementedError("electrodes are written without wavenumbers and limits in the independent solver")
             system = _with_standard_permittivity(system)
         walls = tuple(Wall.of(shell) for shell in system.shells if isinstance(shell, Shell))
@@ -87,7 +88,7 @@ class Assembly:
     @property
     def saturates(self) -> bool:
         """Whether the controller's voltage is limited."""
-        return self.system.control is not None and self.system.control.saturation
+        return saturates(self.system)
 
     def block(self, m: int) -> Block:
         """Return the matrices of one order."""
@@ -127,8 +128,8 @@ class Assembly:
         at, radius = self.displacements(i), wall.radius / self.length
         mass[at, at] = wall.inertia / (self.system.exterior.density * self.length) * radius
         stiffness[np.ix_(at, at)] += wall.stiffness(m, self._per_metre) * self.length / self.pressure * radius
-        control = self.system.control
-        if isinstance(control, PDControl) and i in self.system.controlled_shells and not self.saturates:
+        control = law_of(self.system, i)
+        if isinstance(control, PDControl) and not self.saturates:
             proportional, derivative = gains_of(self.system, i)
             if control.transducers == "electrodes":
                 shell = self.system.shells[i]
@@ -148,6 +149,8 @@ class Assembly:
     def rational(self) -> Feedback | None:
         """The control law if it is one of second order."""
         control = self.system.control
+        if isinstance(control, tuple) and any(isinstance(law, Feedback) for law in control):
+            raise NotImplementedError("one law of second order for all shells is written in the independent solver")
         return control if isinstance(control, Feedback) else None
 
     @property

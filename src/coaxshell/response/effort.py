@@ -1,0 +1,209 @@
+"""What control costs: voltage, field, charge, current and power of each shell, against what material and amplifier stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from functools import partial
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.model.gains import law_of
+from coaxshell.model.parts import laws_of, shells_under
+from coaxshell.model.places import shell_name
+from coaxshell.model.prefixes import engineering
+from coaxshell.model.shells import Shell
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.scalars import plain
+from coaxshell.response.summary_text import aligned
+from coaxshell.response.voltages import actuator_limit, largest_demanded_voltage, largest_mean
+from coaxshell.response.wall_motion import WallMotion
+from coaxshell.solver.electrodes import Segment, segment_length
+
+_ROWS = (
+    ("voltage", "largest voltage", "V"),
+    ("field", "largest field", "V/m"),
+    ("charge", "largest charge", "C/m^2"),
+    ("current", "largest current", "A/m^2"),
+    ("real_power", "largest real power", "W/m"),
+    ("apparent_power", "largest apparent power", "VA/m"),
+    ("energy", "energy from the amplifier", "J/m"),
+)
+LIMITS = ("voltage", "current", "apparent_power")
+"""What an amplifier may be limited in."""
+
+
+@dataclass(frozen=True)
+class ShellEffort:
+    """What the actuators of one shell are asked for, largest magnitudes; None where the paper's law, which has no charge, controls it.
+
+    Attributes
+    ----------
+    shell : str
+    voltage, charge, current : float
+        Means over a segment of the wall, V, C/m^2 and A/m^2 of all actuators of the wall together.
+    field : float
+        V/m, in the thinnest actuator.
+    real_power, apparent_power : float
+        W and VA per metre of length, of the whole circumference.
+    energy : float
+        What the amplifier has given when the run ends, J per metre of length.
+    limits : dict
+        Of the material ("field", V/m) and of the amplifier, as far as they are known.
+    """
+
+    shell: str
+    voltage: float
+    field: float
+    charge: float | None
+    current: float | None
+    real_power: float | None
+    apparent_power: float | None
+    energy: float | None
+    limits: dict[str, float]
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of each limit that is used; 1 is all of it."""
+        return {name: value / limit for name, limit in self.limits.items() if (value := getattr(self, name)) is not None}
+
+
+@dataclass(frozen=True)
+class ControlEffort:
+    """The effort of all controlled shells; ``str(effort)`` is an aligned table."""
+
+    shells: tuple[ShellEffort, ...]
+
+    def __getitem__(self, shell: str) -> ShellEffort:
+        """Return that of a shell by its name."""
+        known = {one.shell: one for one in self.shells}
+        if shell not in known:
+            raise InputError("shell", f"{shell!r} is not a controlled shell", f"allowed: {', '.join(known)}")
+        return known[shell]
+
+    @property
+    def within(self) -> bool:
+        """Whether no limit is exceeded."""
+        return all(share <= 1.0 for one in self.shells for share in one.shares.values())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data, ready for JSON."""
+        return {"shells": [{**asdict(one), "shares": one.shares} for one in self.shells], "within": self.within}
+
+    def __str__(self) -> str:
+        """Return the aligned table."""
+        return "\n".join(aligned([("shell", "effort", "value", "limit", "share"), *self._rows()], left=2))
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+    def _rows(self) -> Iterator[tuple[str, ...]]:
+        for one in self.shells:
+            for name, words, unit in _ROWS:
+                value = getattr(one, name)
+                if value is None:
+                    continue
+                limit = one.limits.get(name)
+                shown = ("", "") if limit is None else (engineering(limit, unit), f"{100.0 * value / limit:.3g} %")
+                yield (one.shell, words, engineering(value, unit), *shown)
+
+
+def control_effort(motion: WallMotion, segment: Segment = None, **limits: float | None) -> ControlEffort:
+    """Return what control costs on every controlled shell.
+
+    Parameters
+    ----------
+    motion : WallMotion
+        Of a run in two dimensions with all its instants.
+    segment : float, str or None
+        Length of the wall over which voltages, charges and currents are means, as in the summary; "point" for points.
+    **limits : float
+        Of the amplifier: voltage (V), current (A per m^2 of electrode), apparent_power (VA per metre of length).
+
+    Raises
+    ------
+    InputError
+        If nothing is controlled, a limit is unknown or not positive, or the run is one of three dimensions.
+    """
+    solution = motion.solution
+    controlled = solution.problem.system.controlled_shells
+    if not controlled:
+        raise InputError("control", "nothing is fed back", "give the system a PDControl or a Feedback")
+    if solution.along is not None:
+        raise InputError("dimensions", "the effort of control is told of two dimensions", "run with dimensions=2")
+    known = {name: _positive(name, value) for name, value in limits.items() if value is not None}
+    return ControlEffort(tuple(_of_shell(motion, i, segment, known) for i in controlled))
+
+
+def _positive(name: str, value: Any) -> float:
+    if name not in LIMITS:
+        raise InputError(name, "is no limit of an amplifier", f"allowed: {', '.join(LIMITS)}")
+    number = plain(value)
+    if isinstance(number, bool) or not isinstance(number, int | float) or not 0.0 < number < float("inf"):
+        raise InputError(name, f"{value!r} is not allowed", "give a positive number")
+    return float(number)
+
+
+def _of_shell(motion: WallMotion, shell: int, segment: Segment, limits: dict[str, float]) -> ShellEffort:
+    from coaxshell.response.electrical import charge, current, power  # with energies, which take long to import
+
+    solution, everything = motion.solution, slice(0, motion.solution.time.size)
+    system, length = solution.problem.system, segment_length(solution.problem, shell, segment)
+    wall = system.shells[shell]
+    assert isinstance(wall, Shell)
+    thinnest = min(layer.thickness for layer in wall.serving("actuator"))
+    volts = largest_demanded_voltage(solution, shell, everything, length, halved=False).value
+    law = law_of(system, shell)
+    field_limit = actuator_limit(solution, shell).volts / thinnest
+    found: dict[str, float | None] = dict.fromkeys(("charge", "current", "real_power", "apparent_power", "energy"))
+    if law is not None and law.transducers == "electrodes":
+        for name, modal in (("charge", charge(motion, shell)), ("current", current(motion, shell))):
+            found[name] = largest_mean(solution, shell, partial(_window, modal), everything, length, halved=False).value
+        used, step = power(motion, shell), solution.settings.time_step * solution.problem.scales.time
+        found["real_power"], found["apparent_power"] = float(np.abs(used.real).max()), float(used.apparent.max())
+        found["energy"] = float(np.trapezoid(used.real, dx=step))
+    return ShellEffort(
+        shell=shell_name(shell, len(system.shells)),
+        voltage=volts,
+        field=volts / thinnest,
+        limits={"field": field_limit, **limits} if np.isfinite(field_limit) else dict(limits),
+        **found,
+    )
+
+
+def _window(modal: FloatArray, block: slice) -> FloatArray:
+    return modal[..., block]
+
+
+def electrical_power(motion: WallMotion) -> xr.Dataset:
+    """Return real and apparent power of the actuators between electrodes over time, W/m and VA/m, dims (shell, time).
+
+    Raises
+    ------
+    InputError
+        If no shell is controlled by electrodes, or instants of the run are missing.
+    """
+    from coaxshell.response.electrical import power
+
+    solution = motion.solution
+    system = solution.problem.system
+    shells = [i for law in laws_of(system) if law.transducers == "electrodes" for i in shells_under(system, law)]
+    if not shells or solution.along is not None:
+        remedy = 'use transducers = "electrodes", in two dimensions'
+        raise InputError("control", "no shell is driven by electrodes whose charge is known", remedy)
+    found = [power(motion, i) for i in sorted(shells)]
+    names = [shell_name(i, len(system.shells)) for i in sorted(shells)]
+    told = {"real_power": ("W/m", "power of the amplifier"), "apparent_power": ("VA/m", "root mean square voltage times current, around")}
+
+    def stacked(name: str) -> FloatArray:
+        return np.stack([getattr(one, name.removesuffix("_power")) for one in found])
+
+    variables = {
+        name: xr.Variable(("shell", "time"), stacked(name), {"units": unit, "long_name": long_name})
+        for name, (unit, long_name) in told.items()
+    }
+    return xr.Dataset(variables, {"shell": xr.Variable("shell", names), "time": xr.Variable("time", solution.time, {"units": "a/c"})})
