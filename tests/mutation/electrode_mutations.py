@@ -63,4 +63,28 @@ ELECTRODES = (
         "energy in the field of a driven layer",
         "solver/test_control_by_electrodes.py",
     ),
+    Mutation(
+        "spill-over",
+        "structure/segments.py",
+        "weight = self.covered / self.count * np.where(orders == 0, 1.0, 2.0)",
+        "weight = 1.0 / self.count * np.where(orders == 0, 1.0, 2.0)",
+        "load of a segment that does not cover its share",
+        "solver/test_segments.py",
+    ),
+    Mutation(
+        "dead-segments",
+        "solver/electrode_loops.py",
+        "return found + times(inverse, np.einsum(",
+        "return found - times(inverse, np.einsum(",
+        "dead segments stay at ground",
+        "solver/test_segments.py",
+    ),
+    Mutation(
+        "complementary-minor",
+        "solver/electrode_loops.py",
+        "each.prod(axis=0, keepdims=True) * np.linalg.det(self.between_dead(self.inverse))",
+        "each.prod(axis=0, keepdims=True)",
+        "the determinant of live segments alone",
+        "solver/test_segments.py",
+    ),
 )

@@ -135,6 +135,9 @@ def _control(system: SystemParts) -> None:
                 told = f"shells[{number}] is under {owner[number]} already"
                 raise InputError(f"{where}.shells", told, "name other shells: each has one law")
             owner[number] = where
+        if (law.segments, law.dead) != (laws_of(system)[0].segments, laws_of(system)[0].dead):
+            found = "other walls are cut otherwise, and segments are known of walls that are cut at the same angles"
+            raise InputError(f"{where}.segments", found, "give all laws the same segments and the same dead ones")
         if several and law.saturation:
             remedy = "use saturation = false and compare voltage and limit, or one law with a list of gains"
             raise InputError(f"{where}.saturation", "several laws are not known to saturate", remedy)
@@ -173,6 +176,24 @@ def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:
                 )
             if law.transducers == "paper":
                 _one_of_each(shell_, number, role)
+        if law.segments is not None:
+            _segments(law, shell_, number, where)
+
+
+def _segments(law: PDControl | Feedback, shell: Shell, number: int, where: str) -> None:
+    """Check that segments have room beside their gaps, and that each senses and pushes at the same place."""
+    assert law.segments is not None
+    around = 2.0 * math.pi * shell.radius / law.segments
+    if law.segment_gap is not None and law.segment_gap >= around:
+        found = f"{law.segment_gap:g} m leaves nothing of {law.segments} segments of shells[{number}]"
+        raise InputError(f"{where}.segment_gap", found, f"must be less than {around:.4g} m")
+    for place, layer in enumerate(shell.layers):
+        if layer.role in ("sensor", "actuator"):
+            raise InputError(
+                f"shells[{number}].layers[{place}].role",
+                f"{layer.role!r} reads or pushes alone, and segments are known of layers that do both",
+                "must be 'self-sensing' or 'passive', or leave segments out",
+            )
 
 
 def _one_of_each(shell: Shell, number: int, role: str) -> None:

@@ -10,6 +10,7 @@ from pydantic_core import core_schema
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
+from coaxshell.model.segments import Count, Dead, Gap, require_segments
 from coaxshell.model.units import DIMENSIONS, Quantity, quantity
 from coaxshell.numerics.scalars import plain
 
@@ -84,9 +85,16 @@ class PDControl(Described):
     """Whether the actuator's voltage stops at the field limit."""
     field_limit: Annotated[float, quantity("electric field", above=0)] | None = None
     """Largest field on the actuator (V/m); the material's own unless given."""
+    segments: Count | None = None
+    """Electrodes around each wall, all layers cut at the same places, each with its own loop; one that varies freely unless given."""
+    segment_gap: Gap | None = None
+    """Between neighbouring segments along the mid-surface, a strip held at ground (m)."""
+    dead: Dead | None = None
+    """Segments held at ground, which neither sense nor push: 0 has its middle at theta = 0, the others follow counterclockwise."""
 
     @model_validator(mode="after")
     def _once_each(self) -> Self:
         if self.shells != "all" and (not self.shells or len(set(self.shells)) < len(self.shells)):
             raise InputError("shells", f"{list(self.shells)!r} is not allowed", "must name at least one shell, and each only once")
+        require_segments(self.segments, self.segment_gap, self.dead, self.transducers)
         return self

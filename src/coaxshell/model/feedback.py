@@ -9,7 +9,8 @@ from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described, shown
-from coaxshell.model.control import End, Transducers, _shells
+from coaxshell.model.control import End, PDControl, Transducers, _shells
+from coaxshell.model.segments import Count, Dead, Gap, require_segments
 from coaxshell.model.units import DIMENSIONS, Delay, Frequency, quantity, to_si
 from coaxshell.numerics.scalars import plain
 
@@ -90,6 +91,12 @@ class Feedback(Described):
     """Which shells: "all", or numbers from 0 inside, "inner", "outer", "middle"; ``System.controlled_shells`` gives the numbers."""
     field_limit: Annotated[float, quantity("electric field", above=0)] | None = None
     """Field on the actuator (V/m) above which a warning is given; the material's own unless given."""
+    segments: Count | None = None
+    """Electrodes around each wall, all layers cut at the same places, each with its own loop; one that varies freely unless given."""
+    segment_gap: Gap | None = None
+    """Between neighbouring segments along the mid-surface, a strip held at ground (m)."""
+    dead: Dead | None = None
+    """Segments held at ground, which neither sense nor push: 0 has its middle at theta = 0, the others follow counterclockwise."""
 
     saturation: ClassVar[bool] = False
 
@@ -161,6 +168,10 @@ class Feedback(Described):
     def _checked(self) -> Self:
         if self.shells != "all" and (not self.shells or len(set(self.shells)) < len(self.shells)):
             raise InputError("shells", f"{list(self.shells)!r} is not allowed", "must name at least one shell, and each only once")
+        require_segments(self.segments, self.segment_gap, self.dead, self.transducers)
+        if self.dead and self.weights is not None:
+            found = "a modal filter reads all segments, and some are dead"
+            raise InputError("weights", found, "leave weights out, which are those of orders, or dead")
         if self.denominator == (0.0,):
             raise InputError("denominator", "is zero", "give at least one coefficient that is not, such as [1]")
         above = len(self.numerator) - len(self.denominator)
@@ -200,5 +211,5 @@ def _single(entry: Any, name: str) -> list[float]:
     return [float(one) for one in entry]
 
 
-LAW = frozenset(Feedback.model_fields) - {"transducers", "shells", "field_limit"}
+LAW = frozenset(Feedback.model_fields) - frozenset(PDControl.model_fields)
 """Entries that tell this law from another one."""

@@ -17,6 +17,11 @@ def saturates(system: SystemParts) -> bool:
     return any(law.saturation for law in laws_of(system))
 
 
+def segments_of(system: SystemParts) -> int | None:
+    """Return into how many segments the electrodes around each wall under control are cut; None where they are not."""
+    return next((law.segments for law in laws_of(system) if law.segments is not None), None)
+
+
 def gains_of(system: SystemParts, shell: int) -> tuple[float, float]:
     """Return k_p and k_d of a shell under control, by its number; lists of gains are in the order in which shells were named."""
     control = law_of(system, shell)

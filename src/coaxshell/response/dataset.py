@@ -42,6 +42,7 @@ ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
     ),
     "control_correction": (MODAL, "rho_e c_e^2", "modal pressure that saturated actuators lack against the linear control law"),
     "control_voltage": (MODAL, "V", "modal voltage that the control law asks for"),
+    "segment_voltage": (("shell", "segment", "time"), "V", "voltages of the segments of electrodes"),
 }
 """Arrays of a solution by name: dimensions, unit, meaning. Those that a solution does not carry are left out of the file."""
 

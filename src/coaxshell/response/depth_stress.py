@@ -25,7 +25,7 @@ class CutVoltage:
     limit : float
         V.
     volts : callable
-        From a basis of angles and a window to the voltage there, (T, A).
+        From angles (degrees) and a window to the voltage there, (T, A).
     """
 
     per_volt: Mapping[str, float]
@@ -70,7 +70,7 @@ class DepthStress:
             fields[name] = on_circle(some) if SIDES[name] == "normal" else _sines(some)
         if self._cut:
             parities, orders, _ = next(iter(self.modal.values())).shape
-            volts = self._cut.volts(angle_basis(circle_angles(orders, parities), orders, parities), instants).T
+            volts = self._cut.volts(circle_angles(orders, parities), instants).T
             fields = {name: field + self._cut.per_volt.get(name, 0.0) * volts for name, field in fields.items()}
         return _magnitude(fields)
 
@@ -81,7 +81,7 @@ class DepthStress:
             parities, orders, _ = modal.shape
             fields[name] = at_angles(modal[..., window], angle_basis(theta, orders, parities, SIDES[name]))
             if self._cut and self._cut.per_volt.get(name):
-                volts = self._cut.volts(angle_basis(theta, orders, parities), window)
+                volts = self._cut.volts(theta, window)
                 fields[name] = fields[name] + self._cut.per_volt[name] * volts
         return _magnitude(fields)
 

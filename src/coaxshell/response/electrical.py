@@ -84,7 +84,8 @@ def _spectra(motion: Motion, shell: int) -> tuple[ComplexArray, ComplexArray]:
     assert wall.gains is not None
     w, v = motion.normal[shell], motion.tangential[shell]
     read = wall.sensor_gain(motion.modes).columns
-    voltage = wall.gains.at(s, motion.modes) * (read.v * v + read.w * w)
+    law = motion.voltage
+    voltage = wall.gains.at(s, motion.modes) * (read.v * v + read.w * w) if law is None else law[shell]
     total = np.zeros_like(voltage)
     for moved, capacitance in wall.charges(motion.modes):
         total += moved.columns.v * v + moved.columns.w * w + capacitance * voltage

@@ -13,6 +13,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.dimensions import require_whole_electrodes
 from coaxshell.solver.margins import Loop, LoopMargins, loops, margins_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings, SettingsKeywords
@@ -101,6 +102,7 @@ def labelled(problem: Problem, modes: Modes, margins: dict[int, LoopMargins]) ->
 def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
     if settings.dimensions == 3:
         raise InputError("dimensions", "margins are those of motion that is alike along the axis", "use dimensions=2")
+    require_whole_electrodes(system, "the list of margins by order", "leave segments out")
     if not isinstance(settings.modes, int):
         raise InputError("modes", f"{settings.modes!r} is not allowed here", "give the highest order")
     problem = dimensionless(system, settings=settings)

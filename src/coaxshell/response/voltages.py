@@ -14,12 +14,14 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
 from coaxshell.numerics.renamed import renamed
 from coaxshell.response.modal import amplitudes, elastic_wall, orders, scaled, voltage_gain
-from coaxshell.response.peaks import Amplitudes, Peak, made_once, peak_anywhere
+from coaxshell.response.peaks import Amplitudes, Peak, folded, made_once, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import lower_half, segment_mean
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.control_law import ControlGains, ControlLaw
+from coaxshell.structure.segmented_wall import SegmentedWall
+from coaxshell.structure.segments import Segments
 from coaxshell.structure.shell_model import FieldGain, Gain
 
 _PER_WAVE = 8
@@ -113,6 +115,36 @@ def applied(voltage: FloatArray, limit: ActuatorLimit) -> FloatArray:
     return np.clip(voltage, -limit.volts, limit.volts) if limit.saturates else voltage
 
 
+class CutElectrode(NamedTuple):
+    """The voltages of the segments of a wall's electrodes, V, shape (N, T)."""
+
+    segments: Segments
+    voltage: FloatArray
+
+    def at(self, theta: FloatArray, window: Any = slice(None)) -> FloatArray:
+        """Return the voltage over angles (degrees), (T, A): that of the segment there, 0 between segments."""
+        which = self.segments.at(np.radians(theta))
+        some = self.voltage[:, window]
+        return np.asarray(np.where(which >= 0, some[which].T, 0.0))
+
+    def largest(self, time: FloatArray, window: slice) -> Peak:
+        """Return the largest magnitude of all segments within a window; half the orders are no other answer."""
+        size = np.abs(self.voltage[:, window])
+        which, instant = (int(n) for n in np.unravel_index(int(size.argmax()), size.shape))
+        growing = bool(instant == size.shape[1] - 1 and instant > 0 and size[which, instant] > size[which, instant - 1])
+        value = float(size[which, instant])
+        angle = folded(float(np.degrees(self.segments.centres[which])))
+        return Peak(value, float(time[window][instant]), angle, growing, lower_half=value)
+
+
+def cut_voltage(solution: ModalSolution, shell: int) -> CutElectrode | None:
+    """Return the voltages of the segments of a shell's electrodes; None where they are not cut."""
+    wall, kept = solution.problem.shells[shell], getattr(solution, "segment_voltage", None)
+    if kept is None or not isinstance(wall, SegmentedWall) or wall.gains is None:
+        return None
+    return CutElectrode(wall.segments, kept[shell])
+
+
 def mean_shares(solution: ModalSolution, shell: int, length: float) -> FloatArray:
     """Return by what each order counts in the mean over a segment of a length (m), shape (M + 1,); ones for a point."""
     return segment_mean(orders(solution), length / solution.problem.system.shells[shell].radius)
@@ -123,8 +155,11 @@ def actuator_values(solution: ModalSolution, shell: int, theta: FloatArray, leng
 
     A saturating controller cuts at every point, so that its mean is that of what has been cut, by the midpoint rule.
     """
-    modal, limit = demanded_voltage(solution, shell), actuator_limit(solution, shell)
-    centres = np.atleast_1d(theta)
+    limit, centres = actuator_limit(solution, shell), np.atleast_1d(theta)
+    cut = cut_voltage(solution, shell)
+    if cut is not None:
+        return cut.at(centres)
+    modal = demanded_voltage(solution, shell)
     if length and limit.saturates:
         angle = np.degrees(length / solution.problem.system.shells[shell].radius)
         count = max(_FEWEST, -(-int(_PER_WAVE * modal.shape[1] * angle) // 360))
@@ -149,6 +184,9 @@ def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice,
 
     With what the lower half of the orders gives, unless it is not to be ``halved``.
     """
+    cut = cut_voltage(solution, shell)
+    if cut is not None:
+        return cut.largest(solution.time, window)
     voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant
     share = mean_shares(solution, shell, length)[:, None]
     return _largest(solution, lambda block: voltage[:, :, block] * share, window, halved)

@@ -31,8 +31,8 @@ from coaxshell.response.peaks import Peak, folded
 from coaxshell.response.relaxing import Relaxing, relaxed_solution
 from coaxshell.response.solid_wall_stress import SolidWallStress, StationWallStress
 from coaxshell.response.stations import StationMotion
-from coaxshell.response.synthesis import BLOCK, at_angles
-from coaxshell.response.voltages import ActuatorLimit, actuator_limit, applied, demanded_voltage
+from coaxshell.response.synthesis import BLOCK, angle_basis, at_angles
+from coaxshell.response.voltages import ActuatorLimit, CutElectrode, actuator_limit, applied, cut_voltage, demanded_voltage
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.laminate import missing_constants
@@ -135,13 +135,29 @@ class WallStress:
             total = one if total is None else np.add(total, one, out=total)
         assert total is not None
         per_volt = self._per_volt(depth, component)
-        if per_volt and not self._limit.saturates:
+        if per_volt and not self._by_point:
             total += per_volt * self._voltage
         return total
 
-    def volts(self, basis: FloatArray, window: slice | FloatArray) -> FloatArray:
-        """Return the voltage of a saturating actuator at the angles of a basis, (T, A)."""
-        return applied(at_angles(self._voltage[..., window], basis), self._limit)
+    def volts(self, theta: FloatArray, window: slice | FloatArray) -> FloatArray:
+        """Return the voltage of a saturating actuator, or of one cut into segments, at angles (degrees), (T, A)."""
+        if self._cut is not None:
+            return self._cut.at(theta, window)
+        parities, orders, _ = self._voltage.shape
+        return applied(at_angles(self._voltage[..., window], angle_basis(theta, orders, parities)), self._limit)
+
+    @cached_property
+    def _cut(self) -> CutElectrode | None:
+        return cut_voltage(self.solution, self.shell)
+
+    @property
+    def _by_point(self) -> bool:
+        """Whether the voltage is no sum of orders."""
+        return self._cut is not None or self._limit.saturates
+
+    @cached_property
+    def _most_volts(self) -> float:
+        return self._limit.volts if self._cut is None else float(np.abs(self._cut.voltage).max(initial=0.0))
 
     def depths(self) -> list[FloatArray]:
         """Return the depths (m) of each layer, from the inside out, among which its largest stress is."""
@@ -154,7 +170,7 @@ class WallStress:
             names = self._made_of if component == "von_mises" else (component,)
             modal = {name: self.amplitudes(depth, name) for name in names}
             per_volt = {name: self._per_volt(depth, name) for name in names}
-            cut = CutVoltage(per_volt, self._limit.volts, self.volts) if any(per_volt.values()) and self._limit.saturates else None
+            cut = CutVoltage(per_volt, self._most_volts, self.volts) if any(per_volt.values()) and self._by_point else None
             yield DepthStress(modal, cut)
 
 

@@ -47,6 +47,8 @@ def voltage_asked(solved: SolvedSpectra) -> ComplexArray:
     -------
     ndarray, shape (shells, parities, M + 1, nodes)
     """
+    if solved.voltage is not None:
+        return solved.voltage
     voltage = np.zeros_like(solved.normal)
     for i, wall in enumerate(solved.problem.shells):
         if isinstance(wall, ElasticWall):

@@ -195,7 +195,7 @@ def actuators(*motions: ModalSolution) -> list[str]:
 def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
     """Return the warning that feedback by electrodes is computed without any delay, with that which it would stand."""
     laws = [law for law in laws_of(problem.system) if law.transducers == "electrodes"]
-    if not laws:
+    if not laws or problem.segmented:
         return []
     assert isinstance(settings.modes, int)
     margin = delay_margin(problem, settings.modes, settings.duration)

@@ -8,7 +8,8 @@ takes the mean of what happens under it. Order m then counts with
 
 and the sum converges as soon as M exceeds a few 2 pi R/L.
 
-Where nothing is said, L is the acoustic wavelength c_e/f at the upper end f of the pulse's band (nine tenths of its energy lie below; for
+Electrodes that are cut have segments of their own, whose voltages are known. Else, where nothing is said,
+L is the acoustic wavelength c_e/f at the upper end f of the pulse's band (nine tenths of its energy lie below; for
 an exponential decay L = 0.995 c_e tau): an amplifier that passes the pulse has no use for more. It is never less than 2 pi times the
 wall's thickness, below which thin-shell theory says nothing, nor more than a sixteenth of the circumference, over which the mean would
 take a tenth off the fourth order.
@@ -31,6 +32,7 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.control_law import ControlGains
+from coaxshell.structure.segmented_wall import SegmentedWall
 
 Segment = float | str | None
 """Length of a segment, m or as text such as "50 mm"; "point" for the value at a point; None for what the pulse's band allows."""
@@ -49,6 +51,9 @@ def segment_length(problem: Problem, shell: int, segment: Segment = None) -> flo
     """
     wall = problem.system.shells[shell]
     around = 2.0 * math.pi * wall.radius
+    electrodes = problem.shells[shell]
+    if segment is None and isinstance(electrodes, SegmentedWall):
+        return around * electrodes.segments.covered / electrodes.segments.count
     if segment is None:
         highest = max(pulse_band(source.pulse) for source in problem.system.sources)
         wave = problem.scales.velocity / highest if highest > 0.0 else math.inf
@@ -85,6 +90,9 @@ def largest_demand(solution: ModalSolution, index: int, above: float) -> Largest
     """
     problem = solution.problem
     length = segment_length(problem, index)
+    if solution.segment_voltage is not None:
+        largest = float(np.abs(solution.segment_voltage[index]).max(initial=0.0))
+        return LargestVoltage(largest, largest, length) if largest > above else None
     orders = all_orders(solution.normal.shape[2] - 1)
     voltage = _demand(solution, index, orders, segment_mean(orders, length / problem.system.shells[index].radius))
     if voltage is None:

@@ -73,6 +73,7 @@ def require_finite_solution(solution: ModalSolution, where: str = "response", re
         ("the force of the absorbers", solution.absorber_force, ("absorber", "side")),
         ("what saturated actuators lack", solution.control_correction, shells),
         ("the voltage of the feedback", solution.control_voltage, shells),
+        ("the voltage of the segments", solution.segment_voltage, ("shell", "segment")),
     ):
         index = None if values is None else first_bad(values)
         if values is not None and index is not None:

@@ -6,6 +6,7 @@ the outer radius.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -36,6 +37,8 @@ from coaxshell.structure.lossy_solid import LossySolidWall, resolved
 from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.rigid import RigidWall
 from coaxshell.structure.section import section
+from coaxshell.structure.segmented_wall import LossySegmentedWall, SegmentedWall
+from coaxshell.structure.segments import Segments
 from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid import require_solid, solid_layers
 from coaxshell.structure.solid_transducers import Transducers
@@ -190,6 +193,11 @@ class Problem:
         return replace(self, shells=shells) if self.two_faced else self
 
     @property
+    def segmented(self) -> bool:
+        """Whether feedback runs from segment to segment, so that it ties orders to each other."""
+        return any(isinstance(wall, SegmentedWall) and wall.gains is not None for wall in self.shells)
+
+    @property
     def open_loop(self) -> Problem:
         """The problem without feedback."""
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))
@@ -234,9 +242,20 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
         shell, thin, lossy = with_plane_stress(shell), ElectrodedWall, LossyElectrodedWall
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     if not any(loses(layer.material) for layer in shell.layers):
-        return thin.of(in_units, gains, wetted_faces=faces)
+        return _cut(thin.of(in_units, gains, wetted_faces=faces), system, index)
     parts = tuple(part.in_units(scales.pressure) for part in constituents(shell, scales.time, band))
-    return lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces)
+    return _cut(lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces), system, index)
+
+
+def _cut(wall: ThinWall, system: System, index: int) -> ThinWall:
+    """Return a wall with its electrodes cut into the segments that its law asks for."""
+    control = law_of(system, index)
+    if control is None or control.segments is None or not isinstance(wall, ElectrodedWall):
+        return wall
+    circumference = 2.0 * math.pi * wall.radius * system.reference_radius
+    segments = Segments(control.segments, 1.0 - control.segments * (control.segment_gap or 0.0) / circumference, control.dead or ())
+    kind = LossySegmentedWall if isinstance(wall, LossyElectrodedWall) else SegmentedWall
+    return kind(**vars(wall), segments=segments)
 
 
 def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ElasticWall:

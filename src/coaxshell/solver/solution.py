@@ -161,6 +161,8 @@ class ModalSolution:
         Modal pressure of the saturated minus that of the linear control law, where saturation is on.
     control_voltage : ndarray, same shape, or None
         Voltage that the law asks for, V, kept where it is no sum of phi_s and its rate; 0 of shells without feedback.
+    segment_voltage : ndarray, shape (shells, segments, T), or None
+        Voltages of the segments of electrodes, V, where these are cut; ``control_voltage`` has them in orders.
     along : AxialMotion or None
         At a station of a three-dimensional run.
     spectra : SolvedSpectra or None
@@ -184,6 +186,7 @@ class ModalSolution:
     absorber_force: FloatArray | None = None
     control_correction: FloatArray | None = None
     control_voltage: FloatArray | None = None
+    segment_voltage: FloatArray | None = None
     along: AxialMotion | None = None
     spectra: SolvedSpectra | None = field(default=None, init=False, repr=False, compare=False)
 

@@ -26,6 +26,7 @@ from coaxshell.solver.judgement import judgement
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.reflections import reflected
 from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.segmented_stability import require_stable_segments
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.solution import Estimates, ModalSolution
@@ -102,7 +103,10 @@ def prepare(
         require_room(problem, replace(settings, modes=order), retunable=shared is not None)
     same = like is not None and like.same_structure(problem) and like.modes.max_order == order
     if not same:
-        require_stable(problem, order, settings.duration, shared)
+        if problem.segmented:
+            require_stable_segments(problem, order, settings.duration)
+        else:
+            require_stable(problem, order, settings.duration, shared)
         stopwatch.lap("stability of the feedback")
     units = like.units if like is not None and same else None
     return StructureSpectra(problem, grid, Modes.up_to(order), progress, shared=shared, units=units, notes=tuple(notes))
@@ -140,7 +144,8 @@ def _solved(
     system, grid, keep = problem.system, structure.grid, slice(None, None, settings.refinement)
     links = absorber_set(problem, system.absorber_list, source_parities(problem))
     saturate = saturates(system)
-    (structure.open_loop if saturate else structure).solve(units=links.count > 0 or saturate)
+    bare = saturate or problem.segmented
+    (structure.open_loop if bare else structure).solve(units=links.count > 0 or bare)
     stopwatch.lap("modal system at all Laplace nodes")
     solved = reflected(structure, lambda one: solve_linked(one, links, progress, saturate=saturate), progress)
     structure = solved.structure
@@ -154,7 +159,8 @@ def _solved(
         potentials = grid.invert(solved.solid.potentials)[..., keep] if solved.solid.potentials.size else None
     correction = np.zeros_like(w) if saturate else None
     w_rate = v_rate = asked = voltage = None
-    if any(isinstance(law, Feedback) for law in laws_of(system)) or (laws_of(system) and problem.two_faced):
+    by_order = not any(isinstance(law, Feedback) for law in laws_of(system)) and not problem.two_faced and solved.voltage is None
+    if laws_of(system) and not by_order:
         voltage = grid.invert(voltage_asked(solved))[..., keep]
     elif any(shell.gains is not None for shell in problem.shells):
         w_rate, v_rate = (grid.invert(x * grid.nodes)[..., keep] for x in (solved.normal, solved.tangential))
@@ -178,6 +184,7 @@ def _solved(
         absorber_force=solved.force[..., keep] if links.count else None,
         control_correction=correction,
         control_voltage=voltage,
+        segment_voltage=None if solved.segments is None else solved.segments[..., keep],
     )
     solution.keep(solved)
     solution.judge_when_read(partial(judgement, solved=solved, asked_for=asked_for, asked=asked))

@@ -50,6 +50,10 @@ class SolvedSpectra:
         Transforms of force and displacement of the absorbers carried, where they were solved exactly.
     laws : LawHistories or None
         What links of any law did, where there are such.
+    voltage : ndarray, shape (shells, parities, M + 1, nodes), or None
+        Transforms of the voltages of actuators, V, where they are given to the structure without feedback.
+    segments : ndarray, shape (shells, N, T), or None
+        Voltages of the segments of electrodes, where these are cut.
     """
 
     structure: StructureSpectra
@@ -63,6 +67,8 @@ class SolvedSpectra:
     iterations: int = 0
     exact: tuple[ComplexArray, ComplexArray] | None = None
     laws: LawHistories | None = None
+    voltage: ComplexArray | None = None
+    segments: FloatArray | None = None
 
     @property
     def problem(self) -> Problem:
@@ -87,7 +93,7 @@ class SolvedSpectra:
     @property
     def passive(self) -> StructureSpectra:
         """What the forces moved: the structure, without feedback where saturating actuators acted as forces."""
-        return self.structure if self.actuation is None else self.structure.open_loop
+        return self.structure if self.actuation is None and self.voltage is None else self.structure.open_loop
 
     @property
     def marched(self) -> bool:
@@ -97,7 +103,7 @@ class SolvedSpectra:
     @property
     def nbytes(self) -> int:
         """Bytes of all transforms, those of the structure that forces need included."""
-        structure = self.passive if self.absorbers.count or self.actuation is not None else None
+        structure = self.passive if self.absorbers.count or self.passive is not self.structure else None
         unit = 0 if structure is None else structure.unit_bytes
         solid = 0 if self.solid is None else self.solid.nbytes
         return self.normal.nbytes + self.tangential.nbytes + unit + solid

@@ -344,7 +344,7 @@ def require_stable(problem: Problem, max_order: int, duration: float, shared: Sh
     raise InputError(
         " and ".join(names),
         f"{said} makes the closed loop unstable: order {listed}{where} grows without bound, fastest {told}",
-        _remedy(problem),
+        remedy(problem),
     )
 
 
@@ -390,7 +390,7 @@ def _shown(gain: float | tuple[float, ...]) -> str:
     return f"{gain:g}" if not isinstance(gain, tuple) else f"[{', '.join(f'{one:g}' for one in gain)}]"
 
 
-def _remedy(problem: Problem) -> str:
+def remedy(problem: Problem) -> str:
     """Return what makes a loop stable: signs and sizes, and with electrodes where sensors and actuators are."""
     system = problem.system
     if any(isinstance(law, Feedback) and law.delay for law in laws_of(system)):

@@ -93,16 +93,12 @@ class ElectrodedWall(ThinWall):
 
     def fed_back_along(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
         """Return P_v S_v/(M s^2 + K_vv): what a unit gain takes off the relative stiffness along the hoop."""
-        push, read = self.drive(modes).columns, self.sensor_gain(modes).columns
-        return np.asarray(push.v * read.v / self._along(modes, s))
+        return np.asarray(self.sensor_gain(modes).columns.v * self.driven_along(modes, s))
 
     def driven_along(self, modes: Modes, s: ComplexArray) -> ComplexArray:
-        """Return P_v/(M s^2 + K_vv), V per volt while W is held."""
-        return np.asarray(self.drive(modes).columns.v / self._along(modes, s))
-
-    def _along(self, modes: Modes, s: ComplexArray) -> ComplexArray:
-        """Return M s^2 + K_vv without feedback; V_0, which is nothing, has any stiffness."""
-        return np.asarray(self.mass * s * s + np.where(modes.column == 0, 1.0, self.dynamic_stiffness(modes, s).vv))
+        """Return P_v/(M s^2 + K_vv), V per volt while W is held; V_0, which is nothing, has any stiffness."""
+        along = self.mass * s * s + np.where(modes.column == 0, 1.0, self.dynamic_stiffness(modes, s).vv)
+        return np.asarray(self.drive(modes).columns.v / along)
 
     def _feedback_size(self, modes: Modes) -> FloatArray:
         """Return |P||S|/M of each order, times the weight that the law gives it; 0 without feedback."""

@@ -19,7 +19,7 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.peaks import Amplitudes, peak_anywhere, peak_at, root_mean_square
 from coaxshell.response.quantities import Quantity, Where, shell_metrics
 from coaxshell.response.spatial import SpatialResponse
-from coaxshell.response.voltages import actuator_limit, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
+from coaxshell.response.voltages import actuator_limit, cut_voltage, demanded_voltage, largest_demanded_voltage, largest_sensor_voltage
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.wall_stress import usual_component
 from coaxshell.solver.electrodes import segment_length
@@ -126,6 +126,9 @@ class MetricSource(DesignReading):
         """Return the largest voltage that the control law asks for anywhere, before any saturation, V; 0 without control."""
         if self.solution.problem.shells[shell].gains is None:
             return 0.0
+        cut = [one for one in (cut_voltage(solution, shell) for solution in self._solutions) if one is not None]
+        if cut:
+            return max(one.largest(self.solution.time, self._whole).value for one in cut)
         voltages = (demanded_voltage(solution, shell) for solution in self._solutions)
         return max(self._anywhere(partial(_window, voltage)) for voltage in voltages)
 

@@ -29,7 +29,10 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
         if wall.gains is None or not charges:
             continue
         driven, area, w, v = True, wall.radius * motion.circle, motion.normal[i], motion.tangential[i]
-        volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w)
+        if motion.voltage is None:
+            volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w)
+        else:
+            volts = motion.voltage[i]
         history = grid.invert(volts)
         for charge, capacitance in charges:
             current = s * (_combined(charge, v, w) + capacitance * volts)

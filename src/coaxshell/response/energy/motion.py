@@ -49,6 +49,8 @@ class Motion:
         Of the absorbers, if there are any.
     actuation : ndarray, shape (shells, parities, M + 1, T), or None
         Modal pressure that saturating actuators gave, None where the linear law held throughout.
+    voltage : ndarray, shape (shells, parities, M + 1, nodes), or None
+        Transforms of the actuators' voltages, where they are no law of each order's own motion.
     solid : SolidSpectra, FacedMotion or None
         What walls whose faces move differently do.
     usual_power : ndarray, shape (shells,), or None
@@ -66,6 +68,7 @@ class Motion:
     incident: Incident
     links: LinkMotion | None = None
     actuation: FloatArray | None = None
+    voltage: ComplexArray | None = None
     solid: SolidSpectra | FacedMotion | None = None
     usual_power: FloatArray | None = None
 
@@ -93,6 +96,7 @@ class Motion:
             incident=partial(incident_on_surface, known.problem, known.grid, returned=known.structure.returned),
             links=known.links,
             actuation=known.actuation,
+            voltage=known.voltage,
             solid=known.solid,
         )
 

@@ -70,13 +70,17 @@ def actuator_work(motion: Motion) -> FloatArray:
             pressure = grid.transform_linear(given[i])
         else:
             sensor = wall.sensor_gain(motion.modes).columns
-            volts = sensor.v * motion.tangential[i] + sensor.w * motion.normal[i]
-            if sensor.u is not None and motion.axial is not None:
-                volts += sensor.u * motion.axial[i]
+            if motion.voltage is None:
+                volts = sensor.v * motion.tangential[i] + sensor.w * motion.normal[i]
+                if sensor.u is not None and motion.axial is not None:
+                    volts += sensor.u * motion.axial[i]
+                law = wall.gains.at(s, motion.modes)
+            else:
+                volts, law = motion.voltage[i], np.ones_like(s)
             drive = wall.drive(motion.modes).columns
-            pressure = drive.w * wall.gains.at(s, motion.modes) * volts
+            pressure = drive.w * law * volts
             if np.any(drive.v):
-                traction = drive.v * wall.gains.at(s, motion.modes) * volts
+                traction = drive.v * law * volts
                 total -= SurfaceWork(grid, wall.radius * motion.circle, motion.tangential[i] * s)(traction)
         total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

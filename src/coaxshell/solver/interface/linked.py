@@ -18,6 +18,7 @@ from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.point_forces import point_force_shares
+from coaxshell.solver.segmented import solve_segmented
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 
@@ -36,6 +37,8 @@ def solve_linked(
     too, for comparison. Actuators that nowhere reach their limit leave the linear law, and so the answer without saturation.
     """
     grid = structure.grid
+    if structure.problem.segmented:
+        return solve_segmented(structure, absorbers)
     if saturate:
         result = march_interface(structure, absorbers, saturate=True, progress=progress)
         if not result.saturated:

@@ -1,0 +1,189 @@
+"""Whether feedback from segment to segment is stable: poles counted as :mod:`coaxshell.solver.stability` does, by blocks of orders tied.
+
+The determinant of a pattern q over that without feedback is that of 1 - H C_q, of as many rows as walls; of all patterns together, and with
+dead segments of that between these,
+
+    D/D0 = product over patterns of |1 - H C_q|, times |[(1 - H C)^-1] on the dead segments|,
+
+the complementary minor: what is left of the loops of the live ones. Where every wall pushes with what it reads, of the same layers, and the
+law never gives energy, Re H/s >= 0 on the contour, any number of segments takes energy alone, dead ones or not: nothing is counted.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.model.control import PDControl
+from coaxshell.model.feedback import Feedback
+from coaxshell.model.gains import segments_of
+from coaxshell.model.parts import laws_of
+from coaxshell.model.prefixes import engineering
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.winding import turning
+from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_patterns import patterns_of
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.segmented import require_resolved
+from coaxshell.solver.stability import Contour, remedy
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, electroded
+
+_BLOCK = 512
+_SPACING = 0.8
+_HALVINGS = 8
+_STARTS, _ITERATIONS = 12, 40
+_ROUGHLY = 1.5
+"""How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
+
+
+class PatternPoles(NamedTuple):
+    """Patterns with poles that grow, how many each has, and the ratio of the determinants at the nodes of the contour."""
+
+    patterns: FloatArray
+    counts: FloatArray
+    nodes: ComplexArray
+    ratio: ComplexArray
+
+
+def collocated(problem: Problem, max_order: int) -> bool:
+    """Return whether every wall is pushed by what it reads: its drive is its reading times a negative number, in all orders."""
+    modes = Modes.up_to(max_order)
+    for i in controlled(problem):
+        push, read = (np.stack(gain[:2]) for gain in (electroded(problem, i).drive(modes), electroded(problem, i).sensor_gain(modes)))
+        factor = float((push * read).sum() / (read * read).sum())
+        if factor >= 0.0 or not np.allclose(push, factor * read, rtol=1e-9, atol=1e-9 * np.abs(push).max()):
+            return False
+    return True
+
+
+def never_gives(problem: Problem, contour: Contour) -> bool:
+    """Return whether Re H/s >= 0 on the contour, for the law of every wall: seen at its nodes and beside the law's own poles."""
+    for i in controlled(problem):
+        law = electroded(problem, i).gains
+        assert law is not None
+        beside = np.sinh(np.linspace(-12.0, 12.0, 97))
+        own = [np.abs(frequency + max(width, contour.shift) * beside) for frequency, width in law.resonances]
+        far = np.geomspace(1e-3, 1e3 * contour.fades, 400)
+        s = np.concatenate([contour.nodes, *(contour.shift + 1j * x for x in (*own, far))])
+        if law.delay or bool((law.at(s, Modes(np.zeros(1))) / s).real.min() < 0.0):
+            return False
+    return True
+
+
+def determinants(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> ComplexArray:
+    """Return D/D0 of each pattern, shape (patterns, nodes), or, where dead segments tie them, of all together, (1, nodes)."""
+    found = []
+    patterns = patterns_of(problem, controlled(problem), modes.orders, 1)
+    for start in range(0, nodes.size, _BLOCK):
+        s = nodes[start : start + _BLOCK]
+        found.append(ElectrodeLoops.of(problem, VoltageResponse.at(passive, problem, modes, s), patterns, s).determinants())
+    return np.concatenate(found, axis=1)
+
+
+def growing(problem: Problem, max_order: int, least: float) -> PatternPoles | None:
+    """Return the patterns with poles that grow by more than a rate per transit; None if there can be none."""
+    modes = Modes.up_to(max_order)
+    contour = Contour.of(problem, modes, least)
+    if collocated(problem, max_order) and never_gives(problem, contour):
+        return None
+    return counted(problem, modes, contour)
+
+
+def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
+    """Return the patterns with poles right of a contour; where the determinant turns fast between nodes there are more of them."""
+    passive, nodes = problem.open_loop, contour.nodes
+    ratio = determinants(problem, passive, modes, nodes)
+    for _ in range(_HALVINGS):
+        quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
+        if not quick.any():
+            break
+        between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
+        nodes = np.append(nodes, between)
+        ratio = np.append(ratio, determinants(problem, passive, modes, between), axis=1)
+        ascending = np.argsort(nodes.imag)
+        nodes, ratio = nodes[ascending], ratio[:, ascending]
+    counts = np.rint(-(turning(ratio) + np.angle(1.0 / ratio[:, -1])) / np.pi)
+    bad = np.flatnonzero(counts > 0)
+    return PatternPoles(bad.astype(np.float64), counts[bad], nodes, ratio[bad]) if bad.size else None
+
+
+class PatternGrowth(NamedTuple):
+    """The fastest growing motion found: e^{(rate + i frequency) t} in a pattern, t in transits."""
+
+    pattern: int
+    rate: float
+    frequency: float
+
+
+def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least: float) -> PatternGrowth:
+    """Return the fastest growth: its rate is enclosed by contours, from the last of which Newton's method finds the pole beside it."""
+    modes, low, high = Modes.up_to(max_order), least, 4.0 * least
+    while (beyond := counted(problem, modes, Contour.of(problem, modes, high))) is not None:
+        found, low, high = beyond, high, 4.0 * high
+    while high > _ROUGHLY * low:
+        middle = float(np.sqrt(low * high))
+        beyond = counted(problem, modes, Contour.of(problem, modes, middle))
+        found, low, high = (found, low, middle) if beyond is None else (beyond, middle, high)
+    best = PatternGrowth(int(found.patterns[0]), low, _frequency(found))
+    for row, ratio in zip(found.patterns, found.ratio, strict=True):
+        slope = np.gradient(ratio, found.nodes)
+        way = np.abs(ratio / np.where(slope == 0.0, 1e-300, slope))
+        s = _newton(problem, modes, int(row), found.nodes[np.argsort(way)[:_STARTS]], 0.5 * low)
+        if s.size and s.real.max() > best.rate:
+            fastest = s[s.real.argmax()]
+            best = PatternGrowth(int(row), float(fastest.real), abs(float(fastest.imag)))
+    return best
+
+
+def _frequency(found: PatternPoles) -> float:
+    """Return where the ratio of the first pattern turns most from node to node: beside a pole, whose place is not known better."""
+    turns = np.angle(found.ratio[0, 1:] / found.ratio[0, :-1]) / np.diff(found.nodes.imag)
+    return float(found.nodes.imag[int(turns.argmin())])
+
+
+def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: float) -> ComplexArray:
+    """Return the zeros of a pattern's determinant that Newton's method finds from some places, none left of a rate."""
+    passive, change = problem.open_loop, s
+    for _ in range(_ITERATIONS):
+        step = 1e-6 * np.abs(s)
+        here, ahead = determinants(problem, passive, modes, np.concatenate([s, s + step]))[row].reshape(2, -1)
+        change = here * step / np.where(ahead == here, 1e-300, ahead - here)
+        s = np.maximum((s - change).real, slowest) + 1j * (s - change).imag
+        if (np.abs(change) < 1e-9 * np.abs(s)).all():
+            break
+    return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
+
+
+def require_stable_segments(problem: Problem, max_order: int, duration: float) -> None:
+    """Raise InputError if segments are not resolved, or if their loops would grow by a factor e within the duration."""
+    require_resolved(problem, max_order)
+    found = growing(problem, max_order, 1.0 / duration)
+    if found is None:
+        return
+    cut, laws = segments_of(problem.system), laws_of(problem.system)
+    assert cut is not None
+    fastest = fastest_growth(problem, max_order, found, 1.0 / duration)
+    hertz = engineering(fastest.frequency / (2.0 * np.pi * problem.scales.time), "Hz")
+    if laws[0].dead:
+        where = f"{found.counts[0]:.0f} motions, of all orders together, grow without bound, the fastest"
+    else:
+        listed = ", ".join(f"{one:.0f}" for one in found.patterns[:5])
+        listed += f", ..., {found.patterns[-1]:.0f} ({found.patterns.size} in all)" if found.patterns.size > 5 else ""
+        others = ", ".join(map(str, sorted({cut - fastest.pattern, cut + fastest.pattern} - {fastest.pattern})))
+        where = f"order {listed}, with those that {cut} segments tie to it, grows without bound, fastest order "
+        where += f"{fastest.pattern} with {others}, ..."
+    entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
+    told = f"by e^({fastest.rate:.3g} t), t in transits, at {hertz}"
+    raise InputError(entries, f"{value} makes the closed loop unstable: {where} {told}", remedy(problem))
+
+
+def _guilty(control: PDControl | Feedback) -> tuple[str, str]:
+    """Return what of the control is to be changed, and its value."""
+    if isinstance(control, Feedback):
+        return ("control.delay", engineering(control.delay, "s")) if control.delay else ("control.numerator", str(list(control.numerator)))
+    gains = {name: getattr(control, name) for name in ("proportional", "derivative")}
+    negative = [name for name, gain in gains.items() if np.any(np.asarray(gain) < 0.0)] or list(gains)
+    return " and ".join(f"control.{name}" for name in negative), " and ".join(str(gains[name]) for name in negative)

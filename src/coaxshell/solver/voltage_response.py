@@ -1,0 +1,121 @@
+"""What voltages on electrodes move, and what the sensors read of it, while no feedback acts.
+
+With V eliminated a voltage of order m on wall j is a normal load f_j = P_w + P_v r_j per volt, r = V/W, and moves V by P_v/A_vv besides:
+
+    W_i = C_ij f_j u_j,      V_i = r_i W_i + (P_v/A_vv) u_i,      phi_i = (S_w + S_v r_i) W_i + (S_v P_v/A_vv) u_i.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.structure_spectra import Moved, StructureSpectra
+from coaxshell.structure.control_law import ControlLaw
+from coaxshell.structure.electroded_wall import ElectrodedWall
+
+Values = TypeVar("Values", ComplexArray, FloatArray)
+
+
+@dataclass(frozen=True)
+class VoltageResponse:
+    """Answers of the walls under control to voltages at some orders and nodes.
+
+    Attributes
+    ----------
+    shells : tuple of int
+        Those under control.
+    load : ndarray, shape (controlled, orders, nodes)
+        f: normal load per volt.
+    slid : ndarray, same shape
+        P_v/A_vv: V per volt where W is held.
+    read : ndarray, shape (controlled, controlled, orders, nodes)
+        Volts read on one wall per volt on another.
+    """
+
+    shells: tuple[int, ...]
+    load: ComplexArray
+    slid: ComplexArray
+    read: ComplexArray
+
+    @classmethod
+    def of(
+        cls, problem: Problem, modes: Modes, s: ComplexArray, compliance: ComplexArray, ratio: Sequence[ComplexArray]
+    ) -> VoltageResponse:
+        """Return it from the compliance C_ij (shells, shells, orders, nodes) and V/W of each wall, without feedback."""
+        shells = controlled(problem)
+        walls = [electroded(problem, i) for i in shells]
+        slid = np.stack([wall.driven_along(modes, s) for wall in walls])
+        load = np.stack([wall.drive(modes).columns.recovered(ratio[i]) for wall, i in zip(walls, shells, strict=True)])
+        sensed = np.stack([wall.sensor_gain(modes).columns.recovered(ratio[i]) for wall, i in zip(walls, shells, strict=True)])
+        read = np.empty((len(shells), len(shells), *load.shape[1:]), np.complex128)
+        for a, i in enumerate(shells):
+            for b, j in enumerate(shells):
+                np.multiply(sensed[a] * load[b], compliance[i, j], out=read[a, b])
+            read[a, a] += walls[a].sensor_gain(modes).columns.v * slid[a]
+        return cls(shells, load, slid, read)
+
+    @classmethod
+    def at(cls, passive: Problem, controls: Problem, modes: Modes, s: ComplexArray) -> VoltageResponse:
+        """Return it at any nodes; ``passive`` is the problem ``controls`` without its feedback."""
+        system = ModalSystem(passive, s, modes)
+        count = len(passive.shells)
+        compliance = np.stack([np.stack(system.solve(j, 1.0)) for j in range(count)], axis=1)
+        return cls.of(controls, modes, s, compliance, [wall.tangential for wall in system.shells])
+
+
+def controlled(problem: Problem) -> tuple[int, ...]:
+    """Return the walls with feedback, by number."""
+    return tuple(i for i, wall in enumerate(problem.shells) if wall.gains is not None)
+
+
+def electroded(problem: Problem, shell: int) -> ElectrodedWall:
+    """Return a wall under control by electrodes."""
+    wall = problem.shells[shell]
+    assert isinstance(wall, ElectrodedWall)
+    return wall
+
+
+def gains_of_wall(problem: Problem, shell: int) -> ControlLaw:
+    """Return the law of a wall under control."""
+    law = problem.shells[shell].gains
+    assert law is not None
+    return law
+
+
+def of_all(problem: Problem, response: VoltageResponse, values: Values) -> Values:
+    """Return values of the walls under control, (controlled, ...), as those of all shells, 0 of the others."""
+    every = np.zeros((len(problem.shells), *values.shape[1:]), values.dtype)
+    every[list(response.shells)] = values
+    return every
+
+
+def response_of(structure: StructureSpectra) -> VoltageResponse:
+    """Return the answers to voltages at the orders and nodes of a run."""
+    bare = structure.open_loop
+    return VoltageResponse.of(structure.problem, structure.modes, structure.grid.nodes, bare.compliance, list(bare.tangential_ratio))
+
+
+def read_without(structure: StructureSpectra) -> ComplexArray:
+    """Return what the sensors read of the motion without voltages, V, (controlled, parities, M + 1, nodes)."""
+    bare = structure.open_loop
+    gains = [(i, electroded(structure.problem, i).sensor_gain(structure.modes).columns) for i in controlled(structure.problem)]
+    return np.stack([gain.v * bare.tangential[i] + gain.w * bare.normal[i] for i, gain in gains])
+
+
+def driven(structure: StructureSpectra, response: VoltageResponse, voltage: ComplexArray) -> Moved:
+    """Return the motion under the sources and voltages in orders, V, shape (shells, parities, M + 1, nodes)."""
+    pressure = np.zeros_like(voltage)
+    for load, i in zip(response.load, response.shells, strict=True):
+        pressure[i] = load * voltage[i]
+    moved = structure.open_loop.forced_spectra(pressure)
+    for slid, i in zip(response.slid, response.shells, strict=True):
+        moved.tangential[i, : voltage.shape[1]] += slid * voltage[i]
+    return moved
