@@ -281,6 +281,14 @@ SPATIAL = (
         "solver/test_point_absorbers.py",
     ),
     Mutation(
+        "lines-on-arcs",
+        "solver/axial/lines.py",
+        "values = values * (held[:, None] * held)[..., None]",
+        "values = values * held[:, None, :, None]",
+        "a lattice of arcs feels and presses by the same means",
+        "solver/test_arcs_along_the_axis.py",
+    ),
+    Mutation(
         "points-on-faces",
         "solver/axial/surfaces.py",
         "faces[one.shell].inner if one.side == 0 else faces[one.shell].outer",

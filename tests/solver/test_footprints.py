@@ -253,32 +253,6 @@ def test_arcs_on_thin_walls_agree_between_both_engines() -> None:
     assert np.linalg.norm(here - np.asarray(line.stress("inner", [0, 60, 180]))) > 0.01 * np.linalg.norm(here)
 
 
-@pytest.mark.parametrize(
-    ("described", "settings", "message"),
-    [
-        (
-            system(absorbers=[cx.Absorber(**LINEAR)]),
-            {"dimensions": 3},
-            r"absorbers: lines are held on shells\[0\], an elastic wall, in two",
-        ),
-        (
-            system(("thin", "thin"), [cx.Absorber(footprint=0.1, **LINEAR)]),
-            {"dimensions": 3},
-            r"absorbers: the footprint of a line absorber",
-        ),
-    ],
-)
-def test_three_dimensions_refuse_arcs_of_lines(described: cx.System, settings: dict[str, Any], message: str) -> None:
-    with pytest.raises(cx.InputError, match=message):
-        run(described, **settings)
-
-
-def test_forces_on_elastic_walls_have_no_gradient() -> None:
-    described = system(absorbers=[cx.Absorber(**LINEAR)])
-    with pytest.raises(cx.InputError, match="absorbers: forces on the faces of elastic walls are not run backwards yet"):
-        cx.gradient(described, metric="inner.peak_displacement", variables="absorbers[0].mass", modes=4, duration=0.5, time_step=0.02)
-
-
 def test_an_arc_is_part_of_a_circle() -> None:
     with pytest.raises(cx.InputError, match=r"absorbers\[0\]\.footprint: 4 m is more than the circumference of shells\[0\]"):
         system(absorbers=[cx.Absorber(footprint=4.0, **LINEAR)])

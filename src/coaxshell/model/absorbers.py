@@ -65,7 +65,7 @@ class _Link(Described):
     inner_shell: Count = 0
     """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
     footprint: Length | None = None
-    """Arc of each wall that it holds (m), in two dimensions; unless given the wall's thickness on exact walls, a line on thin ones."""
+    """Arc of each wall that it holds (m); unless given the wall's thickness on exact walls, a line on thin ones."""
     links: Links = "both"
     """Which shells it holds: "both", or its mass hangs on the "inner" or the "outer" one alone, as a tuned mass damper."""
     grounded: bool = False

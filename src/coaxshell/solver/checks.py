@@ -272,10 +272,8 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     changed = " without saturation" if saturates(problem.system) else ""
     if any(law.transducers == "electrodes" for law in laws):
         changed = ' with transducers="paper"'
-    if problem.two_faced and problem.system.absorber_list:
-        changed += " without absorbers"
     if problem.two_faced and laws:
-        changed = " without feedback" if not problem.system.absorber_list else " without absorbers and feedback"
+        changed = " without feedback"
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"

@@ -34,9 +34,6 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
     _require_plane_electrodes(system, dimensions)
     _require_segments(system, dimensions)
-    if dimensions == 3 and any(one.footprint is not None for one in system.absorber_list):
-        problem = "the footprint of a line absorber is known in two dimensions only"
-        raise InputError("absorbers", problem, "leave footprint out, use dimensions=2, or point absorbers, with z")
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
         return
@@ -46,10 +43,6 @@ def require_sources_alone(system: System, dimensions: int) -> None:
             where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
             problem = f"a wave along the axis has complex wavenumbers, which shells[{solid}], an elastic wall, does not know"
             raise InputError(f"{where}.inclination", problem, f"use inclination = 0, {thin}")
-    if system.absorber_list and dimensions == 3:
-        raise InputError(
-            "absorbers", f"lines are held on shells[{solid}], an elastic wall, in two dimensions only", f"use dimensions=2, {thin}"
-        )
     if system.control is not None and dimensions == 3:
         raise InputError(
             "control", f"feedback on shells[{solid}], an elastic wall, is known in two dimensions only", f"use dimensions=2, {thin}"

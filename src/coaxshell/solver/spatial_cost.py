@@ -16,6 +16,7 @@ from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.line_march import block_steps
 from coaxshell.solver.axial.lines import LineLayout, line_layout
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
+from coaxshell.solver.faced_forces import PARTS
 from coaxshell.solver.orders_left_out import COUPLED_POINTS
 from coaxshell.solver.run_size import COMPLEX, REAL, Size
 from coaxshell.solver.sampled_orders import NODES
@@ -56,22 +57,31 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     sampling = _sampling(problem, settings, size.orders - 1)
     pairs = float(sampling.tops.sum() + sampling.tops.size) * size.nodes
     stations, amplitudes = len(settings.stations), size.shells * size.source_parities
-    solids = _solids_cost(problem, sampling, size)
+    solids, points = _solids_cost(problem, sampling, size), bool(system.point_absorbers)
     fields = _FIELDS + (len(SOLID_STRESSES) if size.solids else 0)
     kept = stations * amplitudes * (fields * (size.plane + size.history) + 6.0 * size.plane)
     turns = 2.0 if size.nodes < _SIDE_BY_SIDE else 1.0
     lines = _lines_cost(line_layout(problem, sampling), size, pairs) if system.absorber_list else Cost(0.0)
+    waves = turns * pairs * 0.3e-6 * size.shells
+    again = _passes(problem, size) if lines.seconds or points else 0.0  # for what absorbers feel and do
     return Cost(
         lines.memory
         + solids.memory
         + kept
         + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
         lines.seconds
-        + solids.seconds
+        + solids.seconds * (1.0 + again)
         + 0.1
         + _WAVE * len(sampling.modes)
-        + turns * pairs * (0.3e-6 * size.shells + 2e-9 * fields * stations * amplitudes),
+        + waves * (1.0 + (again + 1.0 if points else 0.0))
+        + turns * pairs * 2e-9 * fields * stations * amplitudes,
     )
+
+
+def _passes(problem: Problem, size: Size) -> float:
+    """Return how many more times absorbers have walls of elastic solids solved: their faces alone, for a march at finer steps too."""
+    marched = size.nonlinear or not all(one.cubic_stiffness == 0.0 and one.law is None for one in problem.system.point_absorbers)
+    return (0.5 + (0.5 * PARTS if marched else 0.0)) if problem.two_faced else 0.0
 
 
 def _solids_cost(problem: Problem, sampling: AxialSampling, size: Size) -> Cost:
@@ -92,7 +102,7 @@ def _lines_cost(layout: LineLayout, size: Size, pairs: float) -> Cost:
     waves, points, axial = len(layout.sampling.modes), 2 * layout.absorbers.count, layout.axial_parities
     along = waves * points * axial
     spectra, histories = COMPLEX * along * size.nodes, REAL * along * size.instants
-    one_wave = WORKERS * size.shells**2 * 6.0 * size.plane
+    one_wave = WORKERS * size.surfaces**2 * (6.0 + (PARTS if size.solids and size.nonlinear else 0.0)) * size.plane
     solving = pairs * 0.3e-6 * size.shells * 1.5 + _WAVE * waves
     exact = waves * size.nodes * (4.0 * points**2 * (layout.classes.count + points)) * _NANOSECONDS
     together = exact if points <= COUPLED_POINTS else 0.0
@@ -101,12 +111,12 @@ def _lines_cost(layout: LineLayout, size: Size, pairs: float) -> Cost:
         systems = WORKERS * 6.0 * COMPLEX * size.nodes * points**2
         return Cost(3.0 * spectra + 2.5 * histories + one_wave + systems, solving + exact + softness)
     channels = waves * layout.classes.count
-    kernels = REAL * size.shells**2 * channels * size.instants
+    kernels = REAL * size.surfaces**2 * channels * size.instants
     parities = layout.absorbers.parities * axial
-    past = 2.0 * size.shells * parities * REAL * channels * size.instants
+    past = 2.0 * size.surfaces * parities * REAL * channels * size.instants
     steps = block_steps(layout.absorbers.count)
     matrices = 2.5 * REAL * waves * (steps * points) ** 2
-    past_seconds = 25.0 * size.shells**2 * channels * parities * math.log2(size.instants + 2)
+    past_seconds = 25.0 * size.surfaces**2 * channels * parities * math.log2(size.instants + 2)
     products = waves * axial * (60.0 * points**2 + 150.0 * points)
     march = size.instants * (_STEP + (past_seconds + products) * _NANOSECONDS)
     planned = 1e-4 * waves * steps  # answers of a block at every wavenumber, for the run and for the error of its step

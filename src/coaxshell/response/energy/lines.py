@@ -10,8 +10,9 @@ import numpy as np
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import integrate
-from coaxshell.response.energy.absorbers import AbsorberEnergy, line_impedance
+from coaxshell.response.energy.absorbers import AbsorberEnergy
 from coaxshell.solver.axial.line_solve import LineSolution
+from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.motion import WaveMotion
 from coaxshell.solver.interface.link_motion import LinkMotion, motion_by_law
 
@@ -31,12 +32,14 @@ class WallsAtLines:
 
     def add(self, wave: WaveMotion, j: int) -> None:
         """Take over what a wave does at the lines: A cos kz - B sin kz, in terms of z - z_0."""
-        layout, shapes = self.layout, self.layout.absorbers.shapes(wave.modes)
-        around = min(len(shapes), wave.around)
+        layout, felt = self.layout, self.layout.felt(wave.modes)
+        around = min(len(felt), wave.around)
         turn = float(wave.modes.wavenumber) * layout.origin
-        parts = wave.normal.reshape(wave.normal.shape[0], -1, wave.around, *wave.normal.shape[2:])
-        per_shell = np.einsum("pnm,sapmk->sank", shapes[:around], parts[:, :, :around], optimize=True)
-        at = per_shell[layout.points.surface, :, np.tile(np.arange(layout.absorbers.count), 2)]
+        moved = wave.of_surfaces
+        parts = moved.reshape(moved.shape[0], -1, wave.around, *moved.shape[2:])
+        surface, at = layout.points.surface, np.empty((felt.shape[1], parts.shape[1], moved.shape[-1]), np.complex128)
+        for i in np.unique(surface):
+            at[surface == i] = np.einsum("pnm,apmk->nak", felt[:around, surface == i], parts[i, :, :around], optimize=True)
         even, odd = at[:, 0], at[:, 1] if at.shape[1] == 2 else np.zeros_like(at[:, 0])
         both = [np.cos(turn) * even - np.sin(turn) * odd, -np.sin(turn) * even - np.cos(turn) * odd]
         for parity in range(layout.axial_parities):
@@ -75,13 +78,21 @@ def lines_energy(walls: WallsAtLines, kept: slice, length: float) -> AbsorberEne
             spring = (linear + cubic * stretch**2) * stretch
             energies[1] += share @ (0.5 * linear * stretch[:, kept] ** 2 + 0.25 * cubic * stretch[:, kept] ** 4)
             if damping > 0.0:
-                wall = layout.problem.shells[layout.points.surface[point]]
-                weaker = damping / (damping + line_impedance(wall, layout.sampling.modes[0], grid))
+                weaker = damping / (damping + _impedance(layout, grid, point))
                 rate = parting + weaker * (links.stretch_rate[:, side] - parting)
                 powers[0] += share @ (damping * rate**2)
                 powers[1] += share @ ((links.force[:, side] - spring) * parting)
     taken = integrate.cumulative_simpson(powers, dx=grid.time_step, initial=0.0, axis=-1)[:, kept]
     return AbsorberEnergy(energies[0], energies[1], taken[0], taken[1] - taken[0])
+
+
+def _impedance(layout: LineLayout, grid: LaplaceGrid, point: int) -> float:
+    """Return Z, by which a force at a line, or over its arc, moves the wall's own mass within half a step."""
+    surface, modes = layout.problem.surfaces[layout.points.surface[point]], layout.sampling.modes[0]
+    wall = layout.problem.shells[surface.shell]
+    means = layout.absorbers.means(layout.problem, modes).reshape(-1, modes.count)[point]
+    softness = float(np.sum(means**2 / np.where(modes.orders == 0, 2.0 * np.pi, np.pi))) / wall.radius
+    return float(2.0 * wall.mass / (grid.time_step * softness))
 
 
 def _links(walls: WallsAtLines, n: int) -> LinkMotion:

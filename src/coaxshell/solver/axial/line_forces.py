@@ -1,8 +1,10 @@
 """Forces of line absorbers along the axis, as loads on the waves of a three-dimensional run.
 
-A force per length f(z) at theta_n on a wall of radius R is, with F(k) the integral of f cos k(z - z_0) over an axial period, the pressure
+A force per length f(z) at theta_n on a surface of radius R is, F(k) the integral of f cos k(z - z_0) over an axial period, the pressure
 
-    P(m, k) = F(k) [cos, sin](m theta_n)/(beta_m pi R),        f(z) = (1/L) [F(k_0) + 2 sum_{j>=1} F(k_j) cos k_j (z - z_0)] + odd.
+    P(m, k) = F(k) h_m [cos, sin](m theta_n)/(beta_m pi R),    f(z) = (1/L) [F(k_0) + 2 sum_{j>=1} F(k_j) cos k_j (z - z_0)] + odd,
+
+h_m = sinc(m b/2R) where it is spread over an arc of length b, else 1.
 """
 
 from __future__ import annotations
@@ -51,7 +53,7 @@ class LineForces:
         return replace(self, force=self.force[..., nodes])
 
     def loads(self, problem: Problem, modes: Modes, *, odd: bool) -> dict[int, list[ComplexArray]]:
-        """Return the pressure amplitudes on each shell, of the functions even or odd along z: one (orders, nodes) a parity around.
+        """Return the pressure amplitudes on surfaces, by number, even or odd along z: one (orders, nodes) a parity around.
 
         Between the wavenumbers of the run forces are those of the nearest, above them those of the last.
         """
@@ -59,15 +61,17 @@ class LineForces:
         nearest = round(modes.wavenumber / self.layout.sampling.spacing)
         force = self.force[min(nearest, len(self.force) - 1), :, int(odd)]
         absorbers = self.layout.absorbers
-        shares = problem.point_force_shares(absorbers, modes)
+        shares, held = problem.point_force_shares(absorbers, modes), absorbers.footprint is not None
+        means = absorbers.means(problem, modes) if held else np.ones((2, absorbers.count, 1))
         found: dict[int, list[ComplexArray]] = {}
         for side in (0, 1):
-            for inner in np.unique(absorbers.inner_shell):
-                chosen, shell = np.flatnonzero(absorbers.inner_shell == inner), int(inner) + side
+            for number in np.unique(absorbers.surfaces[side]):
+                surface, chosen = int(number), np.flatnonzero(absorbers.surfaces[side] == number)
                 columns = np.ascontiguousarray(force[chosen + side * absorbers.count]).view(np.float64)
-                loads = [(share[chosen].T @ columns).view(np.complex128) / problem.shells[shell].radius for share in shares]
-                before = found.get(shell)
-                found[shell] = loads if before is None else [a + b for a, b in zip(before, loads, strict=True)]
+                spread = [(share[chosen] * means[side, chosen]).T if held else share[chosen].T for share in shares]
+                loads = [(each @ columns).view(np.complex128) / problem.surfaces[surface].radius for each in spread]
+                before = found.get(surface)
+                found[surface] = loads if before is None else [a + b for a, b in zip(before, loads, strict=True)]
         return found
 
 

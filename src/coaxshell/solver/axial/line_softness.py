@@ -20,11 +20,10 @@ from coaxshell.solver.axial.line_structure import families_at
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.samples import sample_beside
 from coaxshell.solver.axial.softened import Softened, in_the_waves_kept
-from coaxshell.solver.axial.sums import normals_of
-from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.axial.surfaces import SurfaceWave
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.orders_left_out import COUPLED_POINTS, against
-from coaxshell.solver.sampled_orders import NODES, each_alone, mobility_of
+from coaxshell.solver.sampled_orders import NODES, each_alone, mobility_at
 from coaxshell.solver.scaling import Problem
 
 
@@ -47,21 +46,22 @@ def _changed(layout: LineLayout, links: AbsorberSet, grid: LaplaceGrid, sets: li
     Shape (2, 2N, axial parities, nodes); ``force`` are those of the run at the sampled nodes, (2N, axial parities, nodes).
     """
     problem, s, sample = layout.problem, grid.nodes[NODES], sample_beside(layout.problem, layout.sampling, j)
-    kept, beside = (ModalSystem(problem, s, modes) for modes in (layout.sampling.modes[j], sample.modes))
-    compliance, softer = _compliance(kept), _compliance(beside)
-    squares = np.zeros((len(problem.shells), layout.axial_parities, sample.modes.count, s.size))
+    kept = Modes(layout.sampling.modes[j].orders, layout.sampling.modes[j].wavenumber)  # which keep no shapes of solids
+    compliance, beside = SurfaceWave(problem, s, kept).compliance, SurfaceWave(problem, s, sample.modes)
+    softer = beside.compliance
+    squares = np.zeros((len(problem.surfaces), layout.axial_parities, sample.modes.count, s.size))
     for family, share in families_at(layout, sets, j):
-        normal = np.asarray(normals_of(problem, beside, family, grid, NODES))
+        normal = np.asarray(beside.under(family, grid, NODES))
         each = (layout.squares[j] * np.array(share[: layout.axial_parities])) ** 2
         squares += np.multiply.outer(each, (np.abs(normal) ** 2).sum(axis=0)).swapaxes(0, 1)
-    sides = np.stack([links.inner_shell, links.inner_shell + 1])
+    means, sides = links.means(problem, sample.modes), links.surfaces
     phase = np.exp(2j * np.pi * np.random.default_rng(j).random(force.shape)).reshape(2, links.count, *force.shape[1:])
     acting = force.reshape(phase.shape)
     found = np.empty((2, *phase.shape), np.complex128)
     for cause, mask in enumerate((sample.higher_order, ~sample.higher_order)):
-        soft = mobility_of(problem, softer, mask * sample.waves * _half_of_0(sample.modes))
-        moved = np.einsum("abnk,bnpk->anpk", soft[sides[:, None], sides], acting)
-        moved += phase * np.sqrt(np.einsum("ipmk,m->ipk", squares, mask * sample.weight))[sides]
+        soft = mobility_at(problem, links, sample.modes, softer, mask * sample.waves * _half_of_0(sample.modes))
+        moved = np.einsum("abnk,bnpk->anpk", soft, acting)
+        moved += phase * np.sqrt(np.einsum("anpmk,anm->anpk", squares[sides], means**2 * (mask * sample.weight)))
         for along in range(layout.axial_parities):
             found[cause, :, :, along] = _against(layout, links, compliance, s, moved[:, :, along], soft)
     return found.reshape(2, *force.shape)
@@ -72,14 +72,9 @@ def _against(
 ) -> ComplexArray:
     """Return the change (2, N, nodes) of the forces on walls that move by so much more and are so much softer."""
     if 2 * links.count > COUPLED_POINTS:
-        own = mobility_of(layout.problem, compliance, _half_of_0(Modes.up_to(compliance.shape[2] - 1)))
-        return each_alone(links, s, (own + soft)[links.surfaces[:, None], links.surfaces], moved)
-    return against(layout.points, links, layout.folded(compliance), s, moved, soft[links.surfaces[:, None], links.surfaces])
-
-
-def _compliance(system: ModalSystem) -> ComplexArray:
-    """Return C_ij, (shells, shells, orders, nodes)."""
-    return np.stack([np.stack(system.solve(pressed, 1.0)) for pressed in range(len(system.problem.shells))], axis=1)
+        modes = Modes.up_to(compliance.shape[2] - 1)
+        return each_alone(links, s, mobility_at(layout.problem, links, modes, compliance, _half_of_0(modes)) + soft, moved)
+    return against(layout.points, links, layout.folded(compliance), s, moved, soft)
 
 
 def _half_of_0(modes: Modes) -> FloatArray:

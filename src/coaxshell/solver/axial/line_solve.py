@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -18,6 +18,7 @@ from coaxshell.solver.axial.line_forces import LineForces, line_forces
 from coaxshell.solver.axial.line_march import LineMarch, LineMotion, march_lines
 from coaxshell.solver.axial.line_structure import line_answers, line_kernels, wave_blocks
 from coaxshell.solver.axial.lines import LineLayout
+from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.orders_left_out import with_tangent
 from coaxshell.solver.step_error import SHARES
@@ -54,6 +55,10 @@ class LineSolution:
     tangent: AbsorberSet
     error: float = 0.0
     exact: tuple[ComplexArray, ComplexArray] | None = None
+
+    def with_waves(self, sampling: AxialSampling) -> LineSolution:
+        """Return the same by a sampling of the same waves, whose modes keep nothing."""
+        return replace(self, forces=replace(self.forces, layout=replace(self.forces.layout, sampling=sampling)))
 
     def at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return forces (z, N, 2, T) and displacements (z, N, T) of every absorber of the description at some z (in a)."""

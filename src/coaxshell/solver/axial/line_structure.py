@@ -10,18 +10,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lines import LineLayout
-from coaxshell.solver.axial.sums import normals_of
-from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.axial.surfaces import SurfaceWave
+from coaxshell.solver.faced_forces import step_weights, trapezoidal_nodes
 from coaxshell.solver.interface.absorbers import admittance
 from coaxshell.solver.kernels import velocity_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.spectral import node_blocks
 
 WAVES_TOGETHER = 4
@@ -41,21 +43,36 @@ def line_kernels(layout: LineLayout, grid: LaplaceGrid, waves: slice) -> Found:
     -------
     dict
         "displacement" and "velocity" of the walls at the lines without absorbers, (waves, 2N, axial parities, T), and "weights", those of
-        the classes' pressures in their velocities (:mod:`coaxshell.solver.kernels`), (shells, shells, waves, classes, T).
+        the classes' pressures in their velocities (:mod:`coaxshell.solver.kernels`; of walls whose faces move differently
+        :mod:`coaxshell.solver.faced_forces`), (surfaces, surfaces, waves, classes, T).
     """
     found: dict[str, list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]] = {"displacement": [], "velocity": [], "weights": []}
     for j in range(waves.start, waves.stop):
         motion, compliance = wave_answers(layout, grid, j)
         modes = layout.sampling.modes[j]
-        weights = velocity_weights(layout.problem, grid, compliance, modes)
-        late = unresolved_orders(layout.problem, grid, modes)
-        if late.any():
-            weights[:, :, late] = trapezoidal_weights(layout.problem, grid, Modes(modes.orders[late], modes.wavenumber), [])[0]
+        weights = _faced_weights(layout.problem, grid, modes) if layout.problem.two_faced else _weights(layout, grid, compliance, modes)
         found["displacement"].append(grid.invert(motion))
         found["velocity"].append(grid.invert(motion * grid.nodes))
         found["weights"].append(layout.folded(weights))
         tell_share((j + 1 - waves.start) / (waves.stop - waves.start))
     return {name: np.stack(each, axis=2 if name == "weights" else 0) for name, each in found.items()}
+
+
+def _weights(layout: LineLayout, grid: LaplaceGrid, compliance: ComplexArray, modes: Modes) -> FloatArray:
+    """Return the step weights of thin walls, (shells, shells, orders, T)."""
+    weights = velocity_weights(layout.problem, grid, compliance, modes)
+    late = unresolved_orders(layout.problem, grid, modes)
+    if late.any():
+        weights[:, :, late] = trapezoidal_weights(layout.problem, grid, Modes(modes.orders[late], modes.wavenumber), [])[0]
+    return weights
+
+
+def _faced_weights(problem: Problem, grid: LaplaceGrid, modes: Modes) -> FloatArray:
+    """Return the step weights of surfaces of walls whose faces move differently, (surfaces, surfaces, orders, T)."""
+    fine, s = trapezoidal_nodes(grid)
+    resolving, own = problem.resolving(band(fine)), Modes(modes.orders, modes.wavenumber)  # whose shapes end with them
+    parts = [SurfaceWave(resolving, s[block], own).compliance for block in node_blocks(fine, modes.max_order)]
+    return step_weights(np.concatenate(parts, axis=-1), fine, s, grid)
 
 
 def line_answers(layout: LineLayout, grid: LaplaceGrid, waves: slice) -> Found:
@@ -85,22 +102,22 @@ def line_answers(layout: LineLayout, grid: LaplaceGrid, waves: slice) -> Found:
 
 
 def wave_answers(layout: LineLayout, grid: LaplaceGrid, j: int) -> tuple[ComplexArray, ComplexArray]:
-    """Return w at the lines under the sources, (2N, axial parities, nodes), and C_ij, (shells, shells, orders, nodes), of a wavenumber."""
+    """Return w at the lines under the sources, (2N, axial parities, nodes), and C_ij, (surfaces, surfaces, orders, nodes), of a wave."""
     problem, modes = layout.problem, layout.sampling.modes[j]
-    walls, absorbers = len(problem.shells), layout.absorbers
-    shapes, shell = absorbers.shapes(modes), layout.points.surface
-    motion = np.zeros((shell.size, layout.axial_parities, grid.nodes.size), np.complex128)
-    compliance = np.empty((walls, walls, modes.count, grid.nodes.size), np.complex128)
+    count, felt, surface = len(problem.surfaces), layout.felt(modes), layout.points.surface
+    motion = np.zeros((surface.size, layout.axial_parities, grid.nodes.size), np.complex128)
+    compliance = np.empty((count, count, modes.count, grid.nodes.size), np.complex128)
     for block in node_blocks(grid, modes.max_order):
-        system = ModalSystem(problem, grid.nodes[block], modes)
-        for pressed in range(walls):
-            for moved, w in enumerate(system.solve(pressed, 1.0)):
+        system = SurfaceWave(problem, grid.nodes[block], modes)
+        for pressed in range(count):
+            for moved, w in enumerate(system.under_pressure(pressed)):
                 compliance[moved, pressed, :, block] = w
         sets = wave_sets(problem, layout.sampling, np.array([layout.origin]), grid.nodes[block])
         for family, share in families_at(layout, sets, j):
-            for parity, normal in enumerate(normals_of(problem, system, family, grid, block)[: len(shapes)]):
-                at_lines = np.concatenate([shapes[parity] @ w for w in normal]).reshape(walls, absorbers.count, -1)
-                here = at_lines[shell, np.tile(np.arange(absorbers.count), 2)]
+            for shapes, each in zip(felt, system.under(family, grid, block), strict=False):
+                here = np.empty((surface.size, grid.nodes[block].size), np.complex128)
+                for i in np.unique(surface):
+                    here[surface == i] = shapes[surface == i] @ each[i]
                 for along, part in enumerate(share[: layout.axial_parities]):
                     motion[:, along, block] += part * here
     return motion, compliance

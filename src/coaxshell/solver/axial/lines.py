@@ -14,7 +14,7 @@ compliances are added up beforehand, and N/2 classes l take the place of the ord
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
@@ -69,8 +69,19 @@ class LineLayout:
 
     @cached_property
     def points(self) -> InterfacePoints:
-        """The points of every cross-section at which absorbers hold the shells, in terms of the classes."""
-        return InterfacePoints(self.problem, self.absorbers, self.classes)
+        """The points of every cross-section at which absorbers hold the walls, in terms of the classes.
+
+        Where these are those of a lattice, what is folded into them has the h_m of the arcs already.
+        """
+        absorbers = replace(self.absorbers, footprint=None) if self.lattice else self.absorbers
+        return InterfacePoints(self.problem, absorbers, self.classes)
+
+    def felt(self, modes: Modes) -> FloatArray:
+        """Return what the points feel of the orders of a wavenumber, h_m cos m theta_n, h_m sin m theta_n, (parities, 2N, orders)."""
+        shapes = np.tile(self.absorbers.shapes(modes), (1, 2, 1))
+        if self.absorbers.footprint is None:
+            return shapes
+        return np.asarray(shapes * self.absorbers.means(self.problem, modes).reshape(2 * self.absorbers.count, -1))
 
     @cached_property
     def series(self) -> AxialSeries:
@@ -88,13 +99,25 @@ class LineLayout:
         return shares
 
     def folded(self, values: Numbers) -> Numbers:
-        """Return compliances or kernels of the orders 0, 1, ... of a wavenumber, (..., orders, n), added up by classes."""
+        """Return compliances or kernels of the orders of a wavenumber, (surfaces, surfaces, orders, n), added up by classes."""
         count = values.shape[-2]
+        if self.lattice and self.absorbers.footprint is not None:
+            held = self._held[:, :count]
+            values = values * (held[:, None] * held)[..., None]
         if self.lattice:
             sums: Numbers = self._folding[:, :count] @ values
             return sums
         found = np.zeros((*values.shape[:-2], self.classes.count, values.shape[-1]), values.dtype)
         found[..., :count, :] = values
+        return found
+
+    @cached_property
+    def _held(self) -> FloatArray:
+        """h_m of the arcs that are held on each surface, all alike there, shape (surfaces, M + 1); 1 where none is."""
+        orders = Modes.up_to(self.sampling.max_order)
+        found, means = np.ones((len(self.problem.surfaces), orders.count)), self.absorbers.means(self.problem, orders)
+        for side in (0, 1):
+            found[self.absorbers.surfaces[side]] = means[side]
         return found
 
     @property
@@ -121,8 +144,16 @@ def line_layout(problem: Problem, sampling: AxialSampling) -> LineLayout:
     pairs = zip(problem.emitters, problem.sources, strict=True)
     planes = {axial_position(one) / problem.scales.length for one, wave in pairs if isinstance(wave, SphericalFrontGeometry)}
     origin = planes.pop() if len(planes) == 1 else 0.0
-    lattice = _lattice(absorbers.every_angle, sampling.max_order)
+    lattice = _lattice(absorbers.every_angle, sampling.max_order) if _alike_on_surfaces(absorbers) else 0
     return LineLayout(problem, sampling, absorbers, lattice, origin, 2 if planes else 1)
+
+
+def _alike_on_surfaces(absorbers: AbsorberSet) -> bool:
+    """Return whether all that hold a surface hold it over arcs of one length, so that its orders can be added up."""
+    if absorbers.footprint is None:
+        return True
+    held = set(zip(absorbers.surfaces.ravel().tolist(), absorbers.footprint.ravel().tolist(), strict=True))
+    return len(held) == np.unique(absorbers.surfaces).size
 
 
 def require_lines_alone(problem: Problem, settings: Settings) -> None:

@@ -80,12 +80,17 @@ class WaveMotion:
         pressure, slope = _superposed(self._shares[sources], found, self._around)
         return pressure, slope
 
+    @property
+    def of_surfaces(self) -> ComplexArray:
+        """Transforms of the displacements of the surfaces on which links act, (surfaces, parities, orders, nodes)."""
+        return self.normal if self.solid is None else surface_motion(self._problem, self.normal, self.solid.faces)
+
     def at_points(self, points: WallPoints) -> ComplexArray:
         """Return what this wavenumber adds to the transforms of w at points of walls, the means over their patches, (P, nodes)."""
         k, found = float(self.modes.wavenumber), np.empty((points.count, self.normal.shape[-1]), np.complex128)
         along = points.along(k) * np.array([np.cos(k * points.z), -np.sin(k * points.z)])[: self._shares.shape[1]]
         shapes = [points.around(self._problem, self.modes, parity) for parity in range(self._around)]
-        moved = self.normal if self.solid is None else surface_motion(self._problem, self.normal, self.solid.faces)
+        moved = self.of_surfaces
         for n, surface in enumerate(points.surface):
             columns = np.concatenate([share * shape[n] for share in along[:, n] for shape in shapes])
             found[n] = columns @ moved[surface].reshape(columns.size, -1)

@@ -81,7 +81,10 @@ def solve_spatial(
         stopwatch.lap("absorbers")
         forces = None if linked is None else linked.forces
         spectra, squares = _summed(problem, grid, waves, settings, forces, progress, on)
-        del waves
+        del waves, forces
+    if isinstance(linked, LineSolution):
+        linked = linked.with_waves(sampling)  # which keep no shapes
+    forces = None if linked is None else linked.forces
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
     histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in (spectra | _voltage_rates(problem, grid, spectra)).items()}
@@ -166,6 +169,7 @@ def forces_of(solution: SpatialSolution) -> WallForces | None:
         linked = _linked(solution.problem, laplace_grid(solution.settings), waves, None, on_threads)
         if linked is None:
             return None
+        linked = linked.with_waves(solution.sampling) if isinstance(linked, LineSolution) else linked
         solution.forces.append(linked.forces)
     return solution.forces[0]
 
