@@ -61,6 +61,8 @@ SAVED_CHUNK = Limit(64_000_000, "bytes", "a chunk of a compressed array")
 RING = Limit(10_000, "absorbers", "a ring")
 STATIONS = Limit(200, "axial positions", "a list of stations")
 STUDIO_BODY = Limit(1_000_000, "bytes", "a request to the studio")
+STUDIO_PROJECT = Limit(8_000_000, "bytes", "a project of the studio")
+STUDIO_DESIGNS = Limit(20, "designs", "a project of the studio")
 STUDIO_UPLOAD = Limit(64_000_000, "bytes", "a run opened in the studio")
 STUDIO_NESTING = Limit(24, "levels", "the nesting of a request to the studio")
 STUDIO_SHELLS = Limit(6, "shells", "a system in the studio")
@@ -91,6 +93,8 @@ TABLE: tuple[Limit, ...] = (
     RING,
     STATIONS,
     STUDIO_BODY,
+    STUDIO_PROJECT,
+    STUDIO_DESIGNS,
     STUDIO_UPLOAD,
     STUDIO_NESTING,
     STUDIO_SHELLS,

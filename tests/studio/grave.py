@@ -61,6 +61,7 @@ def requests(random_, systems, values):
     for text in TOML:
         yield "/api/validate", {"toml": text}
         yield "/api/jobs", {**ASKED, "kind": "solve", "toml": text}
+        yield "/api/project/open", {"toml": "version = 1\n" + text}
     for text in NUMBERS:
         for given in ([1, text], {"from": 1, "to": text, "count": 3}, text):
             varied = {"absorbers.mass": given}
@@ -81,6 +82,9 @@ def _long(system, linked):
         source = {"type": "plane-wave", "pulse": {"type": "sampled", "time": time, "pressure": pressure}}
         yield "/api/validate", {"system": {**system, "source": source}}
         yield "/api/solve", {**ASKED, "system": {**system, "source": source}}
+    for design in ({}, {"name": "A", "system": {}}, {"name": "A", "system": {**system, "shells": [{}] * 300}}):
+        yield "/api/project", {"designs": [design] * 4_000}
+        yield "/api/project", {"designs": [design] * 5}
     for width in (1_000, 60_000):
         shell = {**system["shells"][0], "layers": [{}] * width}
         yield "/api/validate", {"system": {f"x{number}": 1 for number in range(width)}}

@@ -203,7 +203,7 @@ def requests(seed=1, count=1100):
     systems = [described(name) for name in presets.names()]
     systems += [{**described("bare"), "absorbers": [POINT]}, {**described("bare"), "source": {**described("bare")["source"], "z": 0.3}}]
     for raw in RAW:
-        for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open"):
+        for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open", "/api/project"):
             yield "POST", path, raw
     for path, body in grave.requests(random_, systems, VALUES):
         yield "POST", path, encoded(body)
@@ -216,7 +216,9 @@ def requests(seed=1, count=1100):
             yield "POST", "/api/validate", encoded(mutated(random_, body, random_.randrange(1, 5)))
         else:
             kind = random_.choice(["solve", "field", "film", "unrolled", "sweep", "optimise", "optimise"])
-            path = random_.choice(["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/studies", "/api/link", "/api/link/open"])
+            path = random_.choice(
+                ["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/studies", "/api/link", "/api/link/open", "/api/project"]
+            )
             body = {
                 "client": "tab",
                 "slot": "fuzz",
@@ -228,6 +230,7 @@ def requests(seed=1, count=1100):
                 "frames": 3,
                 "kind": kind,
                 "title": "fuzz",
+                "designs": [{"name": "A", "system": base, "resolution": SPACE if number % 2 else SMALL}] * (1 + number % 3),
                 **STUDY,
             }
             yield (

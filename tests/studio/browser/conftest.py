@@ -177,7 +177,7 @@ def open_page(browser, kept_page, server, watched):
             continue
         page.unroute_all()
         page.mouse.move(0, 0)
-        page.evaluate("() => localStorage.clear()")
+        page.evaluate("() => { localStorage.clear(); sessionStorage.clear(); }")
         page.goto(f"{server.address}/page/icon.svg")  # of the same origin, or Chromium would give its next page a process of its own
 
 

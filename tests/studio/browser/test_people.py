@@ -8,7 +8,7 @@ from page_reading import open_preset, until, violations
 
 from coaxshell.model.places import region_side, shell_name, shell_phrase
 
-TABS = ("peaks", "wave", "wall", "energy", "studies")
+TABS = ("peaks", "wave", "wall", "energy", "designs", "studies")
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

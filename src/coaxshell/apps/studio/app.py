@@ -16,7 +16,7 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from coaxshell.apps.studio import job_routes, record_uploads, refusals, routes, study_routes
+from coaxshell.apps.studio import job_routes, projects, record_uploads, refusals, routes, study_routes
 from coaxshell.apps.studio.guard import NAMES, Guard
 from coaxshell.apps.studio.refusals import RefusedError
 from coaxshell.apps.studio.state import Studio
@@ -34,7 +34,7 @@ def create_app(port: int, key: str, names: Collection[str] = ()) -> Guard:
         Names of hosts, beside those of this machine, under which it may be reached.
     """
     application = Starlette(
-        routes=[*files(), *routes.routes(), *job_routes.routes(), *study_routes.routes(), *record_uploads.routes()],
+        routes=[*files(), *routes.routes(), *job_routes.routes(), *study_routes.routes(), *projects.routes(), *record_uploads.routes()],
         lifespan=_alive,
         exception_handlers={RefusedError: _refused, HTTPException: _plain, ClientDisconnect: _gone, Exception: _failed},
     )

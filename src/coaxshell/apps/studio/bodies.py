@@ -37,11 +37,11 @@ async def read_body(request: Request, most: int = limits.BODY_BYTES) -> bytes:
     return b"".join(parts)
 
 
-async def read_table(request: Request) -> dict[str, Any]:
+async def read_table(request: Request, most: int = limits.BODY_BYTES) -> dict[str, Any]:
     """Return a JSON body, which must be an object; RefusedError otherwise."""
     if request.headers.get("content-type", "").split(";")[0].strip().lower() != "application/json":
         raise RefusedError(415, "wrong-type", "Content-Type", "is not JSON", "send application/json")
-    body = await read_body(request)
+    body = await read_body(request, most)
     return await run_in_threadpool(parse_table, body) if len(body) > LONG else parse_table(body)
 
 

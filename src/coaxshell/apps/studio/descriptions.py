@@ -19,14 +19,14 @@ def system_of(data: dict[str, Any]) -> System:
     """Return the system of a request's ``system`` (table) or ``toml`` (text); InputError when it is not one or too large."""
     text = data.get("toml")
     if isinstance(text, str):
-        return _checked(loads(text))
-    table = data.get("system")
+        return system_from(loads(text))
+    return system_from(data.get("system"))
+
+
+def system_from(table: object) -> System:
+    """Return the system of a table of its entries; InputError when it is not one or too large."""
     if not isinstance(table, dict):
         raise InputError("system", "is missing" if table is None else f"{table!r:.60} is not a system", "give a table of its entries")
-    return _checked(table)
-
-
-def _checked(table: dict[str, Any]) -> System:
     limits.check_raw(table)
     with refusals.readable("system"):
         system = System.model_validate(table)

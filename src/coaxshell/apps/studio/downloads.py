@@ -21,6 +21,7 @@ TYPES = {
     "svg": "image/svg+xml",
     "mp4": "video/mp4",
     "webp": "image/webp",
+    "html": "text/html",
 }
 
 Run = tuple[System, Settings]
@@ -70,6 +71,15 @@ def movie(runs: list[Run], frames: int, fps: float, size: int, path: Path) -> No
         names=_names(runs),
         progress=worker.report,
     )
+
+
+def report(runs: list[Run], without: list[str], path: Path) -> None:
+    """Write the report of a run, against a second one if there is one."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    first, *others = (worker.answer(*run) for run in runs)
+    first.report(path, others[0] if others else None, without=without, progress=worker.report)
 
 
 def described(path: Path) -> tuple[str, dict[str, Any]]:

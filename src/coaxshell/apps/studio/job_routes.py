@@ -96,6 +96,40 @@ async def _unrolled(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     studio.jobs.start(job, unrolled.unrolled, *run.pair, shell, quantity, frames, place=run.place)
 
 
+async def _loops(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.apps.studio import panels
+
+    run = studio.run(bodies.name_of(data, "run"))
+    panels.require_controlled(run.system, run.settings)
+    job.run = run.name
+    studio.jobs.start(job, panels.loops, *run.pair, place=run.place)
+
+
+async def _spectra(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.apps.studio import panels
+
+    run = studio.run(bodies.name_of(data, "run"))
+    shell, quantity = bodies.whole_of(data, "shell", 0, limits.SHELLS - 1, 0), bodies.one_of(data, "quantity", panels.QUANTITIES, "stress")
+    panels.require_stressed(run.system, shell)
+    number = bodies.whole_of(data, "station", 0, limits.STATIONS - 1, 0)
+    stations = run.settings.stations if run.settings.dimensions == 3 else (None,)
+    if number >= len(stations):
+        raise bodies.bad("station", number, f"give the number of one, below {len(stations)}")
+    job.run = run.name
+    studio.jobs.start(job, panels.spectra, *run.pair, shell, quantity, stations[number], place=run.place)
+
+
+async def _stressed(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.apps.studio import panels
+
+    run = studio.run(bodies.name_of(data, "run"))
+    shell = bodies.whole_of(data, "shell", 0, limits.SHELLS - 1, 0)
+    component = bodies.one_of(data, "component", panels.COMPONENTS, panels.COMPONENTS[0])
+    panels.require_stressed(run.system, shell)
+    job.run = run.name
+    studio.jobs.start(job, panels.stressed, *run.pair, shell, component, place=run.place)
+
+
 async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     runs = _runs(studio, data.get("runs"))
     kind = bodies.one_of(data, "format", ("mp4", "webp"), "mp4")
@@ -106,6 +140,17 @@ async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
         limits.require_plane(run.settings, "films", FIELD_INSTEAD)
     pairs = [run.pair for run in runs]
     studio.jobs.start(job, downloads.movie, pairs, frames, fps, size, job.file, place=runs[0].place)
+
+
+async def _report(studio: Studio, job: Job, data: dict[str, Any]) -> None:
+    from coaxshell.apps.report import PARTS, parts_left
+
+    runs, without = _runs(studio, data.get("runs"), 2), data.get("without", [])
+    if not isinstance(without, list) or len(without) > len(PARTS) or not all(isinstance(part, str) for part in without):
+        raise bodies.bad("without", without, f"give a list of {', '.join(PARTS)}")
+    parts_left(without)
+    job.run, job.file, job.name = runs[0].name, studio.file("html"), runs[0].system.name
+    studio.jobs.start(job, downloads.report, [run.pair for run in runs], without, job.file, place=runs[0].place)
 
 
 async def _sweep(studio: Studio, job: Job, data: dict[str, Any]) -> None:
@@ -128,16 +173,20 @@ _STARTS: dict[str, Callable[[Studio, Job, dict[str, Any]], Awaitable[None]]] = {
     "solve": _solve,
     "field": _field,
     "film": _film,
+    "report": _report,
     "energy": _energy,
     "unrolled": _unrolled,
+    "loops": _loops,
+    "spectra": _spectra,
+    "stressed": _stressed,
     "sweep": _sweep,
     "optimise": _optimise,
 }
 
 
-def _runs(studio: Studio, names: Any) -> list[Run]:
-    if not isinstance(names, list) or not 1 <= len(names) <= 3 or not all(isinstance(name, str) for name in names):
-        raise bodies.bad("runs", names, "give 1 to 3 names of runs")
+def _runs(studio: Studio, names: Any, most: int = 3) -> list[Run]:
+    if not isinstance(names, list) or not 1 <= len(names) <= most or not all(isinstance(name, str) for name in names):
+        raise bodies.bad("runs", names, f"give 1 to {most} names of runs")
     return [studio.run(name) for name in names]
 
 
@@ -166,7 +215,7 @@ async def result(request: Request) -> Response:
         from coaxshell.apps.studio import optimisations
 
         return JSONResponse({"kind": "optimise", **await run_in_threadpool(optimisations.told, found.result)})
-    if found.kind in ("energy", "unrolled"):
+    if found.kind in ("energy", "unrolled", "loops", "spectra", "stressed"):
         return arrays.answer(found.result, run=found.run)
     if found.kind != "field":
         raise RefusedError(404, "not-found", "result", f"a {found.kind} has none", "see /api/runs/{run} or /api/jobs/{id}/file")
@@ -210,7 +259,7 @@ async def job_file(request: Request) -> Response:
     if found.kind == "optimise":
         kind = bodies.one_of(dict(request.query_params), "what", ("toml", "csv"), "toml")
         return await _written(found.result.optimum, kind, found.name)
-    if found.kind not in ("film", "sweep") or found.file is None:
+    if found.kind not in ("film", "report", "sweep") or found.file is None:
         raise RefusedError(404, "not-found", "file", f"a {found.kind} has none", "start a job of the kind film")
     suffix = found.file.suffix[1:]
     return FileResponse(found.file, media_type=downloads.TYPES[suffix], filename=downloads.named(found.name, suffix, found.kind))

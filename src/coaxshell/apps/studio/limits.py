@@ -9,8 +9,10 @@ from coaxshell.errors import InputError
 from coaxshell.limits import (
     STUDIO_ABSORBERS,
     STUDIO_BODY,
+    STUDIO_DESIGNS,
     STUDIO_LAYERS,
     STUDIO_NESTING,
+    STUDIO_PROJECT,
     STUDIO_SAMPLES,
     STUDIO_SHELLS,
     STUDIO_SOURCES,
@@ -28,6 +30,7 @@ from coaxshell.solver.solvable import require_solvable
 
 BODY_BYTES, UPLOAD_BYTES, NESTING = STUDIO_BODY.value, STUDIO_UPLOAD.value, STUDIO_NESTING.value
 SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABSORBERS.value
+DESIGNS, PROJECT_BYTES = STUDIO_DESIGNS.value, STUDIO_PROJECT.value
 SOURCES, SAMPLES, STATIONS = STUDIO_SOURCES.value, STUDIO_SAMPLES.value, STUDIO_STATIONS.value
 PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
 PREVIEW_SPATIAL, FULL_SPATIAL = Settings(time_step=1e-2, modes=32, dimensions=3), Settings(time_step=4e-3, modes=60, dimensions=3)
@@ -74,6 +77,7 @@ def table() -> dict[str, int]:
         "sources": SOURCES,
         "stations": STATIONS,
         "samples": SAMPLES,
+        "designs": DESIGNS,
         "modes": MODES,
         "steps": STEPS,
         "refinement": REFINEMENT,
@@ -89,6 +93,7 @@ def table() -> dict[str, int]:
         "preview_steps": PREVIEW_STEPS,
         "body_bytes": BODY_BYTES,
         "upload_bytes": UPLOAD_BYTES,
+        "project_bytes": PROJECT_BYTES,
     }
 
 

@@ -24,6 +24,15 @@ export function toast(text) {
   timer = setTimeout(() => { box.hidden = true; }, 5000);
 }
 
+// A text taken home as a file.
+export function saveText(text, name, type = "application/toml") {
+  const address = URL.createObjectURL(new Blob([text], { type })), anchor = el("a", { href: address, download: name });
+  document.body.append(anchor);
+  anchor.click();
+  anchor.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+}
+
 // A sentence in the place of what a box shows; without one, what it shows comes back.
 export function instead(box, text) {
   box.querySelector(":scope > .instead")?.remove();

@@ -1,8 +1,10 @@
 // Taking things home and bringing them in: downloads, a film, a link that holds the whole system, a file opened.
 import { client, request } from "./api.js";
+import * as designs from "./designs.js";
 import { by, el, toast } from "./dom.js";
 import { ended, watch } from "./events.js";
 import * as link from "./link.js";
+import * as tabs from "./tabs.js";
 import { told } from "./words.js";
 
 const FILES = [
@@ -13,7 +15,8 @@ const FILES = [
   ["figure.svg", "Stress figure", "SVG"],
 ];
 const TOGETHER = ["bare", "pinned", "current"]; // what a figure and a film show, the first ones first
-let format = "mp4", making = null; // the id of the film being made
+const making = {}; // the ids of the jobs of a film and a report being made
+let format = "mp4";
 
 const KINDS = { toml: "application/toml", nc: "application/x-netcdf" };
 
@@ -40,34 +43,43 @@ function fill(list, runs, close) {
   const query = (path) => (path.startsWith("figure") && compare ? `?${compare}` : "");
   const act = (what) => () => { close(); what(); };
   list.replaceChildren(...FILES.map(([path, name, kind]) => el("li", {}, el("a", { href: `/api/runs/${run}/${path}${query(path)}`, download: "", onclick: close }, name, el("small", {}, kind)))),
-    el("li", {}, runs.current.stations ? el("button", { type: "button", disabled: true }, "Film", el("small", {}, "of two dimensions only")) : making ? el("button", { type: "button", id: "no-film", onclick: act(() => request(`/api/jobs/${making}`, { method: "DELETE" }).catch(() => {})) }, "Cancel the film")
+    el("li", {}, making.report ? el("button", { type: "button", onclick: act(() => cancel("report")) }, "Cancel the report") : el("button", { type: "button", id: "report", onclick: act(() => report(runs)) }, "Report", el("small", {}, "one HTML file, about a minute"))),
+    el("li", {}, runs.current.stations ? el("button", { type: "button", disabled: true }, "Film", el("small", {}, "of two dimensions only")) : making.film ? el("button", { type: "button", id: "no-film", onclick: act(() => cancel("film")) }, "Cancel the film")
       : el("button", { type: "button", id: "film", onclick: act(() => film(runs)) }, "Film", el("small", {}, `${format === "mp4" ? "MP4" : "WebP"}, side by side`))));
 }
 
-async function film(runs) {
+const film = (runs) => make({ kind: "film", runs: together(runs), frames: 120, fps: 24, size: 360, format });
+// Of the current system, against the pinned one or else the bare one.
+const report = ({ current, pinned, bare }) => make({ kind: "report", runs: [...new Set([current, pinned ?? bare].filter(Boolean).map(({ run }) => run))], ...(current.stations ? { without: ["energy", "fields"] } : {}) });
+const cancel = (kind) => request(`/api/jobs/${making[kind]}`, { method: "DELETE" }).catch(() => {});
+
+// A file that takes a while: its progress is told, and the finished one saved.
+async function make(body) {
+  const { kind } = body, word = kind.replace(/^./, (letter) => letter.toUpperCase());
   try {
-    const body = { client, kind: "film", runs: together(runs), frames: 120, fps: 24, size: 360, format };
-    const { job, problem } = await request("/api/jobs", { body });
-    if (!job) return toast(`No film: ${told(problem)}`);
-    making = job.id;
+    const { job, problem } = await request("/api/jobs", { body: { client, ...body } });
+    if (!job) return toast(`No ${kind}: ${told(problem)}`);
+    making[kind] = job.id;
     watch(job, (now) => {
-      if (!ended(now)) return toast(`Film: ${Math.round(100 * (now.fraction ?? 0))}\u202f%`);
-      making = null;
-      if (now.state === "cancelled") return toast("No film: cancelled.");
-      if (now.state !== "done") return toast(`No film: ${told({ problem: now.error })}`);
+      if (!ended(now)) return toast(`${word}: ${Math.round(100 * (now.fraction ?? 0))}\u202f%`);
+      delete making[kind];
+      if (now.state === "cancelled") return toast(`No ${kind}: cancelled.`);
+      if (now.state !== "done") return toast(`No ${kind}: ${told({ problem: now.error })}`);
       const anchor = el("a", { href: `/api/jobs/${now.id}/file`, download: "" });
       document.body.append(anchor);
       anchor.click();
       anchor.remove();
-      return toast("The film is done.");
+      return toast(`The ${kind} is done.`);
     });
   } catch (failure) { toast(told(failure)); }
+  return null;
 }
 
 async function upload(file, opened) {
   const type = KINDS[file.name.split(".").at(-1).toLowerCase()];
   if (!type) return toast(`${file.name}: give a .toml or a .nc file`);
   try {
+    if (type === KINDS.toml && designs.isProject(await file.text())) { tabs.choose("designs"); return designs.openText(await file.text()); }
     const answer = await request("/api/upload", { body: file, type });
     if (answer.ok) { opened(answer, file.name); return toast(`Opened ${file.name}.`); }
     return toast(`${file.name}: ${told(answer.problem)}`);

@@ -1,4 +1,5 @@
 // The form, generated from the description's own schema: one function a kind of entry.
+import * as building from "./building.js";
 import { el, by } from "./dom.js";
 import { join, read } from "./paths.js";
 import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
@@ -14,11 +15,13 @@ const KEPT_OPEN = new Map();
 const SAMPLES = new Set(["time", "pressure"]);
 const OFF_THE_PLANE = new Set(["z", "inclination"]); // of sources: shown in three dimensions, and where a description has them
 
-let world, change, shells = 1, space = false; // what /api/schema says; (path, value, { live }) => void; how many shells there are; in three dimensions
+let world, change, now, shells = 1, space = false; // what /api/schema says; (path, value, { live }) => void; () => system; how many shells there are; in three dimensions
+let wanted = null; // what has the focus once the form is made anew: an action of an item, or else the item
 
-export function setUp(known, onChange) {
+export function setUp(known, onChange, present) {
   world = known;
   change = onChange;
+  now = present;
   use(known.schema);
 }
 
@@ -33,15 +36,20 @@ export function render(system, problems) {
   const names = [...ORDER, ...Object.keys(parts).filter((name) => !ORDER.includes(name))];
   form.replaceChildren(dimensions(system.resolution, system.costs), ...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
   mark(problems);
-  if (focus) form.querySelector(`[data-path="${focus}"]`)?.focus({ preventScroll: true });
+  if (wanted) {
+    const { act, item } = wanted, box = form.querySelector(`[data-group="${CSS.escape(item)}"]`);
+    wanted = null;
+    (form.querySelector(`[data-act="${CSS.escape(act)}"]:not(:disabled)`) ?? box?.querySelector(":scope > summary, select"))?.focus();
+  } else if (focus) form.querySelector(`[data-path="${focus}"]`)?.focus({ preventScroll: true });
 }
 
 // Bring the inputs up to date without making them anew: a slider under a finger stays where it is.
 export function refresh(system) {
+  const sliders = new Map([...by("form").querySelectorAll('input[type="range"]')].map((one) => [one.dataset.path, one]));
   for (const input of by("form").querySelectorAll("input[data-unit]")) {
     const value = read(system, input.dataset.path);
     if (input !== document.activeElement) input.value = editable(value, input.dataset.unit);
-    const slider = by("form").querySelector(`input[type="range"][data-path="${input.dataset.path}"]`);
+    const slider = sliders.get(input.dataset.path);
     if (slider && typeof value === "number") place(slider, value, input.dataset.unit);
   }
   for (const box of by("form").querySelectorAll("[data-record]")) box.replaceWith(editor(box.dataset.record, change));
@@ -147,34 +155,76 @@ function list(schema, path, name, value) {
   const numeric = ["number", "integer"].includes(resolve(item).type);
   if (numeric) return leaf({ type: "string", list: true, description: schema.description }, path, name, Array.isArray(value) ? value.join(", ") : value);
   const items = value.map((one, i) => {
-    const at = join(path, i);
-    const inner = entry(item, at, singular, one);
-    const tools = el("div", { class: "buttons" },
-      i > 0 && el("button", { type: "button", "aria-label": `Move ${label(at, name)} inwards`, onclick: () => swap(path, value, i, i - 1) }, "↑"),
-      el("button", { type: "button", "aria-label": `Remove ${label(at, name)}`, onclick: () => change(path, value.filter((_, k) => k !== i)) }, "Remove"));
-    const body = inner?.querySelector?.(":scope > .body");
-    (body ?? inner)?.append?.(path === "fluids" ? "" : tools);
+    const inner = entry(item, join(path, i), singular, one), body = inner?.querySelector?.(":scope > .body");
+    (body ?? inner)?.append?.(tools(item, path, name, value, i));
     return inner;
   });
-  const most = { shells: world.limits.shells, layers: world.limits.layers, absorbers: world.limits.absorbers, source: world.limits.sources }[name] ?? Infinity;
+  const full = value.length >= mostOf(name);
   return el("div", { "data-group": path }, ...items, path === "fluids" ? null : el("div", { class: "buttons" },
-    el("button", { type: "button", disabled: value.length >= most, onclick: () => change(path, [...value, following(item, value, name)]) }, `Add ${singular}`), value.length >= most ? el("small", { class: "hint" }, `at most ${most}`) : null));
+    el("button", { type: "button", disabled: full, onclick: () => add(item, path, name, Infinity) }, `Add ${singular}`), full ? el("small", { class: "hint" }, `at most ${mostOf(name)}`) : null));
 }
 
-function swap(path, value, i, j) {
+const mostOf = (name) => ({ shells: world.limits.shells, layers: world.limits.layers, absorbers: world.limits.absorbers, source: world.limits.sources })[name] ?? Infinity;
+
+// What can be done with an item: exchanged with its neighbours, copied to the next place, taken out. Fluids follow the shells.
+function tools(item, path, name, value, i) {
+  const at = join(path, i), of = label(at, name), radial = ["shells", "layers", "fluids"].includes(name), [before, after] = radial ? ["inwards", "outwards"] : ["before the one above", "after the one below"];
+  const button = (act, words, text, onclick, more = {}) => el("button", { type: "button", "data-act": `${at}:${act}`, "aria-label": words, title: words, onclick, ...more }, text);
+  return el("div", { class: "buttons" },
+    i > 0 && button("in", `Move ${of} ${before}`, "↑", () => exchange(path, i, i - 1, "in")),
+    i < value.length - 1 && button("out", `Move ${of} ${after}`, "↓", () => exchange(path, i, i + 1, "out")),
+    path !== "fluids" && button("copy", `Add a copy of ${of}`, "Copy", () => add(item, path, name, i), { disabled: value.length >= mostOf(name) }),
+    path !== "fluids" && (value.length > 1 || name === "absorbers") && button("remove", `Remove ${of}`, "Remove", () => remove(path, i)));
+}
+
+// What there is now: a second press may come before the form shows what the first one did.
+const present = (path) => read(now(), path) ?? [];
+
+// The new item is open and has the focus. A shell takes its place among fluids, absorbers and control.
+function add(item, path, name, place) {
+  const value = present(path), after = Math.min(place, value.length - 1);
+  if (value.length >= mostOf(name)) return null;
+  const at = join(path, after + 1);
+  wanted = { act: "", item: at };
+  for (let i = value.length; i > after + 1; i -= 1) opened(join(path, i), join(path, i - 1));
+  KEPT_OPEN.set(at, true);
+  if (path === "shells") return change("", building.withShellAfter(now(), after));
+  return change(path, [...value.slice(0, after + 1), following(item, value[after], value), ...value.slice(after + 1)]);
+}
+
+function remove(path, i) {
+  const value = present(path);
+  wanted = { act: `${join(path, Math.min(i, value.length - 2))}:remove`, item: join(path, Math.max(0, Math.min(i, value.length - 2))) };
+  for (let k = i; k < value.length - 1; k += 1) opened(join(path, k), join(path, k + 1));
+  return path === "shells" ? change("", building.withoutShell(now(), i)) : change(path, value.filter((_, k) => k !== i));
+}
+
+function exchange(path, i, j, act) {
+  const value = present(path), [a, b] = [join(path, i), join(path, j)], was = KEPT_OPEN.get(a);
+  wanted = { act: `${b}:${act}`, item: b };
+  if (Math.max(i, j) >= value.length) return null;
+  opened(a, b);
+  KEPT_OPEN.set(b, was ?? false);
+  if (path === "shells") return change("", building.withWallsExchanged(now(), Math.min(i, j)));
   const copy = [...value];
   [copy[i], copy[j]] = [copy[j], copy[i]];
-  change(path, copy);
+  return change(path, copy);
 }
 
-// A further item starts as the last one; a further shell is a quarter larger, so that it is outside.
-function following(item, value, name) {
-  const last = structuredClone(value.at(-1) ?? fresh(itemHere(item), HINTS));
-  if (name === "shells" && typeof last.radius === "number") last.radius = Number((1.25 * last.radius).toPrecision(4));
-  if (typeof last.angle === "number") last.angle = (last.angle + 30) % 360;
-  if (["sensor", "actuator"].includes(last.role)) last.role = "passive";
-  return last;
+// Whether an item is open goes with it to its new place.
+function opened(to, from) { KEPT_OPEN.set(to, KEPT_OPEN.get(from) ?? false); }
+
+// A further item starts as the one before it; what there is once in a wall, or at a place, is not there twice.
+function following(item, before, value) {
+  const copy = structuredClone(before ?? fresh(itemHere(item), HINTS));
+  if ("inner_shell" in copy) copy.angle = building.freeAngle(value, copy.inner_shell);
+  else if (typeof copy.angle === "number") copy.angle = building.turned(copy.angle + 30);
+  if (["sensor", "actuator", "self-sensing"].includes(copy.role)) copy.role = "passive";
+  return copy;
 }
+
+// A first single absorber, on a line or in three dimensions at a point.
+export const newAbsorber = () => fresh(itemHere(kinds(resolve(world.schema).properties.absorbers).find(({ type }) => type === "array").items), HINTS);
 
 const HINTS = {
   z: 0,
@@ -204,7 +254,7 @@ function union(schema, choices, path, name, value, bare) {
 function start(index, choices, value) {
   if (index === "none") return [];
   const kind = choices[index];
-  if (kind.type === "array") return value && !Array.isArray(value) ? singles(value) : [fresh(itemHere(kind.items), HINTS)];
+  if (kind.type === "array") return value && !Array.isArray(value) ? building.singly(value, space ? { z: 0 } : {}) : [fresh(itemHere(kind.items), HINTS)];
   const kept = Array.isArray(value) ? (value[0] ?? {}) : value && typeof value === "object" ? value : {};
   const common = Object.fromEntries(Object.entries(kept).filter(([key]) => key !== "type"));
   const fits = ([key, one]) => kinds(kind.properties?.[key] ?? {}).some((part) => matches(part, one));
@@ -223,23 +273,24 @@ function sampled({ peak_pressure = HINTS.peak_pressure, decay_time = HINTS.decay
 // What a new item of a list is: in three dimensions an absorber at a point.
 const itemHere = (item) => (space && kinds(item).find((kind) => kind.required?.includes("z"))) || item;
 
-function singles(ring) {
-  if (!("count" in ring)) return [ring];
-  const { count, offset = 0, ...rest } = ring, shared = space ? { ...rest, z: 0 } : rest;
-  return Array.from({ length: Math.min(count, 60) }, (_, k) => ({ ...shared, angle: Number(((offset + (360 * k) / count) % 360).toPrecision(8)) }));
-}
-
 // A fluid or material: one of the library's by name, or constants of one's own.
 function library(path, name, value, choices, known, entryName, key) {
   const id = `lib-${path}`;
   const named = known.findIndex((item) => item[entryName] === value || (value && same(item[entryName], value)));
   const own = named < 0 ? el("option", { value: "", selected: true }, value?.[key] ? `${value[key]} (own)` : "own") : null;
-  const select = el("select", { id, "data-path": path, onchange: () => select.value !== "" && change(path, structuredClone(known[select.value][entryName])) },
+  const select = el("select", { id, "data-path": path, onchange: () => select.value !== "" && choose(path, known[select.value]) },
     own, ...known.map((item, i) => el("option", { value: i, selected: i === named, title: item.reference }, item.name)));
   const line = el("div", { class: "field" }, el("label", { for: id }, entryName === "fluid" ? capital(regionSide(Number(path.match(/\[(\d+)\]$/)[1]), shells)) : "Material"), select);
   const kind = choices.find((one) => matches(one, value)) ?? choices[0];
   const constants = value && typeof value === "object" ? group(`${path}.constants`, "Constants", false, "", table(kind, path, name, value, true)) : null;
   return el("div", { "data-group": path }, line, constants);
+}
+
+// A layer that becomes piezoelectric, or ceases to be, takes a role that its material can have.
+function choose(path, { fluid, material, kind }) {
+  const at = path.replace(/\.material$/, ""), layer = material && read(now(), at), electric = ["sensor", "actuator", "self-sensing"].includes(layer?.role);
+  if (!layer || (kind === "piezoelectric" ? layer.role !== "core" : !electric)) return change(path, structuredClone(fluid ?? material));
+  return change(at, { ...layer, material: structuredClone(material), role: kind === "piezoelectric" ? "passive" : "core" });
 }
 
 function same(a, b) {

@@ -1,12 +1,16 @@
 // The page as a whole: what the person describes, its runs, and who draws them.
 import { request } from "./api.js";
+import * as building from "./building.js";
 import * as curves from "./curves.js";
+import * as designs from "./designs.js";
 import { by, el, instead, toast } from "./dom.js";
 import * as energy from "./energy.js";
 import * as events from "./events.js";
 import * as files from "./files.js";
 import * as form from "./form.js";
+import * as handles from "./handles.js";
 import * as link from "./link.js";
+import * as loops from "./loops.js";
 import { Slot, sent, times } from "./live.js";
 import * as past from "./past.js";
 import { read, written } from "./paths.js";
@@ -14,6 +18,8 @@ import * as peaks from "./peaks.js";
 import * as record from "./record.js";
 import * as section from "./section.js";
 import * as space from "./space.js";
+import * as spectra from "./spectra.js";
+import * as stressed from "./stressed.js";
 import * as studies from "./studies.js";
 import * as tabs from "./tabs.js";
 import { show } from "./units.js";
@@ -23,6 +29,7 @@ import { capital, inWords, placeName, refusal, shellName, told } from "./words.j
 
 const page = { world: null, system: null, resolution: null, problems: [], runs: {}, quantity: "stress", which: "ends", unit: "transits", reachable: true, metrics: [], jobs: {}, station: null };
 
+const PANELS = [stressed, spectra, loops];
 const slots = {
   current: new Slot("current", { show: (result) => take("current", result), judged: () => peaks.drawJudgement(page.runs.current), problem: (problems) => refuse(problems), fail, progress: (job) => progress("current", job) }),
   // A refusal of these is the current one's too, told there; what they showed last stays beside what it showed last.
@@ -36,13 +43,15 @@ const isBare = (system) => !system.control && (!system.absorbers || (Array.isArr
 const bareOf = (system) => ({ ...system, absorbers: [], control: null });
 
 // A coarse resolution within the limits of what is solved at once, whatever was typed: those of full resolution are what a person is told.
-function preview() {
-  const { duration, time_step, modes, refinement } = page.resolution, most = page.world.limits.preview_steps;
-  const coarse = page.world.resolutions[inSpace() ? "preview_spatial" : "preview"];
+function previewOf(resolution) {
+  const { duration, time_step, modes, refinement } = resolution, most = page.world.limits.preview_steps, around = space.spatial(resolution);
+  const coarse = page.world.resolutions[around ? "preview_spatial" : "preview"];
   const step = Math.max(time_step, coarse.time_step, Math.ceil((1e3 * duration) / most) / 1e3);
   const plane = { duration, time_step: step, modes: Math.min(modes, coarse.modes), refinement: Math.max(1, Math.min(refinement, Math.floor((most * step) / duration))) };
-  return inSpace() ? { ...plane, ...space.ofSpace(page.resolution, plane) } : plane;
+  return around ? { ...plane, ...space.ofSpace(resolution, plane) } : plane;
 }
+
+const preview = () => previewOf(page.resolution);
 
 const inSpace = () => space.spatial(page.resolution);
 
@@ -81,7 +90,7 @@ async function change(path, value, { live = false } = {}) {
   past.keep(state(), path, live);
   if (path === "resolution.dimensions") page.resolution = space.inDimensions(page.resolution, value, page.world.resolutions);
   else if (ofResolution) page.resolution = { ...page.resolution, [path.slice(11)]: value };
-  else page.system = path === "shells" ? withShells(page.system, value) : written(page.system, path, value);
+  else page.system = written(page.system, path, value);
   if (live && !page.problems.length) {
     form.refresh(forForm());
     section.draw(page.system);
@@ -91,6 +100,25 @@ async function change(path, value, { live = false } = {}) {
   const whole = typeof value === "object" || value === undefined || path === "resolution.dimensions" || (!ofResolution && !read(page.system, path));
   return check({ since, path, whole, keepForm: !whole });
 }
+
+// ---- absorbers taken hold of on the section
+
+function addAbsorber() {
+  const { absorbers } = page.system, most = page.world.limits.absorbers, like = absorbers[numberOf(handles.choice())] ?? absorbers.at(-1) ?? form.newAbsorber();
+  if (absorbers.length >= most) return toast(`At most ${most} absorbers.`);
+  handles.expect(`absorbers[${absorbers.length}]`);
+  return change("absorbers", [...absorbers, { ...like, angle: building.freeAngle(absorbers, like.inner_shell ?? 0) }]);
+}
+
+function removeAbsorber(key) {
+  const { absorbers } = page.system, number = numberOf(key);
+  if (!key.startsWith("absorbers")) return null;
+  if (Array.isArray(absorbers)) handles.expect(`absorbers[${Math.min(number, absorbers.length - 2)}]`);
+  return change("absorbers", Array.isArray(absorbers) ? absorbers.filter((_, i) => i !== number) : []);
+}
+
+const numberOf = (key) => (key.startsWith("absorbers[") ? Number(key.slice(10, -1)) : -1);
+const placeSingly = () => change("absorbers", building.singly(page.system.absorbers));
 
 // Ask the library about system and resolution: adopted when it accepts both, else every problem beside its field, that of `path` first.
 async function check({ since, path = "", whole = false, keepForm }) {
@@ -110,14 +138,6 @@ async function check({ since, path = "", whole = false, keepForm }) {
   page.resolved = JSON.stringify(page.resolution);
   adopt(answer.system, { since, keepForm: keepForm && shape(answer.system) === page.shape });
   if (finer && page.runs.pinned) slots.pinned.want(page.runs.pinned.system, { resolution: preview(), full: page.resolution });
-}
-
-// Fluids follow the number of shells, a further gap as the last one; a single shell has no absorbers.
-function withShells(system, shells) {
-  const fluids = [...system.fluids];
-  while (fluids.length < shells.length + 1) fluids.splice(-1, 0, structuredClone(fluids.at(-2)));
-  while (fluids.length > shells.length + 1 && fluids.length > 2) fluids.splice(-2, 1);
-  return { ...system, shells, fluids, absorbers: shells.length < 2 ? [] : system.absorbers };
 }
 
 const shape = (system) => JSON.stringify(system, (_, value) => (typeof value === "number" ? 0 : value));
@@ -276,6 +296,7 @@ function drawTab(name) {
   clearTimeout(tabTimer); // energy and field take a moment: wait until a slider rests
   if (name === "peaks") peaks.draw(page.runs);
   if (name === "studies") studies.offer();
+  if (name === "designs") designs.draw();
   if (!page.runs.current) return;
   const { current } = page.runs, around = Boolean(current.stations);
   instead(by("wave"), around && "The wave is not shown in three dimensions yet: in Python, response.pressure and plotting.figure_cuts have it on cuts.");
@@ -284,6 +305,8 @@ function drawTab(name) {
   if (name === "energy" && !around) tabTimer = setTimeout(() => energy.draw(current, page.unit), 300);
   if (name === "wave" && !around) tabTimer = setTimeout(() => wave.load(page.runs), 300);
   if (name === "wall" && current.stations?.length > 1) tabTimer = setTimeout(() => wall.draw(current, page.unit), 300);
+  const panel = { stressed: () => stressed.draw(current), spectra: () => spectra.draw(current, space.stationShown(current, page.station)), control: () => loops.draw(current) }[name];
+  if (panel) tabTimer = setTimeout(panel, 300);
   if (around) wave.halt();
   if (name !== "wave") { wave.pause(); curves.cursor(null); } else if (!around) wave.draw();
 }
@@ -343,8 +366,11 @@ function say() {
 
 // ---- setting up
 
+// A start for a system of one's own: one steel shell in water.
+const NOTHING = "nothing", plain = () => ({ name: NOTHING, system: { ...page.world.presets.find(({ name }) => name === "steel-tube").system, name: "new system" } });
+
 function wire() {
-  by("preset").addEventListener("change", (event) => { const preset = page.world.presets[event.target.value]; if (preset) open({ system: preset.system }, preset.name); });
+  by("preset").addEventListener("change", (event) => { const name = event.target.value, preset = name === NOTHING ? plain() : page.world.presets[name]; if (preset) open({ system: preset.system }, preset.name); });
   by("quantity").addEventListener("change", (event) => { choose(event.target.value); drawRuns(); keepLink(); });
   by("station").addEventListener("change", (event) => { page.station = Number(event.target.value); drawRuns(); keepLink(); });
   by("shells").addEventListener("change", (event) => { page.which = event.target.value; drawRuns(); });
@@ -377,10 +403,12 @@ function wire() {
   addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "a link", "/api/link/open"));
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
+  designs.setUp(() => page, { previewOf, open, unit: () => page.unit });
   wave.setUp(curves.cursor);
   wall.setUp(curves.cursor);
+  for (const panel of PANELS) panel.setUp();
   curves.onTime((time) => { if (page.runs.current?.stations) wall.seek(time); else { wave.pause(); wave.seek(time); } });
-  events.onRestart(() => { wave.forget(); energy.forget(); wall.forget(); again(); });
+  events.onRestart(() => { wave.forget(); energy.forget(); wall.forget(); for (const panel of [...PANELS, designs]) panel.forget(); again(); });
   events.onConnection((reachable) => { page.reachable = reachable; if (page.world) say(); });
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.target.matches("input[type=text], textarea")) return;
@@ -397,8 +425,9 @@ async function begin() {
     return setTimeout(begin, 1000);
   }
   page.resolution = { ...page.world.resolutions.full };
-  form.setUp(page.world, change);
-  by("preset").replaceChildren(...page.world.presets.map((one, i) => el("option", { value: i, title: one.title }, one.name)), el("option", { value: "", hidden: true }));
+  form.setUp(page.world, change, () => page.system);
+  section.setUp({ change, add: addAbsorber, remove: removeAbsorber, singly: placeSingly });
+  by("preset").replaceChildren(el("option", { value: NOTHING, title: "One steel shell in water, to build on" }, "nothing: one shell"), ...page.world.presets.map((one, i) => el("option", { value: i, title: one.title }, one.name)), el("option", { value: "", hidden: true }));
   by("unit").replaceChildren(...Object.entries(curves.UNITS).map(([value, { name }]) => el("option", { value }, name)));
   events.listen();
   wire();

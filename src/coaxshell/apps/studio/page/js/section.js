@@ -1,24 +1,61 @@
 // The cross-section to scale, with absorbers, the source's direction and its front.
+import { turned } from "./building.js";
 import { el, svg, by } from "./dom.js";
+import * as handles from "./handles.js";
 import { show } from "./units.js";
 
 const SIZE = { width: 320, height: 190, radius: 72, x: 118, y: 95 };
 
-export function draw(system) {
+let parts = null, system = null, tell = {};
+
+// tell: change(path, value, { live }) => void, and what the buttons beneath do: add(), remove(key), singly().
+export function setUp(told) {
+  tell = told;
+  const button = (text, onclick) => el("button", { type: "button", onclick }, text);
+  parts = {
+    scene: svg("g"), layer: svg("g"), picture: svg("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "group" }), caption: el("figcaption"),
+    add: button("Add absorber", () => tell.add()), remove: button("Remove", () => tell.remove(handles.choice())), singly: button("Place one by one", () => tell.singly()),
+    hint: el("p", { class: "hint" }, "Drag, or ← → turn (with Shift by 10°), ↑ ↓ choose, Insert adds, Delete removes."),
+  };
+  parts.picture.append(parts.scene, parts.layer);
+  by("section").replaceChildren(parts.picture, parts.caption, el("div", { class: "buttons" }, parts.add, parts.singly, parts.remove), parts.hint);
+  handles.setUp(parts.picture, { ...tell, change: (path, value) => tell.change(path, value, { live: true }), angle: pointerAngle, chosen: offer });
+}
+
+export function draw(now) {
+  system = now;
   const shells = system.shells.filter((shell) => Number(shell.radius) > 0);
   if (!shells.length) return;
-  const outer = Math.max(...shells.map((shell) => shell.radius)), scale = SIZE.radius / outer;
-  const picture = svg("svg", { viewBox: `0 0 ${SIZE.width} ${SIZE.height}`, role: "img", "aria-label": words(system) });
-  const scene = svg("g", zoom(system.sea, outer));
-  picture.append(scene);
-  shells.slice().reverse().forEach((shell) => {
+  const outer = Math.max(...shells.map((shell) => shell.radius)), scale = SIZE.radius / outer, { transform = null } = zoom(system.sea, outer);
+  parts.picture.setAttribute("aria-label", words(system));
+  for (const layer of [parts.scene, parts.layer]) if (transform) layer.setAttribute("transform", transform); else layer.removeAttribute("transform");
+  parts.scene.replaceChildren(...shells.slice().reverse().map((shell) => {
     const wall = (shell.layers ?? []).reduce((sum, layer) => sum + Number(layer.thickness || 0), 0);
-    scene.append(svg("circle", { cx: SIZE.x, cy: SIZE.y, r: shell.radius * scale, fill: "var(--accent-soft)", "fill-opacity": 0.55, stroke: shell.rigid ? "var(--text)" : "var(--current)", "stroke-width": Math.max(wall * scale, shell.rigid ? 2.5 : 1.4) }));
-  });
-  scene.append(...planes(system.sea, scale));
-  const sources = Array.isArray(system.source) ? system.source : [system.source];
-  scene.append(...absorbers(system, shells, scale), ...sources.flatMap((source) => shock(source, outer, scale)));
-  by("section").replaceChildren(picture, el("figcaption", {}, caption(system, outer)));
+    return svg("circle", { cx: SIZE.x, cy: SIZE.y, r: shell.radius * scale, fill: "var(--accent-soft)", "fill-opacity": 0.55, stroke: shell.rigid ? "var(--text)" : "var(--current)", "stroke-width": Math.max(wall * scale, shell.rigid ? 2.5 : 1.4) });
+  }), ...planes(system.sea, scale));
+  const single = !Array.isArray(system.source);
+  handles.place(parts.layer, [...absorbers(system, shells, scale), ...[system.source].flat().map((source, i) => {
+    const path = single ? "source" : `source[${i}]`, value = Number(source.angle) || 0;
+    return { key: path, path: `${path}.angle`, value, label: single ? "Source" : `Source ${i + 1}`, parts: shock(source, outer, scale) };
+  })]);
+  parts.caption.textContent = caption(system, outer);
+}
+
+// What the buttons can do with what is chosen.
+function offer() {
+  const several = Array.isArray(system.absorbers);
+  parts.add.hidden = system.shells.length < 2 || !several;
+  parts.singly.hidden = several;
+  parts.remove.hidden = several && !system.absorbers.length;
+  parts.remove.disabled = !handles.choice().startsWith("absorbers");
+  parts.remove.textContent = several ? "Remove the chosen one" : "Remove the ring";
+  parts.remove.setAttribute("aria-label", several && !parts.remove.disabled ? `Remove absorber ${Number(handles.choice().match(/\d+/)) + 1}` : parts.remove.textContent);
+}
+
+// Where a pointer is about the axis of the shells, in degrees.
+function pointerAngle(event) {
+  const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(parts.layer.getScreenCTM().inverse());
+  return (Math.atan2(SIZE.y - at.y, at.x - SIZE.x) * 180) / Math.PI;
 }
 
 function point(radius, degrees) {
@@ -47,27 +84,39 @@ function planes(sea, scale) {
 export function placed(system) {
   if (!system.absorbers) return [];
   if (Array.isArray(system.absorbers)) return system.absorbers;
-  const { count = 0, offset = 0, inner_shell = 0 } = system.absorbers;
-  return Array.from({ length: Math.min(count, 400) }, (_, k) => ({ angle: offset + (360 * k) / count, inner_shell }));
+  const { count = 0, offset = 0, ...shared } = system.absorbers;
+  return Array.from({ length: Math.min(count, 400) }, (_, k) => ({ ...shared, angle: offset + (360 * k) / count }));
 }
 
-function absorbers(system, shells, scale) {
-  return placed(system).flatMap(({ angle = 0, inner_shell = 0 }) => {
-    if (!shells[inner_shell + 1]) return [];
-    const ends = [shells[inner_shell].radius * scale, shells[inner_shell + 1].radius * scale];
-    const [x1, y1] = point(ends[0], angle), [x2, y2] = point(ends[1], angle), [x, y] = point((ends[0] + ends[1]) / 2, angle);
-    return [svg("line", { x1, y1, x2, y2, stroke: "var(--muted)", "stroke-width": 0.9 }), svg("circle", { cx: x, cy: y, r: 2.1, fill: "var(--pinned)" })];
-  });
+// A ring turns as one; single absorbers each have a hold of their own.
+function absorbers(now, shells, scale) {
+  const drawn = placed(now).map((one) => absorber(one, shells, scale));
+  if (Array.isArray(now.absorbers)) {
+    return drawn.flatMap((nodes, i) => {
+      const { angle = 0, z } = now.absorbers[i], value = Number(turned(Number(angle) || 0));
+      return nodes.length ? [{ key: `absorbers[${i}]`, path: `absorbers[${i}].angle`, value, label: `Absorber ${i + 1} of ${drawn.length}${z === undefined ? "" : `, z = ${show(Number(z), "m")}`}`, parts: nodes }] : [];
+    });
+  }
+  const nodes = drawn.flat();
+  return nodes.length ? [{ key: "absorbers", path: "absorbers.offset", value: turned(Number(now.absorbers.offset) || 0), label: `Ring of ${drawn.length} absorbers`, parts: nodes }] : [];
+}
+
+function absorber({ angle = 0, inner_shell = 0, links = "both", grounded = false }, shells, scale) {
+  if (!shells[inner_shell + 1]) return [];
+  const [low, high] = [shells[inner_shell].radius * scale, shells[inner_shell + 1].radius * scale], middle = (low + high) / 2;
+  const [x1, y1] = point(links === "outer" && !grounded ? middle : low, angle), [x2, y2] = point(links === "inner" && !grounded ? middle : high, angle), [x, y] = point(middle, angle);
+  return [svg("circle", { class: "hold", cx: x, cy: y, r: 7 }), svg("line", { x1, y1, x2, y2, stroke: "var(--muted)", "stroke-width": 0.9 }), svg("circle", { class: "mass", cx: x, cy: y, r: 2.1 })];
 }
 
 // The front where it touches the outermost shell, curved as it is, and an arrow the way it goes.
 function shock(source, outer, scale) {
   const angle = Number(source.angle) || 0;
   const distance = source.distance ?? (source.stand_off ? source.stand_off + outer : null);
-  const parts = [0, 9, 18].map((behind, i) => front(angle, distance, outer, scale, behind, 1 - 0.35 * i));
+  const nodes = [0, 9, 18].map((behind, i) => front(angle, distance, outer, scale, behind, 1 - 0.35 * i));
   const [x1, y1] = point(SIZE.radius + 62, angle), [x2, y2] = point(SIZE.radius + 26, angle);
-  parts.push(svg("path", { d: `M${x1} ${y1}L${x2} ${y2}`, stroke: "var(--pinned)", "stroke-width": 1.8 }), head(x2, y2, angle));
-  return parts;
+  const [x, y] = point(SIZE.radius + 44, angle);
+  nodes.push(svg("circle", { class: "hold", cx: x, cy: y, r: 18 }), svg("path", { d: `M${x1} ${y1}L${x2} ${y2}`, stroke: "var(--pinned)", "stroke-width": 1.8 }), head(x2, y2, angle));
+  return nodes;
 }
 
 function front(angle, distance, outer, scale, behind, opacity) {
@@ -83,10 +132,10 @@ function head(x, y, angle) {
   return svg("path", { d: "M0 0L8 -3.6V3.6Z", fill: "var(--pinned)", transform: `translate(${x} ${y}) rotate(${-angle})` });
 }
 
-function caption(system, outer) {
-  const source = Array.isArray(system.source) ? system.source[0] : system.source;
+function caption(now, outer) {
+  const source = [now.source].flat()[0];
   const distance = source.distance ?? (source.stand_off ? source.stand_off + outer : null);
-  return `outermost radius ${show(outer, "m")}, source ${distance ? `at ${show(distance, "m")}` : "far away"} (${show(Number(source.angle) || 0, "deg")})${system.sea ? `, surface ${show(Number(system.sea.depth), "m")} above` : ""}`;
+  return `outermost radius ${show(outer, "m")}, source ${distance ? `at ${show(distance, "m")}` : "far away"} (${show(Number(source.angle) || 0, "deg")})${now.sea ? `, surface ${show(Number(now.sea.depth), "m")} above` : ""}`;
 }
 
 function words(system) {

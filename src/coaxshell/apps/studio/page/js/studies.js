@@ -1,6 +1,6 @@
 // Studies from the page: what kind, its form, its study file, jobs watched and cancelled, results opened.
 import { client, request } from "./api.js";
-import { by, el } from "./dom.js";
+import { by, el, saveText } from "./dom.js";
 import { ended, onRestart, watch } from "./events.js";
 import * as optimise from "./optimise.js";
 import { fields, spelt } from "./study_fields.js";
@@ -22,7 +22,7 @@ export function setUp(page, { preview, opened }) {
     ...forms,
     el("details", { id: "study-file", class: "study-file", ontoggle: keepFile }, el("summary", {}, "Study file, for the command line"),
       el("textarea", { id: "study-text", readonly: true, rows: 16, spellcheck: "false", "aria-label": "Study file" }),
-      el("div", { class: "buttons" }, el("button", { type: "button", onclick: copy }, "Copy"), el("code", { id: "study-command" })))),
+      el("div", { class: "buttons" }, el("button", { type: "button", onclick: copy }, "Copy"), el("button", { type: "button", id: "study-save", onclick: () => saveText(by("study-text").value, "study.toml") }, "Save"), el("code", { id: "study-command" })))),
     el("div", {}, el("p", { class: "hidden", id: "study-said", role: "status" }), el("div", { id: "study-jobs" }), el("div", { id: "study-result" })));
   for (const form of forms) {
     KINDS[form.id].setUp(form, page);

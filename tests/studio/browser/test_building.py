@@ -1,0 +1,136 @@
+"""A system is built from nothing on the page: shells with their fluids, layers, sources, absorbers taken hold of on the section."""
+
+from __future__ import annotations
+
+import pytest
+from asking import SMALL
+from page_reading import until, violations
+
+import coaxshell as cx
+from coaxshell.apps.studio.links import fragment
+
+SYSTEM = "window.coaxshell.state.system"
+ABSORBERS = f"{SYSTEM}.absorbers.map(({{angle}}) => angle)"
+
+
+def linked(server, system, resolution=SMALL):
+    held = {"v": 1, "system": system.model_dump(mode="json"), "resolution": resolution}
+    return f"{server.address}#{fragment(held)}"
+
+
+@pytest.fixture
+def opened(open_page, server):
+    def start(system, **options):
+        page = open_page(linked(server, system), wait=False, drawing=False, **options)
+        until(page, "window.coaxshell?.state.runs.current")
+        return page
+
+    return start
+
+
+def held(page, expression):
+    return page.evaluate(f"() => {expression}")
+
+
+MADE = """async () => {
+  const {withShellAfter, withoutShell, withWallsExchanged, freeAngle, singly} = await import('/page/js/building.js');
+  const system = {
+    shells: [1, 2, 4].map(radius => ({radius, layers: [{thickness: radius / 100, role: radius === 4 ? 'sensor' : 'core'}]})),
+    fluids: ['a', 'b', 'c', 'd'],
+    absorbers: [{inner_shell: 0}, {inner_shell: 1}], control: {shells: [1, 2]},
+  };
+  const told = ({shells, fluids, absorbers, control}) =>
+    [shells.map(({radius}) => radius), fluids.join(''), absorbers.map(({inner_shell}) => inner_shell), control?.shells ?? null];
+  return {
+    after: [0, 2].map(i => told(withShellAfter(system, i))),
+    without: [0, 1, 2].map(i => told(withoutShell(system, i))),
+    walls: withWallsExchanged(system, 1).shells.map(({radius, layers}) => [radius, layers[0].thickness]),
+    alone: withShellAfter({...system, shells: system.shells.slice(0, 1), fluids: ['vacuum', 'water']}, 0).fluids,
+    free: [[], [{angle: 90}, {angle: 270}, {angle: 10, inner_shell: 1}], [{angle: 0}, {angle: 90}]].map(some => freeAngle(some, 0)),
+    ring: singly({count: 4, offset: 45, mass: 2, inner_shell: 1}),
+  };
+}"""
+
+
+def test_what_hangs_on_a_shell_s_place_goes_with_it(open_page):
+    made = open_page(wait=False, drawing=False).evaluate(MADE)
+    assert made["after"] == [[[1, 1.5, 2, 4], "abbcd", [0, 2], [2, 3]], [[1, 2, 4, 5], "abccd", [0, 1], [1, 2]]]
+    assert made["without"] == [[[2, 4], "acd", [0], [0, 1]], [[1, 4], "abd", [], [1]], [[1, 2], "abd", [0], None]]
+    assert made["walls"] == [[1, 0.01], [2, 0.04], [4, 0.02]], "the radii stay"
+    assert made["alone"] == ["vacuum", "water", "water"], "the first gap is full of what is outside"
+    assert made["free"][0] == 0
+    assert made["free"][1] in (0, 180)
+    assert made["free"][2] == -135
+    assert made["ring"] == [{"mass": 2, "inner_shell": 1, "angle": angle} for angle in (45, 135, -135, -45)]
+
+
+def test_a_system_is_built_from_nothing_by_keyboard(opened):
+    page = opened(cx.presets.load("bare"))
+    page.locator("#preset").select_option(label="nothing: one shell")
+    until(page, f"{SYSTEM}.name === 'new system' && {SYSTEM}.shells.length === 1")
+    page.locator('details[data-group="shells"] > summary').press("Enter")
+    page.get_by_role("button", name="Add shell").press("Enter")
+    until(page, "document.activeElement.textContent.startsWith('Outer shell')")  # what is new has the focus
+    assert held(page, f"{SYSTEM}.fluids.map(({{name}}) => name)") == ["air", "freshwater", "freshwater"]
+    page.locator('[data-group="shells[1].layers"] > .buttons button').press("Enter")
+    until(page, "document.activeElement.textContent.startsWith('Layer 2')")
+    page.locator('select[data-path="shells[1].layers[1].material"]').select_option(label="pzt-4")
+    until(page, f"{SYSTEM}.shells[1].layers[1].role === 'passive'")
+    page.locator('input[data-path="shells[1].layers[1].thickness"][type=text]').fill("1 mm")
+    page.keyboard.press("Enter")
+    until(page, f"{SYSTEM}.shells[1].layers[1].thickness === 0.001")
+    page.get_by_role("button", name="Move Layer 2 inwards").press("Enter")
+    until(page, f"{SYSTEM}.shells[1].layers[0].thickness === 0.001")
+    page.locator('[data-act="shells[1]:in"]').press("Enter")
+    until(page, "document.activeElement.closest('[data-group]').dataset.group === 'shells[0]'")
+    assert held(page, f"{SYSTEM}.shells.map(({{radius, layers}}) => [radius, layers.length])") == [[0.5, 2], [0.625, 1]]
+    for count in (1, 2):
+        page.locator("#section").get_by_role("button", name="Add absorber").press("Enter")
+        until(page, f"{SYSTEM}.absorbers.length === {count}")
+    assert held(page, ABSORBERS) == [0, 180]
+    page.locator('details[data-group="source"] > summary').press("Enter")
+    page.locator('select[id="kind-source"]').select_option(label="Several, one by one")
+    until(page, f"Array.isArray({SYSTEM}.source)")
+    page.get_by_role("button", name="Add source").press("Enter")
+    until(page, f"{SYSTEM}.source.length === 2")
+    until(page, "window.coaxshell.state.runs.current.shells.length === 2 && !window.coaxshell.state.problems.length")
+    cx.System.model_validate(held(page, SYSTEM))
+    for _ in range(10):
+        page.locator("#undo").click()
+    until(page, f"{SYSTEM}.shells.length === 1 && {SYSTEM}.absorbers.length === 0")
+    page.locator("h1").click()
+    page.keyboard.press("Control+Shift+z")
+    until(page, f"{SYSTEM}.shells.length === 2")
+
+
+def test_absorbers_are_dragged_and_moved_by_keys(opened):
+    ring = cx.presets.load("absorbers").with_overrides({"absorbers.count": 4})
+    page = opened(ring)
+    page.get_by_role("slider", name="Ring of 4 absorbers").press("Shift+ArrowRight")
+    until(page, f"{SYSTEM}.absorbers.offset === 10")
+    page.get_by_role("button", name="Place one by one").click()
+    until(page, f"{SYSTEM}.absorbers.length === 4")
+    assert held(page, ABSORBERS) == [10, 100, -170, -80]
+    box = page.locator('[data-handle="absorbers[1]"] .mass').bounding_box()
+    middle = page.locator("#section svg circle").first.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    centre = (middle["x"] + middle["width"] / 2, middle["y"] + middle["height"] / 2)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(centre[0] + 60, centre[1] - 60, steps=4)
+    until(page, f"Math.abs({SYSTEM}.absorbers[1].angle - 45) <= 1")
+    page.mouse.up()
+    before = held(page, f"{SYSTEM}.absorbers[1].angle")
+    page.keyboard.press("ArrowLeft")  # the one that was dragged has the focus
+    until(page, f"{SYSTEM}.absorbers[1].angle === {before - 1}")
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("Delete")
+    until(page, f"{SYSTEM}.absorbers.length === 3 && document.querySelectorAll('[role=slider]').length === 4")
+    assert held(page, "document.activeElement.dataset.handle") == "absorbers[0]"
+    page.keyboard.press("Insert")
+    until(page, "document.activeElement.dataset.handle === 'absorbers[3]'")
+    page.keyboard.press("ArrowDown")  # the source comes after them
+    page.keyboard.press("ArrowLeft")
+    until(page, f"{SYSTEM}.source.angle === -1")
+    until(page, "!document.documentElement.classList.contains('stale')")
+    assert violations(page, "#section") == []
