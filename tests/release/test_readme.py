@@ -38,7 +38,7 @@ SMALLER = {
     "verify --against": ["--modes", "8", "--time-step", "1e-2", "--quiet"],
 }
 # These wait for a browser or take minutes: that they take the options shown is all that is asked here.
-ONLY_PARSED = {"studio", "reproduce", "sweep", "optimise", "sensitivity"}
+ONLY_PARSED = {"studio", "reproduce", "sweep", "optimise", "sensitivity", "fit"}
 
 
 def blocks(language: str) -> list[str]:

@@ -11,6 +11,7 @@ from coaxshell.plotting.field import plot_field
 from coaxshell.plotting.field_scales import PRESSURE_UNITS, check_units
 from coaxshell.plotting.film import check_film, save_film
 from coaxshell.plotting.film_files import FILM_SUFFIXES
+from coaxshell.plotting.fit import figure_fit, plot_fitted_record
 from coaxshell.plotting.frames import FieldView
 from coaxshell.plotting.frequency_response import (
     figure_directivity,
@@ -56,6 +57,7 @@ __all__ = [
     "figure_cuts",
     "figure_directivity",
     "figure_energy",
+    "figure_fit",
     "figure_frequency_response",
     "figure_loads",
     "figure_margins",
@@ -80,6 +82,7 @@ __all__ = [
     "plot_distribution",
     "plot_energy",
     "plot_field",
+    "plot_fitted_record",
     "plot_four_coordinates",
     "plot_frequency_response",
     "plot_front",

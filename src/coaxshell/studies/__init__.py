@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING, Any
 from coaxshell.numerics.renamed import renamed
 from coaxshell.studies.execution import Execution
 from coaxshell.studies.executors import dask_executor
+from coaxshell.studies.fitting.fitted import FIT_PARTS, Fit
+from coaxshell.studies.fitting.fitting import fit, fit_plan
+from coaxshell.studies.fitting.measurement import Measurement
+from coaxshell.studies.fitting.study import FitStudy
 from coaxshell.studies.gradients.gradient import gradient
 from coaxshell.studies.optimisation.optimising import optimise, optimise_problem
 from coaxshell.studies.optimisation.optimum import OPTIMUM_PARTS, Optimum
@@ -21,11 +25,15 @@ from coaxshell.studies.uncertainty.sensitivity import robustness, sensitivity, u
 from coaxshell.studies.uncertainty.study import SensitivityStudy
 
 __all__ = [
+    "FIT_PARTS",
     "OPTIMUM_PARTS",
     "Choice",
     "Execution",
+    "Fit",
+    "FitStudy",
     "Integer",
     "LogNormal",
+    "Measurement",
     "Normal",
     "Objective",
     "OptimisationStudy",
@@ -35,6 +43,8 @@ __all__ = [
     "SweepStudy",
     "Uniform",
     "dask_executor",
+    "fit",
+    "fit_plan",
     "gradient",
     "optimise",
     "optimise_problem",

@@ -15,7 +15,7 @@ from coaxshell.apps.cli.output import echo
 COMMANDS = (
     *("run", "presets", "init", "info", "record", "plot", "spectrum", "modes", "participation", "response", "control"),
     *("figure", "reproduce", "snapshots"),
-    *("report", "animate", "export", "sweep", "optimise", "sensitivity", "verify", "response-function", "studio"),
+    *("report", "animate", "export", "sweep", "optimise", "sensitivity", "fit", "verify", "response-function", "studio"),
 )
 """In the order of the help; each is the function of the same name in the module of the same name."""
 

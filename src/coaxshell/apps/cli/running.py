@@ -305,11 +305,10 @@ def tell_all_warnings(responses: Sequence[Response]) -> None:
 
 
 @dataclass(frozen=True)
-class StudyRequest:
-    """The options of a command that works on a study file, as typed."""
+class FitRequest:
+    """The options of a command that works on a study file without code of the user's, as typed."""
 
     resume: options.ResumeOption = False
-    allow_code: options.AllowCodeOption = False
     workers: options.WorkersOption = None
     dask: options.DaskOption = None
     as_json: options.JsonOption = False
@@ -343,6 +342,13 @@ class StudyRequest:
         else:
             echo(text())
         echo("wrote " + ", ".join(str(path) for path in written if path is not None), aside=self.as_json)
+
+
+@dataclass(frozen=True)
+class StudyRequest(FitRequest):
+    """The options of a command that works on a study file, as typed."""
+
+    allow_code: options.AllowCodeOption = False
 
 
 def tell_study_time(systems: Sequence[System | InputError], resolution: Settings, count: int, execution: Execution, *, quiet: bool) -> None:

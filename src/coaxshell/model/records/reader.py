@@ -95,7 +95,7 @@ def _entries(table: Table, given: dict[str, Any], name: str) -> dict[str, Any]:
         raise InputError("scale", f"is missing: {name} holds shares of a full scale, not pressures", "give the pressure at full scale (Pa)")
     chosen = choose(table, given, name)
     rest = {key: value for key, value in given.items() if key not in READING}
-    return {"reference": f"{Path(name).name}: {chosen.account}", **rest, "time": chosen.time, "pressure": chosen.pressure}
+    return {"reference": f"{Path(name).name}: {chosen.account}", **rest, "time": chosen.time, "pressure": chosen.values}
 
 
 def _verify(content: bytes, wanted: Any, name: str) -> None:

@@ -1,0 +1,1 @@
+"""Properties of a system identified from measured histories."""
