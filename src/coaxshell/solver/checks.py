@@ -28,7 +28,7 @@ from coaxshell.solver import soft_layers, wetted_surfaces
 from coaxshell.solver.cavitation import AMBIENT
 from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.electrodes import largest_demand
-from coaxshell.solver.interface.absorbers import InterfacePoints
+from coaxshell.solver.interface.absorbers import InterfacePoints, PointsAlone
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.rounds import rounds
 from coaxshell.solver.scaling import Problem
@@ -122,8 +122,12 @@ def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
         return []  # solved exactly, or none
     if solved.laws is not None:
         return _of_laws(solved.laws.angle, step, refinement)
-    points = InterfacePoints(solved.problem, links, solved.modes)
-    present = _masses(solved.problem, step, solved.modes) if solved.problem.two_faced else solved.passive.kernels.present
+    points: InterfacePoints | PointsAlone
+    if solved.problem.two_faced:
+        points, present = InterfacePoints(solved.problem, links, solved.modes), _masses(solved.problem, step, solved.modes)
+    else:
+        seen = solved.passive if solved.actuation is not None or solved.seen is None else solved.seen
+        points, present = seen.points(links), seen.kernels.present
     local = 2.0 / step * np.diag(points.immediate(present)).reshape(2, links.count).max(axis=0)
     force = np.abs(solved.force).max(axis=(1, 2))
     peak = np.zeros(links.count)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
@@ -67,6 +67,39 @@ def velocity_weights(problem: Problem, grid: LaplaceGrid, compliance: ComplexArr
             else:
                 weights[i, j] = grid.invert(spectrum * hat)
     return weights
+
+
+def combined_velocity_weights(
+    problem: Problem, grid: LaplaceGrid, compliance: ComplexArray, pair: tuple[int, int], shares: FloatArray
+) -> FloatArray:
+    """Return step weights of :func:`velocity_weights` of a pair of shells, combined over the orders before they are inverted.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : LaplaceGrid
+    compliance : ndarray, shape (M + 1, nodes)
+        C_ij of the pair.
+    pair : tuple of int
+        i and j.
+    shares : ndarray, shape (rows, M + 1)
+
+    Returns
+    -------
+    ndarray, shape (rows, T)
+        sum_m shares[:, m] weights[i, j, m].
+    """
+    i, j = pair
+    spectrum = real_product(shares, compliance)
+    spectrum *= grid.nodes
+    leads = i == j and problem.shells[i].moves
+    if leads:
+        modes = Modes.up_to(compliance.shape[0] - 1)
+        decays, kind = np.unique(initial_decay(problem, i, modes)[:, 0], return_inverse=True)
+        of_kind = shares @ np.eye(decays.size)[kind.ravel()] / problem.shells[i].leading(modes).mass
+        spectrum -= of_kind @ (1.0 / (grid.nodes + decays[:, None]))
+    weights = grid.invert(spectrum * (grid.hat * grid.time_step))
+    return weights + of_kind @ exponential_weights(decays[:, None], grid) if leads else weights
 
 
 def voltage_law(problem: Problem, index: int, s: ComplexArray, ratio: ComplexArray) -> ComplexArray:

@@ -57,6 +57,8 @@ class Interface:
         Modal pressures that the control law asked for, at the instants of the run, where actuators saturated.
     linear : AbsorberSet or None
         Springs and dampers that stand for laws in the estimates; None where cubic springs alone are nonlinear.
+    seen : StructureSpectra or None
+        What marched.
     """
 
     links: AbsorberSet
@@ -67,6 +69,7 @@ class Interface:
     saturating: StructureSpectra | None = None
     asked: FloatArray | None = None
     linear: AbsorberSet | None = None
+    seen: StructureSpectra | None = None
 
     def linear_links(self) -> AbsorberSet:
         """Return linear absorbers that do about the same in this run."""

@@ -54,6 +54,8 @@ class SolvedSpectra:
         Transforms of the voltages of actuators, V, where they are given to the structure without feedback.
     segments : ndarray, shape (shells, N, T), or None
         Voltages of the segments of electrodes, where these are cut.
+    seen : StructureSpectra or None
+        What marched, where anything did: the structure, or what its absorbers see of it (:mod:`coaxshell.solver.interface.seen`).
     """
 
     structure: StructureSpectra
@@ -69,6 +71,7 @@ class SolvedSpectra:
     laws: LawHistories | None = None
     voltage: ComplexArray | None = None
     segments: FloatArray | None = None
+    seen: StructureSpectra | None = None
 
     @property
     def problem(self) -> Problem:

@@ -24,6 +24,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import KernelTable, summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
+from coaxshell.solver.interface.seen import SeenStructure
 from coaxshell.solver.kernels import voltage_law, voltage_weights
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.orders_left_out import Interface, forces_against, relative
@@ -170,6 +171,36 @@ class CoarserStructure(StructureSpectra):
         return self._fine.voltage_without_actuators[..., self._kept]
 
 
+class CoarserSeen(StructureSpectra):
+    """What absorbers see of a structure (:mod:`coaxshell.solver.interface.seen`), at every few steps.
+
+    Parameters
+    ----------
+    fine : SeenStructure
+    every : int
+        Steps of the fine one in one of this.
+    """
+
+    def __init__(self, fine: SeenStructure, every: int) -> None:
+        grid = LaplaceGrid(fine.grid.time_step * every, fine.grid.steps // every)
+        super().__init__(fine.problem, grid, fine.modes)
+        self._fine, self._every = fine, every
+
+    @cached_property
+    def kernels(self) -> KernelTable:
+        """Step weights of the velocities."""
+        return KernelTable(summed_weights(self._fine.kernels.kernels, self._every, self.grid.time.size))
+
+    def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
+        """Return the points as the fine structure has them."""
+        return self._fine.points(absorbers)
+
+    def motion_at(self, points: InterfacePoints | PointsAlone) -> tuple[FloatArray, FloatArray]:
+        """Return the motion of the points at the kept instants."""
+        displacement, velocity = (x[:, :: self._every][:, : self.grid.time.size] for x in self._fine.motion_at(points))
+        return displacement, velocity
+
+
 def march_error(structure: StructureSpectra, interface: Interface, whole: FloatArray) -> FloatArray:
     """Return the printed error of displacement and stress by the march's steps, shape (shells, 2), relative.
 
@@ -230,7 +261,11 @@ def membrane_error(structure: StructureSpectra, interface: Interface, whole: Flo
 def _difference(structure: StructureSpectra, interface: Interface, whole: FloatArray, every: int) -> FloatArray:
     """Return what changes when the interface is marched at steps *every* times longer, infinity if that fails."""
     grid, links, saturating = structure.grid, interface.links, interface.saturating
-    coarser = CoarserStructure(saturating or structure, every, saturating is not None, links)
+    coarser: StructureSpectra
+    if saturating is None and isinstance(interface.seen, SeenStructure):
+        coarser = CoarserSeen(interface.seen, every)
+    else:
+        coarser = CoarserStructure(saturating or structure, every, saturating is not None, links)
     unknown = np.full(whole.shape, np.inf)
     try:
         with np.errstate(all="ignore"):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Hashable
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -36,6 +37,8 @@ class _UnitAnswers:
     compliance, ratio : ndarray or None
         C_ij and V/W.
     kernels, kernels_transposed, kernels_with_voltage : KernelTable or None
+    classes : dict
+        Kernels added up by classes of orders, of lattices met so far (:mod:`coaxshell.solver.interface.seen`).
     sensor_rates : ndarray or None
         Step weights of the rates of the controlled shells' sensors.
     open_loop : _UnitAnswers or None
@@ -47,6 +50,7 @@ class _UnitAnswers:
     kernels: KernelTable | None = None
     kernels_transposed: KernelTable | None = None
     kernels_with_voltage: KernelTable | None = None
+    classes: dict[Hashable, KernelTable] = field(default_factory=dict)
     sensor_rates: FloatArray | None = None
     open_loop: _UnitAnswers | None = None
 
@@ -245,6 +249,10 @@ class StructureSpectra:
     def points(self, absorbers: AbsorberSet) -> InterfacePoints | PointsAlone:
         """Return the points at which absorbers hold the shells, in the terms in which ``kernels`` and motion are given."""
         return InterfacePoints(self.problem, absorbers, self.modes)
+
+    def motion_at(self, points: InterfacePoints | PointsAlone) -> tuple[FloatArray, FloatArray]:
+        """Return displacements and velocities of the points under the sources alone, (points, T) each."""
+        return points.evaluate(self.linear_displacement), points.evaluate(self.linear_velocity)
 
     def step_weights(self, sensors: list[int]) -> tuple[FloatArray, FloatArray]:
         """Return the step weights of modal pressures in the velocities and in the rates of the sensors' voltages of some shells.

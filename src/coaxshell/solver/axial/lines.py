@@ -29,12 +29,11 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.series import AxialSeries
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, absorber_set
+from coaxshell.solver.interface.lattice import folding, lattice_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 
 Numbers = TypeVar("Numbers", FloatArray, ComplexArray)
-_SAME = 1e-7
-"""Of a lattice's spacing, within which an angle lies on it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,13 +89,8 @@ class LineLayout:
 
     @cached_property
     def _folding(self) -> FloatArray:
-        """Share of each order in each class, beta_l/beta_m for m = +-l (mod N), shape (classes, M + 1)."""
-        orders, n = np.arange(self.sampling.max_order + 1), self.lattice
-        of_order = np.minimum(orders % n, -orders % n)
-        beta = np.where(orders == 0, 2.0, 1.0)
-        shares = np.zeros((self.classes.count, orders.size))
-        shares[of_order, orders] = beta[of_order] / beta
-        return shares
+        """Share of each order in each class, shape (classes, M + 1)."""
+        return folding(self.lattice, self.sampling.max_order)
 
     def folded(self, values: Numbers) -> Numbers:
         """Return compliances or kernels of the orders of a wavenumber, (surfaces, surfaces, orders, n), added up by classes."""
@@ -144,7 +138,7 @@ def line_layout(problem: Problem, sampling: AxialSampling) -> LineLayout:
     pairs = zip(problem.emitters, problem.sources, strict=True)
     planes = {axial_position(one) / problem.scales.length for one, wave in pairs if isinstance(wave, SphericalFrontGeometry)}
     origin = planes.pop() if len(planes) == 1 else 0.0
-    lattice = _lattice(absorbers.every_angle, sampling.max_order) if _alike_on_surfaces(absorbers) else 0
+    lattice = lattice_of(absorbers.every_angle, sampling.max_order) if _alike_on_surfaces(absorbers) else 0
     return LineLayout(problem, sampling, absorbers, lattice, origin, 2 if planes else 1)
 
 
@@ -184,13 +178,3 @@ def _row(problem: Problem, settings: Settings) -> str:
     )
     each = "each with what the line has on that length"
     return f"use those with a z alone: a row of them, {apart}, {each}, is a line (z=[...] of absorber_ring); or those without alone"
-
-
-def _lattice(angles: FloatArray, max_order: int) -> int:
-    """Return the fewest places at equal spacing that all angles (degrees) lie on, 0 if there are no fewer classes of them than orders."""
-    turns = (angles - angles[0]) / 360.0
-    for count in range(1, 2 * max_order):
-        place = turns * count
-        if np.all(np.abs(place - np.rint(place)) <= _SAME):
-            return count
-    return 0

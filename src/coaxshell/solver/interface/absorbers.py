@@ -23,7 +23,7 @@ import numpy.typing as npt
 from coaxshell.acoustics.basis import Modes
 from coaxshell.model.absorbers import Absorber
 from coaxshell.model.shells import Shell
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
 from coaxshell.solver.links.described import LinkElements, LinkScales, link_elements, side_of
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
@@ -297,10 +297,10 @@ class InterfacePoints:
         """Return the value at every point of modal amplitudes (surfaces, parities, M + 1[, T]): shape (points[, T])."""
         values = np.empty((self.count, *modal.shape[3:]), modal.dtype)
         for (i, _), rows, shape in zip(self._groups, self._rows, self._evaluate, strict=True):
-            total = shape[0] @ modal[i, 0]
+            total = real_product(shape[0], modal[i, 0])
             total += 0.0  # no zero has a sign, as of any sum
             if min(self.parities, modal.shape[1]) == 2:
-                total += shape[1] @ modal[i, 1]
+                total += real_product(shape[1], modal[i, 1])
             values[rows] = total
         return values
 
@@ -312,7 +312,7 @@ class InterfacePoints:
             if points.size:
                 for h in range(self.parities):
                     chosen = shape[h] if orders is None else shape[h][:, orders]
-                    modal[i, h] = chosen.T @ forces[points]
+                    modal[i, h] = real_product(chosen.T, forces[points])
         return modal
 
     def evaluate_transposed(self, values: Array) -> Array:
@@ -332,6 +332,14 @@ class InterfacePoints:
             for h, one in enumerate(shape):
                 modal[i, h] = one.T @ values[rows]
         return modal
+
+    def on_surface(self, i: int) -> npt.NDArray[np.int64]:
+        """Return the numbers of the points on a surface, ascending."""
+        return self._groups[i][1]
+
+    def shares_of_pairs(self, i: int, j: int) -> FloatArray:
+        """Return the share of each order in the kernel of each point of a surface to each of another, (points * points, M + 1)."""
+        return np.asarray(np.einsum("ham,hbm->abm", self._evaluate[i], self._project[j]).reshape(-1, self.modes))
 
     def between(self, kernels: Array) -> Array:
         """Return the kernels from forces at the points to motion at the points, shape (points, points, T).
@@ -382,9 +390,8 @@ class InterfacePoints:
     def _of_pairs(self, i: int, j: int, compliance: ComplexArray) -> ComplexArray:
         """Return the receptance of one surface to forces on another, (nodes, points, points): one real product for all pairs and nodes."""
         if (i, j) not in self._pair_shares:
-            shares = np.einsum("ham,hbm->abm", self._evaluate[i], self._project[j])
-            self._pair_shares[i, j] = shares.reshape(-1, self.modes)
-        product = (self._pair_shares[i, j] @ np.ascontiguousarray(compliance).view(np.float64)).view(np.complex128)
+            self._pair_shares[i, j] = self.shares_of_pairs(i, j)
+        product = real_product(self._pair_shares[i, j], compliance)
         return np.asarray(product.T.reshape(-1, self._evaluate[i].shape[1], self._project[j].shape[1]))
 
     def _of_points(self, i: int, j: int, compliance: ComplexArray) -> ComplexArray:

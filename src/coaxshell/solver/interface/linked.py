@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import numpy.typing as npt
 
@@ -14,6 +12,7 @@ from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult
+from coaxshell.solver.interface.seen import as_seen
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.orders_left_out import Interface
@@ -43,7 +42,7 @@ def solve_linked(
         result = march_interface(structure, absorbers, saturate=True, progress=progress)
         if not result.saturated:
             return solve_linked(structure, absorbers, progress, exact=exact)
-        return _marched(structure, absorbers, result)
+        return _marched(structure, absorbers, result, structure)
     if absorbers.count == 0:
         force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
         moved = Moved(structure.normal, structure.tangential, structure.solid)
@@ -57,17 +56,25 @@ def solve_linked(
         force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
         transforms = found.force, found.mass_displacement
         return SolvedSpectra(structure, absorbers, *moved, force, displacement, exact=transforms)
-    return _marched(structure, absorbers, march_interface(structure, absorbers, progress=progress))
+    seen = as_seen(structure, absorbers)
+    return _marched(structure, absorbers, march_interface(seen, absorbers, progress=progress), seen)
 
 
-def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult) -> SolvedSpectra:
-    """Return the answer of a structure to the forces of a march, without its feedback where actuators saturated."""
-    acting = structure if result.actuation is None else structure.open_loop
-    transformed = structure.grid.transform_linear if result.laws is None else partial(middles_transform, structure.grid)
-    moved = acting.forced_spectra(transformed(result.modal_pressure))
+def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchResult, seen: StructureSpectra) -> SolvedSpectra:
+    """Return the answer of a structure to the forces of a march, without its feedback where actuators saturated.
+
+    ``seen`` is what marched: the structure, or what its absorbers see of it.
+    """
+    grid = structure.grid
+    if result.actuation is not None:
+        moved = structure.open_loop.forced_spectra(grid.transform_linear(result.modal_pressure))
+    else:
+        points = InterfacePoints(structure.problem, absorbers, structure.modes)
+        forces = grid.transform_linear(result.force) if result.laws is None else middles_transform(grid, result.laws.force)
+        moved = structure.forced_spectra(points.project(forces))
     force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
     done = result.actuation, result.iterations
-    return SolvedSpectra(structure, absorbers, *moved, force, displacement, *done, laws=result.laws)
+    return SolvedSpectra(structure, absorbers, *moved, force, displacement, *done, laws=result.laws, seen=seen)
 
 
 def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -105,7 +112,7 @@ def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: 
     force = force.reshape(2 * absorbers.count, solved.grid.time.size)
     saturating = None if solved.actuation is None else solved.structure
     linear = None if solved.laws is None else solved.laws.linear
-    return Interface(absorbers, force, stretch, solved.actuation, solved.marched, saturating, asked, linear)
+    return Interface(absorbers, force, stretch, solved.actuation, solved.marched, saturating, asked, linear, solved.seen)
 
 
 def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:

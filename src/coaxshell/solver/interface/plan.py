@@ -196,10 +196,7 @@ def motion_without(structure: StructureSpectra, absorbers: AbsorberSet, plan: Ma
         volts = structure.voltage_without_actuators
         demanded[:, : volts.shape[1]] = actuators.of_limits(volts)
 
-    def by_step(histories: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(points.evaluate(histories).T).reshape(steps, 2, absorbers.count)
-
-    displacement, velocity = by_step(moved.linear_displacement), by_step(moved.linear_velocity)
+    displacement, velocity = (np.ascontiguousarray(x.T).reshape(steps, 2, absorbers.count) for x in moved.motion_at(points))
     return MotionWithout(displacement, velocity, np.ascontiguousarray(demanded.reshape(-1, steps).T))
 
 

@@ -1,0 +1,167 @@
+"""A structure as a march of absorbers sees it: by as few kernels as tell how their points move each other.
+
+Kernels between points are sums over the orders, K(a, b) = sum_m k_m cos m(theta_a - theta_b)/(beta_m pi R). Where the forces are wanted
+first and the motion of all orders afterwards, from the transforms of the forces, fewer channels than orders can be marched:
+
+- absorbers on a lattice of N places, rings among them, have N/2 + 1 classes of orders whose kernels are added up beforehand
+  (:mod:`coaxshell.solver.interface.lattice`); what footprints take of each order is in the sum;
+- few absorbers have one kernel for each pair of their points.
+
+Both are added up as spectra, before anything is inverted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.acoustics.basis import Modes
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.convolution import KernelTable
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
+from coaxshell.solver.interface.lattice import folding, lattice_of
+from coaxshell.solver.kernels import combined_velocity_weights
+from coaxshell.solver.point_forces import point_force_shares
+from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
+from coaxshell.solver.structure_spectra import StructureSpectra
+
+_KEPT = 8
+"""Lattices whose kernels are kept."""
+
+Shares = Callable[[int, int], FloatArray]
+"""From the numbers of a surface and of one that is pressed to the shares (rows, M + 1) of the orders in each kernel between them."""
+
+
+class SeenStructure(StructureSpectra):
+    """A structure at the points of some absorbers, without its orders.
+
+    Parameters
+    ----------
+    whole : StructureSpectra
+    absorbers : AbsorberSet
+    """
+
+    def __init__(self, whole: StructureSpectra, absorbers: AbsorberSet) -> None:
+        super().__init__(whole.problem, whole.grid, whole.modes, shared=whole.shared, units=whole.units)
+        self.whole, self.absorbers = whole, absorbers
+        self.of_orders = InterfacePoints(whole.problem, absorbers, whole.modes)
+
+    def motion_at(self, points: InterfacePoints | PointsAlone) -> tuple[FloatArray, FloatArray]:
+        """Return displacements and velocities of the points under the sources alone, (points, T) each."""
+        return self._motion
+
+    @cached_property
+    def _motion(self) -> tuple[FloatArray, FloatArray]:
+        moved = self.of_orders.evaluate(self.whole.surface_motion)
+        return self.grid.invert(moved), self.grid.invert(moved * self.grid.nodes)
+
+    def _weights(self, shares: Shares) -> dict[tuple[int, int], FloatArray]:
+        """Return the step weights (rows, T) of sums over the orders, for all pairs of surfaces that absorbers hold.
+
+        By product integration; of orders whose membrane the step does not resolve, and where walls have two faces, by the weights of the
+        orders themselves.
+        """
+        whole, problem, grid = self.whole, self.problem, self.grid
+        held = np.unique(self.of_orders.surface).tolist()
+        pairs = [(i, j) for i in held for j in held]
+        if problem.two_faced:
+            return {(i, j): shares(i, j) @ whole.kernels.kernels[i, j] for i, j in pairs}
+        late = unresolved_orders(problem, grid, whole.modes)
+        found = {
+            (i, j): combined_velocity_weights(problem, grid, whole.compliance[i, j], (i, j), np.where(late, 0.0, shares(i, j)))
+            for i, j in pairs
+        }
+        if late.any():
+            late_weights, _ = trapezoidal_weights(problem, grid, Modes(whole.modes.orders[late]), [])
+            for i, j in pairs:
+                found[i, j] += shares(i, j)[:, late] @ late_weights[i, j]
+        return found
+
+
+class StructureOfClasses(SeenStructure):
+    """A structure as absorbers on a lattice see it, all of which hold the same arcs: orders added up by classes.
+
+    Parameters
+    ----------
+    whole : StructureSpectra
+    absorbers : AbsorberSet
+    lattice : int
+        Places of the lattice.
+    """
+
+    def __init__(self, whole: StructureSpectra, absorbers: AbsorberSet, lattice: int) -> None:
+        super().__init__(whole, absorbers)
+        self._lattice = lattice
+
+    def points(self, absorbers: AbsorberSet) -> InterfacePoints:
+        """Return the points in terms of the classes; footprints are in the kernels."""
+        return InterfacePoints(self.problem, replace(absorbers, footprint=None), Modes.up_to(self._lattice // 2))
+
+    @property
+    def kernels(self) -> KernelTable:
+        """Step weights of the velocities of each class of orders, (surfaces, surfaces, classes, T)."""
+        means = None if self.absorbers.footprint is None else self.absorbers.means(self.problem, self.modes)[:, 0]
+        known, key = self.units.classes, (self._lattice, *(() if means is None else (self._held_by_side, means.tobytes())))
+        if key not in known:
+            while len(known) >= _KEPT:
+                known.pop(next(iter(known)))
+            known[key] = KernelTable(self._folded(means))
+        return known[key]
+
+    @property
+    def _held_by_side(self) -> tuple[int, ...]:
+        return tuple(int(x) for x in self.absorbers.surfaces[:, 0])
+
+    def _folded(self, means: FloatArray | None) -> FloatArray:
+        shares, count = folding(self._lattice, self.modes.max_order), len(self.problem.surfaces)
+        held = np.ones((count, self.modes.count))
+        if means is not None:
+            held[list(self._held_by_side)] = means
+        weights = self._weights(lambda i, j: shares * (held[i] * held[j]))
+        found = np.zeros((count, count, len(shares), self.grid.time.size))
+        for pair, values in weights.items():
+            found[pair] = values
+        return found
+
+
+class StructureOfPoints(SeenStructure):
+    """A structure as few absorbers see it: one kernel for each pair of their points."""
+
+    def points(self, absorbers: AbsorberSet) -> PointsAlone:
+        """Return the points, each by itself."""
+        return PointsAlone(absorbers)
+
+    @cached_property
+    def kernels(self) -> KernelTable:
+        """Step weights of the velocities of the points, (points, points, 1, T)."""
+        points = self.of_orders
+        weights = self._weights(points.shares_of_pairs)
+        found = np.zeros((points.count, points.count, 1, self.grid.time.size))
+        for (i, j), between in weights.items():
+            rows, columns = points.on_surface(i), points.on_surface(j)
+            found[rows[:, None], columns, 0] = between.reshape(rows.size, columns.size, -1)
+        return KernelTable(found)
+
+
+def as_seen(structure: StructureSpectra, absorbers: AbsorberSet) -> StructureSpectra:
+    """Return a structure as a march of some absorbers sees it by the fewest kernels: the structure itself where its orders are fewest."""
+    if not absorbers.count:
+        return structure
+    channels = len(structure.problem.surfaces) ** 2 * absorbers.parities
+    lattice = _lattice(structure, absorbers)
+    classes = lattice // 2 + 1 if lattice else structure.modes.count
+    if (2 * absorbers.count) ** 2 <= channels * classes:
+        return StructureOfPoints(structure, absorbers)
+    return StructureOfClasses(structure, absorbers, lattice) if lattice else structure
+
+
+def _lattice(structure: StructureSpectra, absorbers: AbsorberSet) -> int:
+    """Return the places of the lattice of some absorbers, 0 if it has no fewer classes than there are orders, or does not tell all."""
+    if structure.problem.point_force_shares is not point_force_shares:
+        return 0
+    if absorbers.footprint is not None and len(absorbers.held_alike) > 1:
+        return 0
+    return lattice_of(absorbers.every_angle, structure.modes.max_order)
