@@ -6,6 +6,30 @@ from mutation import Mutation
 
 LAWS = (
     Mutation(
+        "lattice-classes",
+        "solver/interface/lattice.py",
+        "shares[of_order, orders] = beta[of_order] / beta",
+        "shares[of_order, orders] = 1.0",
+        "share of an order in its class on a lattice",
+        "solver/test_seen.py solver/test_line_absorbers.py",
+    ),
+    Mutation(
+        "lattice-kernels",
+        "solver/kernels.py",
+        "weights + of_kind @ exponential_weights(decays[:, None], grid) if leads else weights",
+        "weights",
+        "kernels combined before they are inverted: their leading term",
+        "solver/test_seen.py",
+    ),
+    Mutation(
+        "many-linear-motion",
+        "solver/interface/linear_many.py",
+        "bare + spread.moved(_times(answer, pressure))",
+        "bare - spread.moved(_times(answer, pressure))",
+        "what the forces of many linear absorbers do to the walls: sign",
+        "solver/test_many_linear_absorbers.py",
+    ),
+    Mutation(
         "law-discrete-gradient",
         "solver/links/springs.py",
         "value = value + coefficient / (k + 1) * mixed",

@@ -226,22 +226,6 @@ MUTATIONS = (
         "solver/test_relaxation.py",
     ),
     Mutation(
-        "lattice-classes",
-        "solver/interface/lattice.py",
-        "shares[of_order, orders] = beta[of_order] / beta",
-        "shares[of_order, orders] = 1.0",
-        "orders added up by classes of a lattice: share of order 0",
-        "solver/test_seen.py",
-    ),
-    Mutation(
-        "lattice-kernels",
-        "solver/kernels.py",
-        "weights + of_kind @ exponential_weights(decays[:, None], grid) if leads else weights",
-        "weights",
-        "kernels combined before they are inverted: their leading term",
-        "solver/test_seen.py",
-    ),
-    Mutation(
         "gap-coupling",
         "solver/coupling.py",
         "-density[1] * load[0] * gap.ab, density[0] * load[1] * gap.ba",

@@ -330,18 +330,10 @@ SPATIAL = (
     ),
     Mutation(
         "line-lattice",
-        "solver/axial/lines.py",
-        "of_order = np.minimum(orders % n, -orders % n)",
-        "of_order = np.minimum(orders % n, n // 2)",
+        "solver/interface/lattice.py",
+        "of_order = np.minimum(orders % lattice, -orders % lattice)",
+        "of_order = np.minimum(orders % lattice, lattice // 2)",
         "which orders act alike on a lattice of line absorbers",
-        "solver/test_line_absorbers.py",
-    ),
-    Mutation(
-        "line-lattice-shares",
-        "solver/axial/lines.py",
-        "shares[of_order, orders] = beta[of_order] / beta",
-        "shares[of_order, orders] = 1.0",
-        "share of an order in its class on a lattice",
         "solver/test_line_absorbers.py",
     ),
     Mutation(

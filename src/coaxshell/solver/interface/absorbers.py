@@ -337,6 +337,13 @@ class InterfacePoints:
         """Return the numbers of the points on a surface, ascending."""
         return self._groups[i][1]
 
+    def maps_of(self, i: int) -> tuple[FloatArray, FloatArray]:
+        """Return what evaluates modes at the points on a surface, and what projects forces there, orders of both parities in one row each.
+
+        Both have the shape (points there, parities * (M + 1)).
+        """
+        return np.concatenate(list(self._evaluate[i]), axis=1), np.concatenate(list(self._project[i]), axis=1)
+
     def shares_of_pairs(self, i: int, j: int) -> FloatArray:
         """Return the share of each order in the kernel of each point of a surface to each of another, (points * points, M + 1)."""
         return np.asarray(np.einsum("ham,hbm->abm", self._evaluate[i], self._project[j]).reshape(-1, self.modes))
@@ -396,7 +403,7 @@ class InterfacePoints:
 
     def _of_points(self, i: int, j: int, compliance: ComplexArray) -> ComplexArray:
         """Return that receptance by one real product a node, which keeps nothing of the pairs."""
-        evaluate, project = np.concatenate(list(self._evaluate[i]), axis=1), np.concatenate(list(self._project[j]), axis=1)
+        evaluate, project = self.maps_of(i)[0], self.maps_of(j)[1]
         spectra = np.tile(compliance, (self.parities, 1)).T[:, :, None] * np.ascontiguousarray(project.T)
         return np.asarray((evaluate @ spectra.view(np.float64)).view(np.complex128))
 

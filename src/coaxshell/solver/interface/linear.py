@@ -19,7 +19,8 @@ from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import Nodes
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, side_admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, SideAdmittance, side_admittance
+from coaxshell.solver.interface.linear_many import NODES, Spread, iterate
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks
 
@@ -78,23 +79,49 @@ def solve_linear(
     excited = points.evaluate(structure.surface_motion)
     force = np.empty((2 * count, nodes.size), np.complex128)
     displacement = np.empty((count, nodes.size), np.complex128)
-    width = max(4, BLOCK_BYTES // (16 * (2 * count) ** 2))
+    spread = Spread.of(structure.problem, absorbers, points)
+    width = max(4, BLOCK_BYTES // (16 * (2 * count) ** 2)) if spread is None else NODES
     blocks = [slice(a, min(a + width, nodes.size)) for a in range(0, nodes.size, width)]
+    largest = float(np.abs(excited).max(initial=0.0))
 
     def work(block: slice) -> None:
-        law = side_admittance(absorbers, nodes[block])
-        receptance = points.receptance(structure.compliance[..., block])
-        system = np.empty_like(receptance)
-        for side in (0, 1):
-            here, there = slice(side * count, (side + 1) * count), slice((1 - side) * count, (2 - side) * count)
-            own = law[side]
-            system[:, :, here] = receptance[:, :, here] * own[:, None, :] + receptance[:, :, there] * law.other[:, None, :]
-        system[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
-        w = np.linalg.solve(system, excited[:, block].T[:, :, None])[:, :, 0]
-        inner, outer = w[:, :count], w[:, count:]
-        force[:count, block] = -(law.inner * inner + law.other * outer).T
-        force[count:, block] = -(law.other * inner + law.outer * outer).T
-        displacement[:, block] = law.mass_displacement(inner, outer).T
+        law, compliance = side_admittance(absorbers, nodes[block]), structure.compliance[..., block]
+        if spread is None:
+            w = _dense(points, law, compliance, excited[:, block])
+        else:
+            w = _iterated(spread, points, nodes[block], compliance, excited[:, block], largest)
+        inner, outer = w[:count], w[count:]
+        force[:count, block] = -(law.inner.T * inner + law.other.T * outer)
+        force[count:, block] = -(law.other.T * inner + law.outer.T * outer)
+        displacement[:, block] = law.mass_displacement(inner.T, outer.T).T
 
     map_node_blocks(blocks, work, progress, "linear absorbers")
     return LinearAbsorberSpectra(force, displacement, points.project(force))
+
+
+def _dense(points: InterfacePoints, law: SideAdmittance, compliance: ComplexArray, excited: ComplexArray) -> ComplexArray:
+    """Return w of (1 + G Y) w = w_linear, (2N, nodes), by matrices of all points."""
+    count = points.count // 2
+    receptance = points.receptance(compliance)
+    system = np.empty_like(receptance)
+    for side in (0, 1):
+        here, there = slice(side * count, (side + 1) * count), slice((1 - side) * count, (2 - side) * count)
+        own = law[side]
+        system[:, :, here] = receptance[:, :, here] * own[:, None, :] + receptance[:, :, there] * law.other[:, None, :]
+    system[:, np.arange(2 * count), np.arange(2 * count)] += 1.0
+    return np.asarray(np.linalg.solve(system, excited.T[:, :, None])[:, :, 0].T)
+
+
+def _iterated(
+    spread: Spread, points: InterfacePoints, s: ComplexArray, compliance: ComplexArray, excited: ComplexArray, largest: float
+) -> ComplexArray:
+    """Return the same by iteration; where that does not converge, which one node of the block tells, by matrices."""
+    middle = slice(s.size // 2, s.size // 2 + 1)
+    _, pays = iterate(spread, s[middle], compliance[..., middle], excited[:, middle], largest)
+    w, reached = np.empty_like(excited), np.zeros(s.size, dtype=np.bool_)
+    if pays.all():
+        w, reached = iterate(spread, s, compliance, excited, largest)
+    for k in np.flatnonzero(~reached):
+        one = slice(k, k + 1)
+        w[:, one] = _dense(points, side_admittance(spread.absorbers, s[one]), compliance[..., one], excited[:, one])
+    return w
