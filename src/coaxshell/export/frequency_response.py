@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import numpy as np
 
+from coaxshell.export.tables import write_csv
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.files import replacing
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.plotting.saving import known_suffix
 from coaxshell.response.frequency.curves import curves_of, is_level
 
 
@@ -48,11 +46,4 @@ def export_frequency_response_csv(found: xr.DataArray, path: str | Path) -> Path
     InputError
         The file is not a .csv or cannot be written.
     """
-    target = Path(path)
-    known_suffix(target, (".csv",))
-    columns = frequency_columns(found)
-    with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows([f"{value:.12g}" for value in row] for row in zip(*columns.values(), strict=True))
-    return target
+    return write_csv(frequency_columns(found), path)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from coaxshell.numerics.files import replacing
+from coaxshell.export.tables import write_rows
 from coaxshell.numerics.late import xarray as xr
-from coaxshell.plotting.saving import known_suffix
+
+_COLUMNS = ("kind", "axial half wavelength (m)", "order", "mode", "frequency (Hz)", "damping ratio")
 
 
 def rows_of(found: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -40,8 +40,7 @@ def _rows(found: xr.Dataset, length: float | None) -> Iterator[dict[str, Any]]:
 
 
 def _row(kind: str, length: float | None, order: int, mode: int, frequency: float, ratio: float) -> dict[str, Any]:
-    place = {"kind": kind, "axial half wavelength (m)": length, "order": order, "mode": mode}
-    return {**place, "frequency (Hz)": float(frequency), "damping ratio": float(ratio)}
+    return dict(zip(_COLUMNS, (kind, length, order, mode, float(frequency), float(ratio)), strict=True))
 
 
 def export_natural_frequencies_csv(found: xr.Dataset, path: str | Path) -> Path:
@@ -58,12 +57,5 @@ def export_natural_frequencies_csv(found: xr.Dataset, path: str | Path) -> Path:
     InputError
         The file is not a .csv or cannot be written.
     """
-    target = Path(path)
-    known_suffix(target, (".csv",))
     rows = list(rows_of(found))
-    with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(rows[0] if rows else ("kind", "axial half wavelength (m)", "order", "mode", "frequency (Hz)", "damping ratio"))
-        for row in rows:
-            writer.writerow(["" if value is None else f"{value:.12g}" if isinstance(value, float) else value for value in row.values()])
-    return target
+    return write_rows(rows[0] if rows else _COLUMNS, (row.values() for row in rows), path)

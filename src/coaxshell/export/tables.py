@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -48,14 +48,22 @@ def export_csv(response: Response, path: str | Path) -> Path:
 
 def write_csv(table: Mapping[str, npt.NDArray[np.float64]], path: str | Path) -> Path:
     """Write columns by their names as CSV; InputError if the file is not a .csv or cannot be written."""
+    return write_rows(table, zip(*(values.tolist() for values in table.values()), strict=True), path)
+
+
+def write_rows(names: Iterable[str], rows: Iterable[Iterable[Any]], path: str | Path) -> Path:
+    """Write rows under their names as CSV, None as an empty cell; InputError if the file is not a .csv or cannot be written."""
     target = Path(path)
     known_suffix(target, (".csv",))
     with replacing(target) as partial, partial.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(table)
-        for row in zip(*(values.tolist() for values in table.values()), strict=True):
-            writer.writerow([f"{value:.12g}" for value in row])
+        writer.writerow(names)
+        writer.writerows([_cell(value) for value in row] for row in rows)
     return target
+
+
+def _cell(value: Any) -> Any:
+    return "" if value is None else f"{value:.12g}" if isinstance(value, float) else value
 
 
 def export_mat(response: Response, path: str | Path) -> Path:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -28,9 +27,7 @@ def modes(
         str | None, typer.Option("--up-to", metavar="FREQUENCY", help='Highest one, as in "2 kHz".', show_default="ten transits' worth")
     ] = None,
     most_damped: Annotated[str, typer.Option("--most-damped", metavar="RATIO", help="Largest damping ratio, 0.5 at most.")] = "0.2",
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where else to; .csv, or .png, .pdf, .svg for a figure.")
-    ] = None,
+    output: options.FigureOrTableOption = None,
     as_json: options.JsonOption = False,
     force: options.ForceOption = False,
 ) -> None:
@@ -41,10 +38,10 @@ def modes(
     """
     from coaxshell.apps.cli.running import load_system
     from coaxshell.export.natural_frequencies import export_natural_frequencies_csv, rows_of
-    from coaxshell.plotting import FIGURE_SUFFIXES, figure_natural_frequencies
+    from coaxshell.plotting import figure_natural_frequencies
     from coaxshell.response import natural_frequencies
 
-    target = None if output is None else Outputs(force).file(output, "--output", (*FIGURE_SUFFIXES, ".csv"))
+    target = Outputs(force).figure_or_table(output)
     system = load_system(scenario, changes or ())
     lengths: Any = None if half_wavelength is None else [each.strip() for each in half_wavelength.split(",")]
     ratio = options.number("--most-damped", most_damped)

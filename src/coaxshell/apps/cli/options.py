@@ -51,6 +51,9 @@ AxialPeriodOption = Annotated[
         "--axial-period", metavar="LENGTH", help="After which the answer repeats along the axis.", show_default="what causality asks"
     ),
 ]
+FigureOrTableOption = Annotated[
+    Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where else to; .csv, or .png, .pdf, .svg for a figure.")
+]
 ForceOption = Annotated[bool, typer.Option("--force", help="Overwrite what exists already.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON document for programs instead of a table.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress.")]

@@ -19,7 +19,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, overload
 
 from coaxshell.apps.cli.options import named_as_options
 from coaxshell.errors import InputError, PhysicsWarning
@@ -154,6 +154,16 @@ class Outputs:
             from coaxshell.plotting.saving import FIGURE_SUFFIXES
 
             self.file(path, option, FIGURE_SUFFIXES)
+
+    @overload
+    def figure_or_table(self, path: Path) -> Path: ...
+    @overload
+    def figure_or_table(self, path: Path | None) -> Path | None: ...
+    def figure_or_table(self, path: Path | None) -> Path | None:
+        """Claim a figure, or a .csv, if there is to be one, and return its path."""
+        from coaxshell.plotting.saving import FIGURE_SUFFIXES
+
+        return None if path is None else self.file(path, "--output", (*FIGURE_SUFFIXES, ".csv"))
 
     def folder(self, path: Path, option: str, parts: Collection[str]) -> Path:
         """Claim a folder that will hold a result of some parts and return its path."""

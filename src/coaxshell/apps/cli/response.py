@@ -57,9 +57,7 @@ def response(
     dimensions: options.DimensionsOption = options.DIMENSIONS,
     resonances: Annotated[str | None, typer.Option("--resonances", metavar="N,...", help="Mark those of these orders: 0-6.")] = None,
     polar: Annotated[bool, typer.Option("--polar", help="Draw over the angle, a curve a frequency.")] = False,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Where else to; .csv, or .png, .pdf, .svg for a figure.")
-    ] = None,
+    output: options.FigureOrTableOption = None,
     as_json: options.JsonOption = False,
     force: options.ForceOption = False,
 ) -> None:
@@ -70,9 +68,8 @@ def response(
     """
     from coaxshell.apps.cli.documents import frequency_document
     from coaxshell.apps.cli.running import load_system
-    from coaxshell.plotting import FIGURE_SUFFIXES
 
-    target = None if output is None else Outputs(force).file(output, "--output", (*FIGURE_SUFFIXES, ".csv"))
+    target = Outputs(force).figure_or_table(output)
     if compare and target is not None and (polar or target.suffix == ".csv"):
         raise InputError("--compare", "has two systems, which neither a table nor a polar figure holds", "ask for one at a time")
     given: dict[str, Any] = {"shell": shell, "component": component, "depth": _number_or_text(depth), "region": region, "per": per}

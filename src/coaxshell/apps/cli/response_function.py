@@ -45,13 +45,11 @@ def response_function(
 
     It is the pressure after a unit impulse of a wall's acceleration. Lengths are in radii of the outermost shell.
     """
-    from coaxshell.plotting.saving import FIGURE_SUFFIXES
-
     if region not in REGIONS:
         raise InputError("REGION", f"{region!r} is not a fluid region", f"allowed: {', '.join(REGIONS)}")
     table = output.suffix.lower() == ".csv"
     orders = _orders(modes, None if table else _MOST_CURVES)
-    target = Outputs(force).file(output, "--output", (*FIGURE_SUFFIXES, ".csv"))
+    target = Outputs(force).figure_or_table(output)
     geometry = {"--inner-radius": inner_radius, "--outer-radius": outer_radius, "--slowness": slowness}
     sizes = {name: number(name, text) for name, text in geometry.items()}
     place = None if radius is None else number("--radius", radius)

@@ -48,13 +48,11 @@ def spectrum(
     from coaxshell.apps.cli.documents import spectra_document
     from coaxshell.export import export_spectra_csv
     from coaxshell.export.spectra import spectra_of
-    from coaxshell.plotting import FIGURE_SUFFIXES, figure_shock_spectra
+    from coaxshell.plotting import figure_shock_spectra
     from coaxshell.response.run_comparison import run_labels
     from coaxshell.response.shock_spectrum import frequencies_of, quality_of
 
-    target = None if as_json and output is None else output or Path("spectrum.png")
-    if target is not None:
-        Outputs(force).file(target, "--output", (*FIGURE_SUFFIXES, ".csv"))
+    target = Outputs(force).figure_or_table(None if as_json and output is None else output or Path("spectrum.png"))
     angles = [options.number("--angle", each) for each in angle.split(",")]
     frequencies = None if frequency is None else [options.number("--frequency", each) for each in frequency.split(",")]
     as_options = partial(
