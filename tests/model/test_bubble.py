@@ -7,7 +7,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.errors import InputError
-from coaxshell.model.bubble import ADIABAT, DENSITY, oscillation
+from coaxshell.model.bubble import ADIABAT, DENSITY, first_pulse, oscillation, similitude_period
 from coaxshell.model.sea import ATMOSPHERE, GRAVITY
 
 CHARGE = cx.UnderwaterExplosion(charge_mass=10, stand_off=8, bubble_pulses=2, charge_depth=20)
@@ -24,6 +24,27 @@ def test_period_and_first_pulse_are_those_measured(mass: float, depth: float) ->
     second = np.where(time > 1.4 * period, strength, -np.inf).argmax()
     assert time[second] - time[first] < time[first]
     assert 0.3 < strength[second] / strength[first] < 0.6
+
+
+@pytest.mark.parametrize("name", ["HBX-1", "PETN"])
+def test_other_explosives_are_consistent(name: str) -> None:
+    """Their K5 and K6 are fits of their own: a bubble without gas has K5/K6 = 1.829/sqrt(g) = 0.584 (Rayleigh), gas adds a few percent."""
+    explosive = cx.EXPLOSIVES[name]
+    assert 0.584 < explosive.bubble_period / explosive.bubble_radius < 1.06 * 0.584
+    for mass, depth in ((1.0, 10.0), (500.0, 100.0)):
+        period = similitude_period(mass, depth, explosive.bubble_period)
+        assert first_pulse(mass, depth, explosive.bubble_radius) == pytest.approx(period, rel=0.05)
+    lb, foot = 0.45359237, 0.3048  # the table in its own units
+    k5, k6 = {"HBX-1": (4.761, 14.14), "PETN": (4.339, 12.88)}[name]
+    assert explosive.bubble_period == pytest.approx(k5 * foot ** (5 / 6) / lb ** (1 / 3), rel=1e-3)
+    assert explosive.bubble_radius == pytest.approx(k6 * foot ** (4 / 3) / lb ** (1 / 3), rel=1e-3)
+
+
+def test_where_model_and_similitude_disagree_a_run_warns() -> None:
+    deep = CHARGE.replace(charge_mass=1.0, charge_depth=2000.0)
+    system = cx.presets.load("bare").replace(source=deep)
+    told = " ".join(cx.simulate(system, duration=0.2, time_step=2e-2, modes=2).warnings)
+    assert "the first bubble pulse comes 4.286 ms after the shock wave, 3.729 ms by the similitude of TNT" in told
 
 
 def test_where_the_bubble_is_largest_it_pulls_with_the_pressure_at_rest() -> None:
@@ -55,7 +76,7 @@ def test_the_pulse_begins_as_the_shock_wave_and_goes_on_as_the_bubble() -> None:
     [
         ({"charge_depth": None}, "charge_depth", "a bubble depends on it"),
         ({"bubble_pulses": 0}, "charge_depth", "has no effect without a bubble"),
-        ({"explosive": "HBX-1"}, "bubble_pulses", "no sourced constants"),
+        ({"explosive": "pentolite"}, "bubble_pulses", "no sourced constants"),
         ({"charge_depth": "2 m"}, "charge_depth", "break through the surface"),
         ({"bubble_pulses": 11}, "bubble_pulses", "11"),
         ({"bubble_pulses": True}, "bubble_pulses", "not a count"),

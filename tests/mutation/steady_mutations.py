@@ -37,4 +37,20 @@ STEADY = (
         "share of a line force that each order gets",
         "response/test_frequency_response.py",
     ),
+    Mutation(
+        "wavenumbers-of-a-point-source",
+        "response/frequency/along.py",
+        "along = 2.0 / np.pi * path.weights * np.cos(path.wavenumbers * away)",
+        "along = 2.0 / np.pi * path.weights",
+        "the phase of each wavenumber along the axis",
+        "response/test_frequency_response.py",
+    ),
+    Mutation(
+        "mean-power-of-a-band",
+        "studies/steady_metrics.py",
+        'sign = -1.0 if name == "transmission_loss" else 1.0',
+        "sign = 1.0",
+        "losses average what comes through",
+        "studies/test_metrics.py",
+    ),
 )

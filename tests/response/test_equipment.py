@@ -24,6 +24,15 @@ def test_heavy_equipment_feels_less_at_its_resonance():
     assert float(heavy["ratio"][0]) < 0.7 < float(light["ratio"][0]) < 0.95
 
 
+def test_equipment_at_a_point_of_three_dimensions():
+    """Without mass it feels the spectrum of its station, with mass less at its resonance."""
+    settings = {"dimensions": 3, "duration": 2.0, "time_step": 0.04, "modes": 4, "axial_modes": 4}
+    light, heavy = (cx.mounted_spectrum("bare", "inner", [900.0], mass, 30.0, z=0.5, **settings) for mass in (1e-3, 200.0))
+    np.testing.assert_allclose(light["ratio"], 1.0, atol=2e-2)
+    assert float(heavy["ratio"][0]) < 0.95
+    assert light.attrs["z"] == 0.5
+
+
 def test_it_is_an_absorber_on_one_shell_whose_stroke_and_force_agree():
     omega, mass = 2.0 * np.pi * 900.0, 20.0
     one = cx.Absorber(mass=mass, linear_stiffness=mass * omega**2, damping=0.0, angle=40.0, links="outer")
@@ -44,7 +53,7 @@ def test_strokes_are_taken_from_the_mean_over_a_footprint():
 def test_what_is_refused():
     with pytest.raises(cx.InputError, match=r"mass: 0\.0 is not allowed"):
         cx.mounted_spectrum("bare", "inner", [100.0], 0.0)
-    with pytest.raises(cx.InputError, match="dimensions: 3 is not known"):
-        cx.mounted_spectrum("bare", "inner", [100.0], 1.0, dimensions=3)
+    with pytest.raises(cx.InputError, match="z: 1 m has no meaning in two dimensions"):
+        cx.mounted_spectrum("bare", "inner", [100.0], 1.0, z=1.0)
     with pytest.raises(cx.InputError, match="frequency: -1 Hz"):
         cx.mounted_spectrum("bare", "inner", [-1.0], 1.0)

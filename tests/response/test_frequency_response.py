@@ -331,10 +331,63 @@ def test_walls_without_losses_scatter_all_that_the_wave_loses(theory, wetted):
     np.testing.assert_allclose(lost, scattered, rtol=1e-8)
 
 
+POINT = cx.SphericalWave(distance=2.5, pulse=cx.Gaussian(peak_pressure=1e3, width="0.4 ms"))
+
+
+def test_the_wavenumbers_of_a_point_source_add_up_to_its_wave_through_a_shell_that_is_not_there():
+    z = 0.7
+    system = alone(cx.Shell(radius=1.0, layers=[cx.Layer(NOTHING, 1e-3)]), WATER, POINT)
+    f, radii, turns = np.array([50.0, 1500.0]), np.array([0.0, 0.4, 1.7]), np.radians([0.0, 100.0])
+    found = cx.frequency_response(system, f, "pressure", radius=radii, angle=np.degrees(turns), z=z, dimensions=3)
+    x, y = np.outer(radii, np.cos(turns)), np.outer(radii, np.sin(turns))
+    near, r = 2.5 - system.reference_radius, np.sqrt((2.5 - x) ** 2 + y**2 + z**2)
+    k = 2 * np.pi * f[:, None, None] / SPEED
+    np.testing.assert_allclose(found, near / r * np.exp(-1j * k * (r - near)), atol=5e-8)
+
+
+def test_under_a_point_source_the_answer_is_the_spectrum_of_a_run():
+    """Orders 0 and 1, by sums around the shell: the highest of a run have few wavenumbers. Order 1 still sways as a beam when it ends."""
+    system, f, around = (
+        alone(cx.Shell(radius=1.0, layers=[cx.Layer(STEEL, 0.05)]), source=POINT),
+        [150.0, 500.0],
+        np.arange(0.0, 181.0, 45.0),
+    )
+    run = cx.simulate(system, duration=12.0, time_step=0.2, modes=4, dimensions=3, axial_modes=16, stations=[0.6])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cx.PhysicsWarning)
+        spectrum = run.spectrum("shell_acceleration", 0, angle=around, frequency=f, per="incident").to_numpy().reshape(2, 5)
+        found = cx.frequency_response(system, f, "shell_acceleration", angle=around, z=0.6, dimensions=3, modes=4).to_numpy()
+    ends = np.array([0.5, 1.0, 1.0, 1.0, 0.5])
+    for order, close in ((0, 2e-3), (1, 0.04)):
+        weights = ends * np.cos(order * np.radians(around))
+        np.testing.assert_allclose(found @ weights, spectrum @ weights, rtol=close)
+
+
+def test_solid_walls_know_inclined_waves_at_a_frequency():
+    inclined = cx.PlaneShock(peak_pressure=1.0, decay_time=1e-4, inclination=35.0)
+    apart = []
+    for h in (0.02, 0.005):
+        layers = [cx.Layer(STEEL, h)]
+        walls = [cx.Shell(radius=1.0, layers=layers, theory=theory, wetted="faces") for theory in ("thin", "elastic")]
+        systems = [alone(wall, WATER, inclined) for wall in walls]
+        thin, exact = (cx.frequency_response(one, [200.0, 500.0], "displacement", angle=[0.0, 70.0], dimensions=3) for one in systems)
+        apart.append(float(np.abs(exact - thin).max() / np.abs(thin).max()))
+    assert apart[1] < 0.5 * apart[0] < 1e-3
+    later = cx.frequency_response(systems[1], [200.0, 500.0], "displacement", angle=[0.0, 70.0], dimensions=3, z=1.3)
+    turn = np.exp(-2j * np.pi * np.array([200.0, 500.0]) / SPEED * 1.3 * np.sin(np.radians(35.0)))
+    np.testing.assert_allclose(later, exact * turn[:, None], rtol=1e-9)
+
+
 def test_waves_along_the_axis_know_what_they_cannot_do():
     near = cx.SphericalShock(distance=4.0, peak_pressure=1.0, decay_time=1e-4)
-    with pytest.raises(InputError, match="dimensions: a point source has all axial wavenumbers"):
-        cx.frequency_response(double(source=near), 100.0, "stress", dimensions=3)
+    with pytest.raises(InputError, match="quantity: 'transmission_loss' is not read under a point source"):
+        cx.frequency_response(double(source=near), 100.0, "transmission_loss", dimensions=3)
+    with pytest.raises(InputError, match=r"shells\[0\].theory: an elastic wall has no shapes"):
+        cx.frequency_response(
+            alone(cx.Shell(radius=1.0, layers=[cx.Layer(STEEL, 0.02)], theory="elastic"), source=near), 100.0, "stress", dimensions=3
+        )
+    with pytest.raises(InputError, match="z: 1 m has no meaning in two dimensions"):
+        cx.frequency_response(double(), 100.0, "stress", z="1 m")
     held = double([cx.PointAbsorber(angle=0.0, z=0.0, mass=1.0, linear_stiffness=1e7)])
     with pytest.raises(InputError, match="absorbers: absorbers at points scatter"):
         cx.frequency_response(held, 100.0, "stress", dimensions=3)

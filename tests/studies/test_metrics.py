@@ -96,6 +96,62 @@ def test_shock_spectra_are_metrics(response, value, kind):
     assert metric.units == {"pseudo_velocity": "m/s", "absolute_acceleration": "m/s^2", "relative_displacement": "m"}[kind]
 
 
+BARE = cx.presets.load("bare")
+
+
+@pytest.fixture(scope="module")
+def bare_reading():
+    return MetricSource(cx.simulate(BARE, duration=0.4, time_step=0.02, modes=3))
+
+
+def steady(reading, name):
+    return metrics_of([name], reading.system)[0](reading)
+
+
+def test_answers_at_frequencies_are_metrics(bare_reading):
+    head, tail = np.abs(cx.frequency_response(BARE, 400.0, "stress", shell="inner", angle=[0.0, 180.0]).values)
+    np.testing.assert_allclose(steady(bare_reading, "inner.stress_head@400 Hz"), head, rtol=1e-12)
+    np.testing.assert_allclose(steady(bare_reading, "shells[0].stress_tail@0.4 kHz"), tail, rtol=1e-12)
+    assert steady(bare_reading, "inner.stress@400 Hz") >= max(head, tail)
+    echo = float(cx.frequency_response(BARE, 400.0, "target_strength"))
+    np.testing.assert_allclose(steady(bare_reading, "system.target_strength@400"), echo, rtol=1e-12)
+    within = float(cx.frequency_response(BARE, 400.0, "transmission_loss", region="gap"))
+    np.testing.assert_allclose(steady(bare_reading, "gap.transmission_loss@400 Hz"), within, rtol=1e-12)
+
+
+def test_of_a_band_the_power_is_averaged(bare_reading):
+    hertz = np.linspace(200.0, 400.0, 201)
+    echo = cx.frequency_response(BARE, hertz, "target_strength").values
+    np.testing.assert_allclose(
+        steady(bare_reading, "system.target_strength@200..400 Hz"), 10 * np.log10(np.mean(10 ** (echo / 10))), rtol=1e-12
+    )
+    loss = cx.frequency_response(BARE, hertz, "transmission_loss").values
+    np.testing.assert_allclose(
+        steady(bare_reading, "system.transmission_loss@0.2 kHz..0.4 kHz"), -10 * np.log10(np.mean(10 ** (-loss / 10))), rtol=1e-12
+    )
+
+
+def test_equipment_that_the_shell_feels_is_a_metric(bare_reading):
+    found = cx.mounted_spectrum(BARE, "outer", [900.0], 40.0, 180.0, settings=bare_reading.response.settings)
+    name = "outer.mounted_pseudo_velocity_tail@900 Hz, 40 kg/m"
+    np.testing.assert_allclose(steady(bare_reading, name), float(found["mounted"][0]), rtol=1e-12)
+    (metric,) = metrics_of([name], BARE)
+    assert metric.units == "m/s"
+    assert "40 kg/m mounted at the tail" in metric.long_name
+
+
+def test_shock_factors_are_metrics_of_charges(bare_reading):
+    charge = cx.UnderwaterExplosion(charge_mass=16.0, stand_off=8.0, angle=-60.0)
+    struck = BARE.replace(source=charge)
+    reading = MetricSource(cx.simulate(struck, duration=0.4, time_step=0.02, modes=3))
+    assert steady(reading, "system.hull_shock_factor") == 0.5
+    np.testing.assert_allclose(steady(reading, "system.keel_shock_factor"), charge.keel_shock_factor(), rtol=1e-15)
+    assert "system.hull_shock_factor" in metric_names(struck)
+    assert "system.hull_shock_factor" not in metric_names(BARE)
+    with pytest.raises(cx.InputError, match="no source is a charge"):
+        metrics_of(["system.hull_shock_factor"], BARE)
+
+
 def test_functions_of_the_user(response, tmp_path):
     (tmp_path / "mine.py").write_text('def twice(response):\n    """Twice two."""\n    return 4\n\n\ntwice.units = "Pa"\n')
     asked = {"ratio": head_to_tail, "four": f"{tmp_path / 'mine.py'}:twice", "stress": "inner.peak_stress"}
@@ -125,6 +181,12 @@ def test_functions_of_the_user(response, tmp_path):
         (["inner.pseudo_velocity@0"], r"metrics\[0\]: 0 Hz is not allowed"),
         (["inner.velocity@500 Hz"], "is not a known metric; give inner or another shell with relative_displacement"),
         (["gap.pseudo_velocity@500 Hz"], "is not a known metric; give inner"),
+        (["gap.target_strength@500 Hz"], "is not a known metric; give inner"),
+        (["system.target_strength@500..100 Hz"], "a band from 500 to 100 Hz is empty"),
+        (["system.target_strength@500 kg"], r"metrics\[0\]: '500 kg'"),
+        (["inner.mounted_pseudo_velocity_head@500 Hz"], "has no mass"),
+        (["inner.mounted_pseudo_velocity_head@500 Hz, 0 kg/m"], "0 kg/m is not allowed"),
+        (["inner.mounted_pseudo_velocity@500 Hz, 3"], "is not a known metric"),
     ],
 )
 def test_bad_metrics(hybrid, asked, message):

@@ -159,7 +159,7 @@ class UnderwaterExplosion(_Placed, _Directed):
     explosive: Annotated[str, BeforeValidator(as_explosive)] = "TNT"
     """Name of the explosive."""
     bubble_pulses: Annotated[int, Field(ge=0, le=10), BeforeValidator(whole)] = 0
-    """Pulses of the oscillating bubble that follow the shock wave; 0 leaves the bubble out. TNT alone has the constants."""
+    """Pulses of the oscillating bubble that follow the shock wave; 0 leaves the bubble out. TNT, HBX-1 and PETN have the constants."""
     charge_depth: Length | None = None
     """Depth of the charge below the surface (m), of which the bubble depends."""
 

@@ -1,4 +1,4 @@
-"""Natural frequencies by order, or by axial half wavelength (dispersion curves), and the shapes of modes."""
+"""Natural frequencies by order, or by axial wavenumber (dispersion curves), and the shapes of modes."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ def figure_natural_frequencies(found: xr.Dataset) -> Figure:
 
 
 def plot_natural_frequencies(found: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw natural frequencies over the order, dry ones as short lines; of several half wavelengths as dispersion curves, a line an order.
+    """Draw natural frequencies over the order, dry ones as short lines; of several half wavelengths as dispersion curves.
 
-    A mark has the colour of the shell that moves most, and is full up to a damping ratio of 5 %.
+    A mark is full up to a damping ratio of 5 %, and by order has the colour of the shell that moves most. On dispersion curves a line tells
+    which waves are slower than sound outside, k > omega/c: nothing radiates there.
 
     Parameters
     ----------
@@ -81,15 +82,20 @@ def _by_order(found: xr.Dataset, ax: Axes) -> None:
 
 
 def _dispersion(found: xr.Dataset, ax: Axes) -> None:
-    lengths = found["axial_half_wavelength"].values
-    cycle = list(COLOURS.values())
+    """Draw frequencies over wavenumbers, marked by the damping, and the line below which waves are slower than sound outside."""
+    k, cycle = np.pi / found["axial_half_wavelength"].values, list(COLOURS.values())
     for number, order in enumerate(found["order"].values):
-        rows = found["frequency"].sel(order=order).values
-        for column in range(rows.shape[1]):
-            label = f"$m$ = {order}" if column == 0 else None
-            ax.plot(lengths, rows[:, column], ".", color=cycle[number % len(cycle)], markersize=4, label=label)
+        rows, ratio = (found[name].sel(order=order).values for name in ("frequency", "damping_ratio"))
+        places, colour = np.broadcast_to(k[:, None], rows.shape), cycle[number % len(cycle)]
+        for full in (True, False):
+            marks = np.isfinite(rows) & ((ratio <= LIGHTLY) == full)
+            face, label = (colour, f"$m$ = {order}") if full else ("none", None)
+            ax.plot(places[marks], rows[marks], "o", color=colour, markerfacecolor=face, markersize=2.2, markeredgewidth=0.6, label=label)
+    ax.plot([], [], "o", color=COLOURS["grey"], markerfacecolor="none", markersize=2.2, label=f"damping above {LIGHTLY:.0%}")
+    ends = np.array([k.min(), k.max()])
+    ax.plot(ends, found.attrs["sound_speed"] * ends / (2.0 * np.pi), "--", color=COLOURS["grey"], linewidth=0.9, label="sound outside")
     ax.set_xscale("log")
-    ax.set_xlabel("axial half wavelength (m)")
+    ax.set_xlabel("axial wavenumber (rad/m)")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 

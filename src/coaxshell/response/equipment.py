@@ -9,21 +9,27 @@ Effect upon Shock Spectra of the Dynamic Reaction of Structures, NRL Report 5236
 from __future__ import annotations
 
 import math
-from typing import Any, get_args
+from collections.abc import Callable
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
+from scipy.signal import lfilter
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber
+from coaxshell.model.absorbers import Absorber, PointAbsorber
 from coaxshell.model.base import shown
-from coaxshell.model.loading import SystemLike
+from coaxshell.model.loading import SystemLike, as_system
+from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.oscillators import Kind
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import arguments
+from coaxshell.response.response import Response
 from coaxshell.response.shock_spectrum import UNITS, frequencies_of, quality_of
-from coaxshell.response.simulation import prepare
+from coaxshell.response.simulation import prepare, simulate
+from coaxshell.solver.settings import Settings
 
 
 def mounted_spectrum(
@@ -33,6 +39,7 @@ def mounted_spectrum(
     mass: float,
     angle: float = 0.0,
     *,
+    z: float = 0.0,
     quality_factor: float = 10.0,
     kind: Kind = "pseudo-velocity",
     progress: Progress | None = None,
@@ -40,25 +47,27 @@ def mounted_spectrum(
 ) -> xr.Dataset:
     """Return the shock spectrum of equipment of some mass, mounted on a shell and felt by it, beside that of equipment without mass.
 
-    One run for each frequency on a structure that is solved once; the largest value while the run lasts counts.
+    One run for each frequency, in two dimensions on a structure that is solved once; the largest value while the run lasts counts.
 
     Parameters
     ----------
     system : System, str or Path
-        Of two shells or more, in two dimensions; its own absorbers act beside.
+        Of two shells or more; its own absorbers act beside.
     shell : int or str
     frequency : array_like
         Natural frequencies on a base at rest, Hz.
     mass : float
-        Per metre of length, kg/m.
+        Per metre of length, kg/m; in three dimensions of equipment at a point, kg.
     angle : float
         Where, degrees.
+    z : float
+        Where along the axis, m, in three dimensions.
     quality_factor : float
     kind : str
         "pseudo-velocity" (m/s), "absolute-acceleration" (m/s^2) or "relative-displacement" (m).
     progress : callable, optional
     **settings
-        As for :func:`coaxshell.simulate`.
+        As for :func:`coaxshell.simulate`; ``stations`` is z alone.
 
     Returns
     -------
@@ -72,35 +81,112 @@ def mounted_spectrum(
     """
     arguments.one_of("kind", kind, get_args(Kind))
     hertz, quality = frequencies_of(frequency), quality_of(quality_factor)
-    if isinstance(mass, bool) or not isinstance(mass, int | float) or not 0.0 < mass < math.inf:
-        raise InputError("mass", f"{shown(mass)} is not allowed", "give the mass per metre of length, above 0, in kg/m")
-    if settings.get("dimensions", 2) != 2:
-        raise InputError("dimensions", "3 is not known to mounted equipment", "use a PointAbsorber on one shell, or two dimensions")
-    prepared = prepare(system, progress=progress, **settings)
-    base, count = prepared.system, len(prepared.system.shells)
-    if count < 2:
-        raise InputError("shells", "equipment is mounted in a gap, and one shell has none", "give the system another shell")
-    number = base.shell_index(shell)
-    side = int(number == count - 1)  # of the gap that it is mounted in
     assert hertz is not None
     hertz = np.atleast_1d(hertz)
-    light = prepared.simulate().shock_spectrum(number, angle, hertz, quality_factor=quality, kind=kind, during="primary").to_numpy()
+    place = _Place(as_system(system), shell, float(arguments.angles(angle)), _position(z), settings)
+    _require_mass(mass)
+    runs = place.runs(progress)
+    light = runs(None).shock_spectrum(place.number, place.angle, hertz, quality_factor=quality, kind=kind, during="primary")
     mounted = np.empty(hertz.size)
-    for i, omega in enumerate(2.0 * math.pi * hertz):
-        spring, damper = mass * omega**2, mass * omega / quality
-        one = Absorber(
-            mass=mass, linear_stiffness=spring, damping=damper, angle=angle, inner_shell=number - side, links="outer" if side else "inner"
-        )
-        response = prepared.simulate([*base.absorber_list, one])
-        if kind == "absolute-acceleration":
-            mounted[i] = float(np.abs(response.absorber_force()[-1, side]).max()) / mass
-        else:
-            stroke = float(np.abs(response.absorber_stroke()[-1, side]).max())
-            mounted[i] = stroke if kind == "relative-displacement" else omega * stroke
+    for i, one in enumerate(hertz):
+        oscillator = _Oscillator(mass, 2.0 * math.pi * one, quality)
+        mounted[i] = oscillator.largest(runs(place.mounting(oscillator)), place, kind)
         if progress is not None:
             progress((i + 1) / hertz.size, "equipment")
-    attributes = {"units": UNITS[kind], "kind": kind, "quality_factor": quality, "mass": mass, "shell": number, "angle": angle}
+    unloaded = light.to_numpy().reshape(hertz.size)
+    attributes = {"units": UNITS[kind], "kind": kind, "quality_factor": quality, "mass": mass, "shell": place.number, "angle": angle}
+    attributes |= {"z": place.z} if place.spatial else {}
     along = xr.Variable("frequency", hertz, {"units": "Hz", "long_name": "natural frequency on a base at rest"})
-    values = {"mounted": mounted, "light": light, "ratio": mounted / np.where(light > 0.0, light, np.nan)}
+    values = {"mounted": mounted, "light": unloaded, "ratio": mounted / np.where(unloaded > 0.0, unloaded, np.nan)}
     units = {"mounted": UNITS[kind], "light": UNITS[kind], "ratio": "1"}
     return xr.Dataset({name: ("frequency", one, {"units": units[name]}) for name, one in values.items()}, {"frequency": along}, attributes)
+
+
+def largest_of_mounted(response: Response, shell: int, hertz: float, mass: float, angle: float, quality: float, kind: Kind) -> float:
+    """Return what one piece of equipment would feel in the system and at the settings of a run in two dimensions, SI: a run of its own."""
+    place = _Place(response.system, shell, angle, 0.0, {"settings": response.settings})
+    oscillator = _Oscillator(mass, 2.0 * math.pi * hertz, quality)
+    return oscillator.largest(place.runs(None)(place.mounting(oscillator)), place, kind)
+
+
+class _Oscillator(NamedTuple):
+    """Equipment: mass (kg/m or kg), natural frequency (rad/s) and Q."""
+
+    mass: float
+    omega: float
+    quality: float
+
+    def largest(self, response: Response, place: _Place, kind: Kind) -> float:
+        """Return the largest value of its motion relative to the shell, times omega, or of its acceleration, in a run."""
+        force = response.absorber_force().to_numpy()[-1, place.side]
+        if kind == "absolute-acceleration":
+            return float(np.abs(force).max()) / self.mass
+        times = np.asarray(response.time_seconds)
+        stroke = float(np.abs(self._stroke(force, float(times[1] - times[0]))).max())
+        return stroke if kind == "relative-displacement" else self.omega * stroke
+
+    def _stroke(self, force: FloatArray, step: float) -> FloatArray:
+        """Return z of k z + c z' = f, z(0) = 0, for a force linear between instants: (f - c f'/k)/k and what decays."""
+        spring, damper = self.mass * self.omega**2, self.mass * self.omega / self.quality
+        kept = math.exp(-step * spring / damper)
+        lag = damper / spring * np.diff(force) / step
+        begin, end = (force[:-1] - lag) / spring, (force[1:] - lag) / spring
+        return np.asarray(lfilter([1.0], [1.0, -kept], end - kept * begin))
+
+
+class _Place:
+    """Where equipment is mounted, and the runs of the system that it is mounted in."""
+
+    def __init__(self, system: System, shell: int | str, angle: float, z: float, settings: dict[str, Any]) -> None:
+        self.system, self.angle, self.z, self._settings = system, angle, z, dict(settings)
+        asked = Settings.asked(system, {**settings, "stations": (z,)} if settings.get("dimensions", 2) == 3 else settings)
+        self.spatial = asked.dimensions == 3
+        count = len(system.shells)
+        if count < 2:
+            raise InputError("shells", "equipment is mounted in a gap, and one shell has none", "give the system another shell")
+        self.number = system.shell_index(shell)
+        self.side = int(self.number == count - 1)  # of the gap that it is mounted in
+        if self.spatial:
+            self._settings["stations"] = (z,)
+        elif z != 0.0:
+            raise InputError("z", f"{z:g} m has no meaning in two dimensions", "leave it out, or use dimensions=3")
+
+    def mounting(self, one: _Oscillator) -> Absorber | PointAbsorber:
+        """Return the equipment as an absorber that holds this shell alone."""
+        common: dict[str, Any] = {
+            "mass": one.mass,
+            "linear_stiffness": one.mass * one.omega**2,
+            "damping": one.mass * one.omega / one.quality,
+            "angle": self.angle,
+            "inner_shell": self.number - self.side,
+            "links": "outer" if self.side else "inner",
+        }
+        return PointAbsorber(**common, z=self.z) if self.spatial else Absorber(**common)
+
+    def runs(self, progress: Progress | None) -> Callable[[Absorber | PointAbsorber | None], Response]:
+        """Return what runs the system with one more absorber, or as it is; in two dimensions its structure is solved once."""
+        if self.spatial:
+            own = self.system.point_absorbers or self.system.absorber_list
+
+            def spatial(more: Absorber | PointAbsorber | None) -> Response:
+                system = self.system if more is None else self.system.replace(absorbers=[*own, more])
+                return simulate(system, progress=progress, **self._settings)
+
+            return spatial
+        prepared = prepare(self.system, progress=progress, **self._settings)
+
+        def plane(more: Absorber | PointAbsorber | None) -> Response:
+            return prepared.simulate(None if more is None else [*self.system.absorber_list, more])
+
+        return plane
+
+
+def _require_mass(mass: object) -> None:
+    if isinstance(mass, bool) or not isinstance(mass, int | float) or not 0.0 < mass < math.inf:
+        raise InputError("mass", f"{shown(mass)} is not allowed", "give the mass per metre of length, above 0, in kg/m")
+
+
+def _position(z: object) -> float:
+    if isinstance(z, bool) or not isinstance(z, int | float) or not math.isfinite(z):
+        raise InputError("z", f"{shown(z)} is not allowed", "give a position along the axis in m")
+    return float(z)

@@ -48,6 +48,7 @@ def natural_frequencies(
     order: Iterable[int] | int = ORDERS,
     axial_half_wavelength: npt.ArrayLike | str | None = None,
     *,
+    axial_wavenumber: npt.ArrayLike | None = None,
     up_to: float | str | None = None,
     most_damped: float = MOST_DAMPED,
 ) -> xr.Dataset:
@@ -62,6 +63,8 @@ def natural_frequencies(
     axial_half_wavelength : float, str or list of them, optional
         L of cos(pi z/L): the length of a shell on shear diaphragms over the number of half waves along it (m or text). Nothing changes
         along the axis unless given; several add a dimension: dispersion curves.
+    axial_wavenumber : float or list of them, optional
+        The same by k = pi/L, rad/m.
     up_to : float or str, optional
         Highest frequency (Hz or text, as "2 kHz"); omega a/c_e = 10 unless given.
     most_damped : float
@@ -81,7 +84,7 @@ def natural_frequencies(
         An argument is not allowed, or the system cannot be solved at such wavenumbers.
     """
     described = as_system(system).replace(absorbers=())
-    orders, lengths = whole_orders(order), _lengths(axial_half_wavelength)
+    orders, lengths = whole_orders(order), _lengths(_half_wavelengths(axial_half_wavelength, axial_wavenumber))
     dimensions = 2 if lengths is None else 3
     problem = dimensionless(described, dimensions)
     scales = problem.scales
@@ -94,7 +97,14 @@ def natural_frequencies(
     if lengths is None:
         return dataset.isel(axial_half_wavelength=0, drop=True)
     attributes = {"units": "m", "long_name": "axial half wavelength"}
-    dataset = dataset.assign_coords(axial_half_wavelength=("axial_half_wavelength", np.atleast_1d(lengths), attributes))
+    dataset = dataset.assign_coords(
+        axial_half_wavelength=("axial_half_wavelength", np.atleast_1d(lengths), attributes),
+        axial_wavenumber=(
+            "axial_half_wavelength",
+            math.pi / np.atleast_1d(lengths),
+            {"units": "rad/m", "long_name": "axial wavenumber"},
+        ),
+    )
     return dataset if np.ndim(lengths) else dataset.isel(axial_half_wavelength=0)
 
 
@@ -128,7 +138,7 @@ def _dataset(problem: Problem, orders: list[int], wavenumbers: list[float], foun
             "dry_damping_ratio": (dry_dims, *_damping(dry, "damping ratio of dry modes")),
         },
         coords={"order": ("order", orders, {"long_name": "circumferential order m"}), "shell": names},
-        attrs={"system": problem.system.name, "absorbers": "left out"},
+        attrs={"system": problem.system.name, "absorbers": "left out", "sound_speed": problem.system.exterior.sound_speed},
     )
 
 
@@ -158,6 +168,22 @@ def _each(value: object, name: str, remedy: str) -> Iterator[Any]:
     if not listed:
         raise InputError(name, "is empty", remedy)
     yield from listed
+
+
+def _half_wavelengths(length: Any, wavenumber: Any) -> Any:
+    """Return half wavelengths as they were given, or pi/k; InputError if both are, or a wavenumber is none."""
+    if wavenumber is None:
+        return length
+    remedy = "give wavenumbers above 0 in rad/m"
+    if length is not None:
+        raise InputError("axial_wavenumber", "is given beside axial_half_wavelength", "give one of them: k = pi/L")
+    try:
+        values = np.asarray(wavenumber, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError("axial_wavenumber", f"{shown(wavenumber)} is not a number or a list of numbers", remedy) from None
+    if values.ndim > 1 or values.size == 0 or not np.all(np.isfinite(values) & (values > 0.0)):
+        raise InputError("axial_wavenumber", f"{shown(wavenumber)} is not allowed", remedy)
+    return math.pi / values
 
 
 def _lengths(value: Any) -> float | npt.NDArray[np.float64] | None:

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
+from coaxshell.model.bubble import first_pulse
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.gains import law_of, saturates
@@ -45,6 +46,7 @@ STEP_LIMIT = 1e-3
 MARCH_LIMIT = 1e-2
 LINEAR_ACOUSTICS_LIMIT = 1e-2
 VOLTAGE_LIMIT = 0.05
+BUBBLE_LIMIT = 0.05
 CUT_LIMIT = 0.1
 """Share of a pulse's peak that may come after the run."""
 UNRESOLVED_LIMIT = 0.05
@@ -71,6 +73,7 @@ def before(problem: Problem, grid: LaplaceGrid, max_order: int) -> list[str]:
         + _resolved_membrane(problem, grid, max_order)
         + _linear_acoustics(problem)
         + _similitude(problem)
+        + _bubbles(problem)
         + slice_of_sphere(problem, float(grid.time[-1]))
         + sea(problem, float(grid.time[-1]))
         + thin_walls(problem, float(grid.time[-1]))
@@ -364,6 +367,25 @@ def _similitude(problem: Problem) -> list[str]:
             warnings.append(
                 f"source: the similitude of {fit.name} was fitted to peaks from {low} to {high}, but this charge gives {peak} at the head; "
                 f"{'lessen' if nearer else 'increase'} the stand-off, or give the pressure itself as a spherical-shock"
+            )
+    return warnings
+
+
+def _bubbles(problem: Problem) -> list[str]:
+    """Return a warning for each charge of whose bubble the model and the similitude disagree about the time of the first pulse."""
+    warnings = []
+    for number, source in enumerate(problem.system.sources):
+        if not isinstance(source, UnderwaterExplosion) or source.bubble is None or source.charge_depth is None:
+            continue
+        factor, period = source.constants.bubble_radius, source.bubble.period
+        assert factor is not None
+        found = first_pulse(source.charge_mass, source.charge_depth, factor)
+        if abs(found / period - 1.0) > BUBBLE_LIMIT:
+            warnings.append(
+                f"sources[{number}]: the first bubble pulse comes {engineering(found, 's')} after the shock wave, "
+                f"{engineering(period, 's')} by the similitude of {source.explosive}, more than {100 * BUBBLE_LIMIT:g} % apart: the charge "
+                "lies outside what its model was checked for, 1 to 500 kg and 10 to 100 m deep; give the pressure itself as a "
+                "spherical-wave with a sampled pulse"
             )
     return warnings
 

@@ -185,12 +185,15 @@ def _lowest(problem: Problem, region: int, modal: np.ndarray, time: np.ndarray) 
     if not low.any():
         return None
     place, instant = np.unravel_index(int(excess.argmin()), field.shape)
-    lasting_low = low.copy()  # not what a front's band leaves before and behind it
+    # Of few orders a front's series overshoots far from it, and before it; the means of its partial sums (Fejer) never do.
+    fading = 1.0 - np.arange(modal.shape[1]) / modal.shape[1]
+    means = on_circle(modal * fading[:, None]) - least[:, None]
+    lasting_low = means < 0.0  # not what a front's band leaves before and behind it
     for later in range(1, _LASTING):
-        lasting_low[:, :-later] &= low[:, later:]
+        lasting_low[:, :-later] &= means[:, later:] < 0.0
         lasting_low[:, -later:] = False
     start = int(lasting_low.any(axis=0).argmax()) if lasting_low.any() else int(instant)
-    where = int(np.where(lasting_low[:, start], excess[:, start], 0.0).argmin()) if lasting_low.any() else int(place)
+    where = int(np.where(lasting_low[:, start], means[:, start], 0.0).argmin()) if lasting_low.any() else int(place)
     around = 360.0 / len(angles) if modal.shape[0] == 2 else 360.0 / (len(angles) - 1)
     width = min(360.0, float(low.sum(axis=0).max()) * around)
     lasting = float(low.any(axis=0).sum()) * float(time[1] - time[0])

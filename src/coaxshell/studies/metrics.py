@@ -1,9 +1,10 @@
 """Named metrics: what a study asks of every case, as ``inner.peak_stress``, ``interior.rms_pressure`` or a function of the user's.
 
 A metric named in text is "PLACE.QUANTITY": a shell ("inner", "outer", "middle" of three, "shells[1]"; "shell" where there is one), a
-fluid ("interior", "gap", "exterior", "fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below, or the value of
-a shock spectrum, "PLACE.pseudo_velocity@500 Hz". A function of the user's takes a Response and returns a number; in a study file it is
-written "file.py:function".
+fluid ("interior", "gap", "exterior", "fluids[1]"), "absorbers" or "system", and one of the quantities in the tables below, or what is read
+at a frequency: the value of a shock spectrum, "PLACE.pseudo_velocity@500 Hz", of equipment that the shell feels, "PLACE.mounted_...", or
+of an answer without time, "system.target_strength@500 Hz". A function of the user's takes a Response and returns a number; in a study file
+it is written "file.py:function".
 """
 
 from __future__ import annotations
@@ -26,8 +27,10 @@ from coaxshell.response import Response
 from coaxshell.response.quantities import Where, shell_metrics
 from coaxshell.response.spatial_summary import SpatialSummary
 from coaxshell.response.summary import Summary
-from coaxshell.studies.reading import DesignReading, MetricSource
-from coaxshell.studies.spectrum_metrics import NAMES, SpectrumMetric
+from coaxshell.studies.reading import DesignReading, MetricSource, charges_of
+from coaxshell.studies.spectrum_metrics import NAMES as SPECTRA
+from coaxshell.studies.spectrum_metrics import MountedMetric, SpectrumMetric
+from coaxshell.studies.steady_metrics import OF_SHELLS, OF_SYSTEMS, SteadyMetric, places_of
 from coaxshell.studies.user_functions import UserCode, UserFunction, from_callable, from_text
 
 MetricLike = str | Callable[[Response], float]
@@ -82,7 +85,11 @@ ABSORBER_QUANTITIES = {
 SYSTEM_QUANTITIES = {
     "total_mass": MetricEntry("kg/m", "mass of all shells and absorbers"),
     "time_window_error": MetricEntry("1", "estimated error of the inverse transform"),
+    "hull_shock_factor": MetricEntry("kg^(1/2)/m", "largest hull shock factor of the charges"),
+    "keel_shock_factor": MetricEntry("kg^(1/2)/m", "largest keel shock factor of the charges"),
 }
+_OF_CHARGES = ("hull_shock_factor", "keel_shock_factor")
+"""What systems whose source is an explosion have."""
 WITHOUT_SHELL = {
     "absorbers": {
         "count": "absorber_count",
@@ -92,7 +99,7 @@ WITHOUT_SHELL = {
         "peak_force": "absorber_force",
         "dissipated_energy": "dissipated_energy",
     },
-    "system": {"mass": "total_mass", "time_window_error": "time_window_error"},
+    "system": {"mass": "total_mass", **{name: name for name in ("time_window_error", *_OF_CHARGES)}},
 }
 """Quantities of the absorbers and of the system, by their names in text, and the properties of a reading that give them."""
 _OF_POINTS = {"absorber_mass": "kg", "absorber_force": "N"}
@@ -187,13 +194,16 @@ def require_readable(metrics: Sequence[Metric], dimensions: int) -> None:
             continue
         if metric.quantity in shell_metrics() and metric.quantity not in shell_metrics(dimensions):
             raise InputError(metric.name, "is read at stations of a run in three dimensions", "use dimensions=3, or leave it out")
-        if dimensions == 3 and metric.quantity in _PLANE_ALONE:
+        at_frequency = SteadyMetric.read(metric.quantity) or MountedMetric.read(metric.quantity)
+        if dimensions == 3 and (metric.quantity in _PLANE_ALONE or at_frequency is not None):
             raise InputError(metric.name, "is not read in three dimensions", "use dimensions=2, or a function of the response")
 
 
 def without_shell(system: System) -> dict[str, dict[str, MetricEntry]]:
     """Return what can be asked of the absorbers and of a system, by place and name; units of point absorbers are those of points."""
     entries = {**ABSORBER_QUANTITIES, **SYSTEM_QUANTITIES}
+    if not charges_of(system):
+        entries = {key: entry for key, entry in entries.items() if key not in _OF_CHARGES}
     if system.point_absorbers:
         entries = {key: entry for key, entry in entries.items() if key not in _NOT_OF_POINTS}
         entries |= {key: entries[key]._replace(units=units) for key, units in _OF_POINTS.items()}
@@ -260,11 +270,13 @@ def _metric(asked: Any, name: str | None, system: System, where: str, code: User
     label = name or (f"{text}@{frequency}" if at else text)
     listing, item, quantity = _split(text)
     if at:
-        return _of_spectrum(label, item, SpectrumMetric.of(quantity, frequency, where), system, where)
+        return _at_frequency(label, item, quantity, frequency, system, where)
     if isinstance(item, str) and quantity in WITHOUT_SHELL.get(item, {}):
         attribute = WITHOUT_SHELL[item][quantity]
         if system.point_absorbers and attribute in _NOT_OF_POINTS:
             raise InputError(where, f"{text!r}: {_NOT_OF_POINTS[attribute][0]}", _NOT_OF_POINTS[attribute][1])
+        if attribute in _OF_CHARGES and not charges_of(system):
+            raise InputError(where, f"{text!r}: no source is a charge", "use an underwater-explosion, or leave it out")
         entry = without_shell(system)[item][quantity]
         return Metric(label, entry.units, entry.long_name, item, attribute)
     if listing == "fluids" or (quantity in FLUID_QUANTITIES and item in ("interior", "gap", "exterior")):
@@ -305,15 +317,49 @@ def _has_margin(wall: object, quantity: str) -> bool:
     return quantity != "strength_margin" or (isinstance(wall, Shell) and any(layer.material.strength is not None for layer in wall.layers))
 
 
-def _of_spectrum(label: str, item: str | int, spectrum: SpectrumMetric | None, system: System, where: str) -> Metric:
+def _at_frequency(label: str, item: str | int, quantity: str, text: str, system: System, where: str) -> Metric:
+    """Return what is read at a frequency: of a shock spectrum, of mounted equipment, or of an answer without time."""
+    steady = SteadyMetric.of(quantity, text, where)
+    if steady is not None:
+        return _of_steady(label, item, steady, system, where)
+    spectrum = SpectrumMetric.of(quantity, text, where) or MountedMetric.of(quantity, text, where)
     shell = _shell(item, system)
     if shell is None or spectrum is None:
-        allowed = f"{shell_place(0, len(system.shells))} or another shell with {', '.join(NAMES)} and a frequency"
-        raise InputError(where, f"{label!r} is not a known metric", f"give {allowed}, as in outer.pseudo_velocity@500 Hz")
-    lack = _lacks(system.shells[shell], MetricEntry("", ""))
-    if lack is not None:
-        raise InputError(where, f"{label!r} needs a shell that {lack}", suggestion(label, metric_names(system)))
+        raise InputError(where, f"{label!r} is not a known metric", _allowed_at_frequencies(system))
+    _require_moving(label, shell, system, where)
+    if isinstance(spectrum, MountedMetric) and len(system.shells) < 2:
+        raise InputError(where, f"{label!r}: equipment is mounted in a gap, and one shell has none", "give the system another shell")
     return Metric(label, spectrum.units, f"{spectrum.long_name}, {shell_phrase(shell, len(system.shells))}", shell, spectrum.quantity)
+
+
+def _of_steady(label: str, item: str | int, steady: SteadyMetric, system: System, where: str) -> Metric:
+    if len(system.sources) > 1:
+        raise InputError(
+            where, f"{label!r} is told per pressure of one source, and there are {len(system.sources)}", "use a function of the response"
+        )
+    places, count = places_of(steady), len(system.shells)
+    if "system" in places and item == "system":
+        return Metric(label, steady.units, steady.long_name, "system", steady.quantity)
+    if "shell" in places and (shell := _shell(item, system)) is not None:
+        _require_moving(label, shell, system, where, *(["sensor", "actuator"] if steady.name.endswith("_voltage") else []))
+        return Metric(label, steady.units, f"{steady.long_name}, {shell_phrase(shell, count)}", shell, steady.quantity)
+    number = item if isinstance(item, int) else region_number(item, count)
+    if "fluid" in places and number is not None and number < count and not isinstance(system.fluids[number], Vacuum):
+        return Metric(label, steady.units, f"{steady.long_name}, {region_name(number, count)}", number, steady.quantity)
+    raise InputError(where, f"{label!r} is not a known metric", _allowed_at_frequencies(system))
+
+
+def _allowed_at_frequencies(system: System) -> str:
+    shells = f"{shell_place(0, len(system.shells))} or another shell with {', '.join(SPECTRA)}"
+    steady = f"with {', '.join(OF_SHELLS)}; or system with {', '.join(OF_SYSTEMS)}"
+    return f"give {shells} and a frequency, as in outer.pseudo_velocity@500 Hz; {steady}"
+
+
+def _require_moving(label: str, shell: int, system: System, where: str, *needs: str) -> None:
+    for need in ("", *needs):
+        lack = _lacks(system.shells[shell], MetricEntry("", "", need))
+        if lack is not None:
+            raise InputError(where, f"{label!r} needs a shell that {lack}", suggestion(label, metric_names(system)))
 
 
 def _of_fluid(text: str, label: str, item: str | int, quantity: str, system: System, where: str) -> Metric:

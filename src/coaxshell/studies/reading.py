@@ -10,6 +10,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
+from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
@@ -23,7 +24,8 @@ from coaxshell.response.voltages import actuator_limit, cut_voltage, demanded_vo
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.wall_stress import usual_component
 from coaxshell.solver.electrodes import segment_length
-from coaxshell.studies.spectrum_metrics import SpectrumMetric
+from coaxshell.studies.spectrum_metrics import MountedMetric, SpectrumMetric
+from coaxshell.studies.steady_metrics import SteadyMetric
 
 
 class DesignReading:
@@ -99,6 +101,12 @@ class MetricSource(DesignReading):
         if spectrum is not None:
             assert isinstance(place, int)
             return max(spectrum.largest(motion, place, self._head) for motion in self.response.motions)
+        steady, mounted = SteadyMetric.read(name), MountedMetric.read(name)
+        if steady is not None:
+            return steady.value(self.system, place)
+        if mounted is not None:
+            assert isinstance(place, int)
+            return mounted.value(self.response, place)
         entry = shell_metrics().get(name)
         if entry is None:
             return super().number(name, place)
@@ -207,10 +215,26 @@ class MetricSource(DesignReading):
         last = Motion.of(self.solution, self.solution.time.size - 1)
         return float(absorber_energy(last).dissipated[-1]) * self.solution.problem.scales.line_energy
 
+    @property
+    def hull_shock_factor(self) -> float:
+        """Largest hull shock factor of the charges, kg^(1/2)/m."""
+        return max(charge.hull_shock_factor for charge in charges_of(self.system))
+
+    @property
+    def keel_shock_factor(self) -> float:
+        """Largest keel shock factor of the charges, kg^(1/2)/m: the surface lies where the sea says, 90 degrees without one."""
+        up = 90.0 if self.system.sea is None else self.system.sea.up
+        return max(charge.keel_shock_factor(up) for charge in charges_of(self.system))
+
     @cached_property
     def time_window_error(self) -> float:
         """Estimate of the error of the inverse transform, relative."""
         return float(self.solution.estimates.time_window)
+
+
+def charges_of(system: System) -> list[UnderwaterExplosion]:
+    """Return the sources that are charges."""
+    return [source for source in system.sources if isinstance(source, UnderwaterExplosion)]
 
 
 def require_lines(system: System) -> None:

@@ -23,6 +23,9 @@ def modes(
             help="Of motion along the axis: a shell's length between diaphragms. Nothing changes along it if left out.",
         ),
     ] = None,
+    wavenumber: Annotated[
+        str | None, typer.Option("--wavenumber", metavar="K,...", help="Along the axis, rad/m, as in 1,2,5: the same by k = pi/length.")
+    ] = None,
     up_to: Annotated[
         str | None, typer.Option("--up-to", metavar="FREQUENCY", help='Highest one, as in "2 kHz".', show_default="ten transits' worth")
     ] = None,
@@ -34,7 +37,7 @@ def modes(
     """Find the natural frequencies of the shells.
 
     In their fluids and without. Each order rings at a few frequencies and loses its sound to the fluid outside: the damping ratio tells
-    how fast. Shells with feedback are taken with it, absorbers are left out. Several half wavelengths give dispersion curves.
+    how fast. Shells with feedback are taken with it, absorbers are left out. Several along the axis give dispersion curves.
     """
     from coaxshell.apps.cli.running import load_system
     from coaxshell.export.natural_frequencies import export_natural_frequencies_csv, rows_of
@@ -45,9 +48,16 @@ def modes(
     system = load_system(scenario, changes or ())
     lengths: Any = None if half_wavelength is None else [each.strip() for each in half_wavelength.split(",")]
     ratio = options.number("--most-damped", most_damped)
-    renamed = {"order": "order", "axial_half_wavelength": "axial-half-wavelength", "up_to": "up-to", "most_damped": "most-damped"}
+    along = None if wavenumber is None else [options.number("--wavenumber", each) for each in wavenumber.split(",")]
+    renamed = {
+        "axial_wavenumber": "wavenumber",
+        "order": "order",
+        "axial_half_wavelength": "axial-half-wavelength",
+        "up_to": "up-to",
+        "most_damped": "most-damped",
+    }
     with options.named_as_options(**renamed):
-        found = natural_frequencies(system, orders_of(order), lengths, up_to=up_to, most_damped=ratio)
+        found = natural_frequencies(system, orders_of(order), lengths, axial_wavenumber=along, up_to=up_to, most_damped=ratio)
     rows = list(rows_of(found))
     if as_json:
         print_document({"system": system.name, "absorbers": "left out", "modes": rows})

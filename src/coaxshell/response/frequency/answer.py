@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.acoustics.sources import PlaneGeometry
+from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.errors import InputError, PhysicsWarning
 from coaxshell.model.base import shown
 from coaxshell.model.loading import SystemLike, as_system
@@ -22,7 +22,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.scalars import plain
-from coaxshell.response.frequency import fields, remarks, walls
+from coaxshell.response.frequency import along, fields, remarks, walls
 from coaxshell.response.frequency.request import WIDTHS, Asked, SteadyOptions, asked, frequencies
 from coaxshell.response.frequency.steady import Steady, Tail
 from coaxshell.response.labels import angle_coordinate
@@ -32,7 +32,8 @@ from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.steady import DAMPED, Frequencies, SteadySystem
-from coaxshell.structure.losses import USUAL_BAND
+from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.losses import USUAL_BAND, Band
 
 _BLOCK = 2**17
 """Orders times frequencies that are solved together."""
@@ -70,11 +71,14 @@ def frequency_response(
     modes : int, optional
         Highest circumferential order; what frequencies and sources ask for unless given.
     dimensions : int
-        3 where plane waves are inclined to the cross-section: the answer is that at z = 0 and goes with exp(-i omega z sin(alpha)/c_e).
+        3 where plane waves are inclined to the cross-section, or of a point source, whose wavenumbers along the axis are added up
+        (:mod:`coaxshell.response.frequency.along`): motions, stresses, voltages and pressures.
     shell, angle, component, depth
         Of a shell ("outer"), degrees, a stress ("hoop") or a direction of motion, m outward from the mid-surface.
     radius, part
         Of a pressure, in outermost radii a; "total", outside also "incident" or "scattered".
+    z : float or str
+        Position along the axis, m, in three dimensions; 0 unless given.
     region : str, optional
         Fluid within the shells over which a transmission loss takes its mean square; the axis unless given.
     force : (shell, degrees), optional
@@ -136,6 +140,8 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
         raise InputError("sea", "an answer at a frequency is that of unbounded water", "leave the sea out, or give it surface = false")
     require_whole_electrodes(system, "an answer at a frequency", "leave segments out")
     if dimensions == 2:
+        if what.z:
+            raise InputError("z", f"{what.z:g} m has no meaning in two dimensions", "leave it out, or use dimensions=3")
         require_two_dimensions(system, Settings())
     elif system.point_absorbers:
         raise InputError(
@@ -145,19 +151,41 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
     hertz = frequencies(frequency, transit)
     omega = 2.0 * math.pi * transit * np.atleast_1d(hertz)
     band = USUAL_BAND.with_frequency(float(omega.min())).with_frequency(float(omega.max()))
-    problem = _directed(dimensionless(system, dimensions, band=band), what).resolving(float(omega.max()))
+    problem = _directed(_problem(system, dimensions, band), what).resolving(float(omega.max()))
     orders = _orders(problem, what, float(omega.max()), modes)
     _require(problem, what)
     require_stable(problem, orders, _WATCHED)
-    tail, trace = Tail(), 0.0 if what.force is not None else _trace(problem, dimensions)
-    parts = []
-    for some in _blocks(omega, orders):
-        grid = Frequencies.of(some)
-        steady_modes = Modes.up_to(orders, -1j * grid.nodes * trace if trace else 0.0)
-        parts.append(_read(SteadySystem(problem, grid, steady_modes), what, tail))
-    values: Any = np.concatenate(parts)
-    told = remarks.remarks(problem, float(omega.max()), tail.share, orders, what)
+    tail, told = Tail(), list[str]()
+    if what.force is None and dimensions == 3 and any(isinstance(one, SphericalFrontGeometry) for one in problem.sources):
+        values, apart = along.of_point_source(problem, omega, orders, what, tail, _read)
+        told += along.remarks(apart)
+    else:
+        trace = 0.0 if what.force is not None else _trace(problem, dimensions)
+        parts = []
+        solid = trace != 0.0 and any(isinstance(wall, ElasticWall) for wall in problem.shells)
+        for some in _blocks(omega, orders, 1 if solid else None):
+            grid = Frequencies.of(some)
+            # Shapes of solids are those of one real wavenumber, which that of a wave without damping is.
+            along_axis = float(some[0]) * trace if solid else -1j * grid.nodes * trace
+            parts.append(_read(SteadySystem(problem, grid, Modes.up_to(orders, along_axis if trace else 0.0)), what, tail))
+        values = np.concatenate(parts)
+        if trace and what.z:
+            travelled = np.exp(-Frequencies.of(omega).nodes * (trace * what.z / problem.scales.length))
+            values = values * travelled.reshape(-1, *[1] * (values.ndim - 1))
+    told += remarks.remarks(problem, float(omega.max()), tail.share, orders, what)
     return _Solved(values if np.ndim(hertz) else np.asarray(values[0]), hertz, orders, told)
+
+
+def _problem(system: System, dimensions: int, band: Band) -> Problem:
+    """Return the problem of a system, also of solid walls under inclined waves: at a frequency their wavenumber is real."""
+    if dimensions == 2 or not any(getattr(shell, "theory", "") == "elastic" for shell in system.shells):
+        return dimensionless(system, dimensions, band=band)
+    inclined = [getattr(source, "inclination", 0.0) for source in system.sources]
+    flat = [source.replace(inclination=0.0) if turned else source for source, turned in zip(system.sources, inclined, strict=True)]
+    problem = dimensionless(system.replace(source=flat if len(flat) > 1 else flat[0]), dimensions, band=band)
+    pairs = zip(problem.sources, inclined, strict=True)
+    sources = tuple(replace(one, inclination=turned) if isinstance(one, PlaneGeometry) else one for one, turned in pairs)
+    return replace(problem, system=system, sources=sources)
 
 
 def _directed(problem: Problem, what: Asked) -> Problem:
@@ -171,15 +199,12 @@ def _directed(problem: Problem, what: Asked) -> Problem:
 
 
 def _trace(problem: Problem, dimensions: int) -> float:
-    """Return sin(alpha) of the plane waves of three dimensions, alike for all; InputError where there are other waves."""
+    """Return sin(alpha) of the plane waves of three dimensions, alike for all; lines have 0."""
     if dimensions == 2:
         return 0.0
     found = set()
     for geometry in problem.sources:
-        if not isinstance(geometry, PlaneGeometry):
-            remedy = "use plane waves, which have one for each frequency, or dimensions=2"
-            raise InputError("dimensions", "a point source has all axial wavenumbers at a frequency", remedy)
-        found.add(geometry.trace_slowness)
+        found.add(geometry.trace_slowness if isinstance(geometry, PlaneGeometry) else 0.0)
     if len(found) > 1:
         raise InputError("source", "the waves are inclined differently", "give the number of one, source=0")
     return found.pop()
@@ -202,8 +227,8 @@ def _orders(problem: Problem, what: Asked, highest: float, modes: int | None) ->
     return min(math.ceil(found), MOST_MODES)
 
 
-def _blocks(omega: FloatArray, orders: int) -> list[FloatArray]:
-    width = max(16, _BLOCK // (orders + 1))
+def _blocks(omega: FloatArray, orders: int, width: int | None = None) -> list[FloatArray]:
+    width = width or max(16, _BLOCK // (orders + 1))
     return [omega[start : start + width] for start in range(0, omega.size, width)]
 
 

@@ -12,6 +12,7 @@ from coaxshell.acoustics.sources import SteadyGeometry
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.frequency.steady import Steady, with_parities
+from coaxshell.solver.scaling import Problem
 
 CENTRE = 1e-9
 """Least radius at which a disc is evaluated, in a."""
@@ -54,9 +55,9 @@ def modal_pressure(steady: Steady, region: int, radius: float, driven: Slopes) -
     return driven.inner * from_inner.pressure + driven.outer * from_outer.pressure
 
 
-def region_of(steady: Steady, radius: float) -> int | None:
+def region_of(problem: Problem, radius: float) -> int | None:
     """Return the number of the fluid at a radius (in a); None within a wall or in a vacuum. On a face it is the fluid there."""
-    walls, region = steady.problem.shells, 0
+    walls, region = problem.shells, 0
     for wall in walls:
         inner, outer = wall.wetted
         if radius <= inner * (1.0 + 1e-12):
@@ -64,7 +65,7 @@ def region_of(steady: Steady, radius: float) -> int | None:
         if radius < outer * (1.0 - 1e-12):
             return None
         region += 1
-    return region if steady.problem.fluids[region] is not None else None
+    return region if problem.fluids[region] is not None else None
 
 
 def pressure_at(steady: Steady, radii: FloatArray, theta: FloatArray, part: str, incident: ComplexArray | None) -> ComplexArray:
@@ -81,7 +82,7 @@ def pressure_at(steady: Steady, radii: FloatArray, theta: FloatArray, part: str,
     """
     found = np.full((steady.s.size, radii.size, np.size(theta)), np.nan + 0j)
     for number, radius in enumerate(radii):
-        region = region_of(steady, float(radius))
+        region = region_of(steady.problem, float(radius))
         if region is None:
             continue
         outside = region == len(steady.problem.shells)

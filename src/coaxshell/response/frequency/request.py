@@ -98,6 +98,7 @@ class SteadyOptions(TypedDict, total=False):
     radius: npt.ArrayLike
     part: str
     region: int | str
+    z: float
     force: tuple[int | str, float]
     source: int
     per: Per
@@ -113,6 +114,7 @@ _BELONGS: dict[str, tuple[Kind, ...]] = {
     "radius": ("field",),
     "part": ("field",),
     "region": ("through",),
+    "z": ("shell", "field"),
     "force": ("shell", "field", "absorbers", "point"),
     "source": ("shell", "field", "absorbers", "target", "through"),
     "per": ("shell", "field", "absorbers"),
@@ -137,6 +139,8 @@ class Asked:
     depth : object
     region : int or None
         Over which a mean is taken; None for the axis.
+    z : float
+        Position along the axis, m.
     force : LineForce or None
     source : int or None
         The one that is meant; None for all together, with their own spectra.
@@ -153,6 +157,7 @@ class Asked:
     component: str
     depth: object
     region: int | None
+    z: float
     force: LineForce | None
     source: int | None
     per: str
@@ -181,9 +186,9 @@ def asked(system: System, quantity: str, options: SteadyOptions) -> Asked:
     if what.name != "insertion_loss" and "against" in options:
         raise InputError("against", f"has no effect on {quantity}", "use insertion_loss")
     region = _region(system, options.get("region")) if what.kind == "through" else None
-    length = _length(options, what)
+    length, z = _length(options, what), _position(options.get("z", 0.0))
     component = options.get("component", "hoop" if what.name == "stress" else what.component)
-    return Asked(what, shell, theta, radii, part, component, options.get("depth"), region, force, source, per, length)
+    return Asked(what, shell, theta, radii, part, component, options.get("depth"), region, z, force, source, per, length)
 
 
 def _with_depth(name: str) -> tuple[str, ...]:
@@ -263,6 +268,14 @@ def _region(system: System, region: object) -> int | None:
     if isinstance(system.fluids[number], Vacuum):
         raise InputError("region", f"there is a vacuum in the {region_name(number, count)}", remedy)
     return number
+
+
+def _position(value: object) -> float:
+    """Return a position along the axis, m."""
+    try:
+        return to_si(plain(value), "length")
+    except InputError as error:
+        raise InputError("z", error.problem, 'give a position along the axis in m, or a text such as "3 m"') from None
 
 
 def _length(options: SteadyOptions, what: SteadyQuantity) -> float | None:
