@@ -14,7 +14,6 @@ from typing import Any, NamedTuple, get_args
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import lfilter
 
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, PointAbsorber
@@ -127,6 +126,8 @@ class _Oscillator(NamedTuple):
 
     def _stroke(self, force: FloatArray, step: float) -> FloatArray:
         """Return z of k z + c z' = f, z(0) = 0, for a force linear between instants: (f - c f'/k)/k and what decays."""
+        from scipy.signal import lfilter  # takes time to import
+
         spring, damper = self.mass * self.omega**2, self.mass * self.omega / self.quality
         kept = math.exp(-step * spring / damper)
         lag = damper / spring * np.diff(force) / step
