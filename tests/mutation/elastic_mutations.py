@@ -184,8 +184,8 @@ ELASTIC = (
     Mutation(
         "solid-electrodes-hoop",
         "structure/solid_transducers.py",
-        "reduced = e[0, HOOP] - e[0, RADIAL] * c23 / c33",
-        "reduced = e[0, HOOP]",
+        "e[0, place] - e[0, RADIAL] * layer.stiffness[RADIAL][place] / c33",
+        "e[0, place]",
         "what a driven layer reads: strain along it at free thickness",
         "solver/test_exact_control.py",
     ),

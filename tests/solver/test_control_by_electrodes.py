@@ -199,7 +199,6 @@ def test_gains_of_each_shell():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"dimensions": 3, "stations": [0.0]}, ("control.transducers", "two dimensions only", "dimensions=2")),
         ({"engine": "direct"}, ("control.transducers", "pressure alone", 'engine="spectral"')),
         ({"saturation": True}, ("control.saturation", "push along the wall", "saturation = false")),
     ],

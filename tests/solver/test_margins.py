@@ -107,6 +107,22 @@ def test_labelled_and_drawn():
     assert [ax.get_xlabel() for ax in figure.axes] == ["circumferential order $m$", "Re $L$", "frequency (Hz)", "frequency (Hz)"]
 
 
+def test_margins_by_axial_wavenumber():
+    # Those of k = 0 are those of two dimensions; beyond the ellipse of the run's waves there is none.
+    system = pairs(numerator=[2 * TIME, 3.0])
+    margins, worst = worst_loops(system, Settings(duration=0.5, modes=3, dimensions=3, stations=[0.0]))
+    flat, _ = worst_loops(system, Settings(duration=0.5, modes=3))
+    assert margins["delay_margin"].dims == ("shell", "wavenumber", "order")
+    for name in ("gain_margin", "phase_margin", "delay_margin"):
+        np.testing.assert_array_equal(margins[name].values[:, 0], flat[name].values)
+    assert margins["wavenumber"].values[[0, -1]] == pytest.approx([0.0, 3.0])  # a = 1 m
+    assert np.isnan(margins["delay_margin"].values[:, -1, 1:]).all()
+    for place, loop in enumerate(worst):
+        least = margins["delay_margin"].isel(shell=place).sel(order=loop.order).sel(wavenumber=loop.wavenumber, method="nearest")
+        assert float(least) == float(np.nanmin(margins["delay_margin"].values[place]))
+    assert "/m" in figure_margins(margins, worst).axes[1].get_legend().get_texts()[0].get_text() or worst[0].wavenumber == 0.0
+
+
 @pytest.mark.parametrize(
     ("system", "changes", "words"),
     [
@@ -114,7 +130,7 @@ def test_labelled_and_drawn():
         (pairs(numerator=[0.0]), {}, ("nothing is fed back",)),
         (pairs(numerator=[-TIME, 0.0]), {}, ("unstable",)),
         (pairs(numerator=[1.0]), {"modes": "auto"}, ("modes: 'auto'", "highest order")),
-        (pairs(numerator=[1.0]), {"dimensions": 3}, ("dimensions:", "dimensions=2")),
+        (pairs(numerator=[-TIME, 0.0]), {"dimensions": 3}, ("unstable",)),
     ],
 )
 def test_refused_in_one_line(system, changes, words):

@@ -140,7 +140,6 @@ def test_unstable_loops_are_refused(law, words):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"dimensions": 3, "stations": [0.0]}, ("control: Feedback", "two dimensions only", "PDControl")),
         ({"engine": "direct"}, ("control: Feedback", "direct engine", 'engine="spectral"')),
     ],
 )

@@ -38,10 +38,11 @@ def figure_margins(margins: xr.Dataset, worst: list[LoopResponse]) -> Figure:
 
 
 def plot_delay_margins(margins: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """Draw the delay that each order's loop stands."""
+    """Draw the delay that each order's loop stands, in three dimensions the least of all axial wavenumbers."""
     ax = _axes(ax)
     for place, name in enumerate(margins["shell"].values):
         each = margins["delay_margin"].isel(shell=place)
+        each = each.min("wavenumber") if "wavenumber" in each.dims else each
         ax.plot(each["order"], 1e6 * each, ".-", color=COLOURS[_SHELLS[place % len(_SHELLS)]], label=str(name))
     if np.isfinite(margins["delay_margin"]).any():
         ax.set_yscale("log")
@@ -58,7 +59,7 @@ def plot_nyquist(worst: list[LoopResponse], ax: Axes | None = None) -> Axes:
     ax.plot(np.cos(turn), np.sin(turn), color=COLOURS["grey"], linewidth=0.6)
     for place, loop in enumerate(worst):
         colour = COLOURS[_SHELLS[place % len(_SHELLS)]]
-        ax.plot(loop.values.real, loop.values.imag, color=colour, label=f"{loop.shell}, order {loop.order}")
+        ax.plot(loop.values.real, loop.values.imag, color=colour, label=f"{loop.shell}, order {loop.order}{_along(loop)}")
     ax.plot(1.0, 0.0, "+", color=COLOURS["grey"], markersize=9)
     ax.set_xlim(-_FAR, _FAR)
     ax.set_ylim(-_FAR, _FAR)
@@ -83,6 +84,10 @@ def plot_bode(worst: list[LoopResponse], size: Axes, phase: Axes) -> None:
     for ax in (size, phase):
         ax.set_xlabel("frequency (Hz)")
         ax.set_xlim(left=min((loop.frequency[loop.frequency > 0.0][0] for loop in worst), default=1.0))
+
+
+def _along(loop: LoopResponse) -> str:
+    return f", $k$ = {loop.wavenumber:.3g}/m" if loop.wavenumber else ""
 
 
 def _axes(ax: Axes | None) -> Axes:

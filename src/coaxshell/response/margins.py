@@ -13,6 +13,8 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.dimensions import require_whole_electrodes
 from coaxshell.solver.margins import Loop, LoopMargins, loops, margins_of
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -20,6 +22,8 @@ from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.stability import require_stable
 
 _DEGREES, _HERTZ, _SECONDS, _FACTOR = "deg", "Hz", "s", "1"
+_WAVES = 12
+"""Axial wavenumbers in three dimensions."""
 _VARIABLES = {
     "gain_margin": (_FACTOR, "least factor above 1 on the gain at which the order grows"),
     "lesser_gain_margin": (_FACTOR, "largest factor below 1 on the gain at which the order grows, 0 where there is none"),
@@ -32,12 +36,13 @@ _VARIABLES = {
 
 
 class LoopResponse(NamedTuple):
-    """L of an order of a shell's loop at frequencies (Hz): 1 - L = 0 is where it would grow."""
+    """L of an order of a shell's loop at frequencies (Hz): 1 - L = 0 is where it would grow. An axial ``wavenumber`` is in 1/m."""
 
     shell: str
     order: int
     frequency: FloatArray
     values: ComplexArray
+    wavenumber: float = 0.0
 
 
 def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) -> xr.Dataset:
@@ -56,13 +61,14 @@ def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) 
 
     Returns
     -------
-    Dataset, dims (shell, order)
-        Infinite margins where no change of that kind makes an order grow, of the gain by about ten times or less.
+    Dataset, dims (shell, order), in three dimensions (shell, wavenumber, order)
+        Infinite margins where no change of that kind makes an order grow, of the gain by about ten times or less. In three dimensions of
+        twelve axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not.
 
     Raises
     ------
     InputError
-        If nothing is fed back, the system is unstable, or in three dimensions.
+        If nothing is fed back, or the system is unstable.
     """
     found = as_system(system)
     settings = Settings.asked(found, keywords)
@@ -71,6 +77,8 @@ def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) 
 
 def worst_loops(system: System, settings: Settings) -> tuple[xr.Dataset, list[LoopResponse]]:
     """Return the margins of a system, and L of the order of each loop that stands the least delay."""
+    if settings.dimensions == 3:
+        return _worst_waves(system, settings)
     problem, modes = _problem(system, settings)
     all_loops = loops(problem, modes, _least(settings))
     margins = {shell: margins_of(modes.orders, *loop) for shell, loop in all_loops.items()}
@@ -80,35 +88,67 @@ def worst_loops(system: System, settings: Settings) -> tuple[xr.Dataset, list[Lo
 
 def labelled(problem: Problem, modes: Modes, margins: dict[int, LoopMargins]) -> xr.Dataset:
     """Return margins in SI with names and units."""
-    count, hertz = len(problem.shells), 1.0 / (2.0 * np.pi * problem.scales.time)
-    units = {_DEGREES: 180.0 / np.pi, _SECONDS: problem.scales.time, _HERTZ: hertz, _FACTOR: 1.0}
-    names = {name: name.removeprefix("lesser_").replace("_margin", "") for name in _VARIABLES}
-    names["lesser_gain_margin"] = "lesser_gain"
-    variables = {
-        name: xr.Variable(
-            ("shell", "order"),
-            units[unit] * np.stack([getattr(one, names[name]) for one in margins.values()]),
-            {"units": unit, "long_name": told},
-        )
-        for name, (unit, told) in _VARIABLES.items()
+    values = {name: np.stack([_entry(one, name, problem) for one in margins.values()]) for name in _VARIABLES}
+    return _dataset(problem, list(margins), modes.orders, ("shell", "order"), values)
+
+
+def _entry(margins: LoopMargins, name: str, problem: Problem) -> FloatArray:
+    """Return a margin of each order in SI."""
+    units = {
+        _DEGREES: 180.0 / np.pi,
+        _SECONDS: problem.scales.time,
+        _HERTZ: 1.0 / (2.0 * np.pi * problem.scales.time),
+        _FACTOR: 1.0,
     }
+    kept = "lesser_gain" if name == "lesser_gain_margin" else name.replace("_margin", "")
+    return np.asarray(units[_VARIABLES[name][0]] * getattr(margins, kept))
+
+
+def _dataset(
+    problem: Problem, shells: list[int], orders: FloatArray, dims: tuple[str, ...], values: dict[str, FloatArray], **axes: xr.Variable
+) -> xr.Dataset:
+    variables = {name: xr.Variable(dims, values[name], {"units": unit, "long_name": told}) for name, (unit, told) in _VARIABLES.items()}
     coordinates = {
-        "shell": xr.Variable("shell", [shell_name(i, count) for i in margins]),
-        "order": xr.Variable("order", modes.orders.astype(int), {"long_name": "circumferential order m"}),
+        "shell": xr.Variable("shell", [shell_name(i, len(problem.shells)) for i in shells]),
+        "order": xr.Variable("order", orders.astype(int), {"long_name": "circumferential order m"}),
+        **axes,
     }
     return xr.Dataset(variables, coordinates)
 
 
+def _worst_waves(system: System, settings: Settings) -> tuple[xr.Dataset, list[LoopResponse]]:
+    """Return the margins of the waves of a run in three dimensions, and L of the wave of each loop that stands the least delay."""
+    problem, orders = _problem(system, settings)
+    highest = settings.axial_modes or float(orders.max_order)
+    sampling = AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, orders.max_order, highest)
+    require_stable_waves(problem, sampling, settings.duration)
+    found: dict[str, FloatArray] = {}
+    worst: dict[int, LoopResponse] = {}
+    for place, modes in enumerate(sampling.modes):
+        each = loops(problem, modes, _least(settings))
+        for row, (shell, loop) in enumerate(each.items()):
+            margins = margins_of(modes.orders, *loop)
+            for name in _VARIABLES:
+                whole = found.setdefault(name, np.full((len(each), len(sampling.modes), orders.count), np.nan))
+                whole[row, place, : modes.count] = _entry(margins, name, problem)
+            known = found["delay_margin"][row]
+            if shell not in worst or margins.delay.min() * problem.scales.time <= np.nanmin(known):
+                k = float(modes.wavenumber) / problem.scales.length
+                worst[shell] = _of_order(problem, shell, int(margins.delay.argmin()), loop)._replace(wavenumber=k)
+    told = {"units": "1/m", "long_name": "axial wavenumber k"}
+    axis = xr.Variable("wavenumber", sampling.wavenumbers / problem.scales.length, told)
+    return _dataset(problem, list(worst), orders.orders, ("shell", "wavenumber", "order"), found, wavenumber=axis), list(worst.values())
+
+
 def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
-    if settings.dimensions == 3:
-        raise InputError("dimensions", "margins are those of motion that is alike along the axis", "use dimensions=2")
     require_whole_electrodes(system, "the list of margins by order", "leave segments out")
     if not isinstance(settings.modes, int):
         raise InputError("modes", f"{settings.modes!r} is not allowed here", "give the highest order")
-    problem = dimensionless(system, settings=settings)
+    problem = dimensionless(system, settings.dimensions, settings)
     if all(wall.gains is None or wall.gains.zero for wall in problem.shells):
         raise InputError("control", "nothing is fed back", "give the system a PDControl or a Feedback")
-    require_stable(problem, settings.modes, settings.duration)
+    if settings.dimensions == 2:
+        require_stable(problem, settings.modes, settings.duration)
     return problem, Modes.up_to(settings.modes)
 
 

@@ -32,7 +32,7 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
-    _require_plane_electrodes(system, dimensions)
+    _require_linear_electrodes(system)
     _require_segments(system, dimensions)
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
@@ -43,25 +43,16 @@ def require_sources_alone(system: System, dimensions: int) -> None:
             where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
             problem = f"a wave along the axis has complex wavenumbers, which shells[{solid}], an elastic wall, does not know"
             raise InputError(f"{where}.inclination", problem, f"use inclination = 0, {thin}")
-    if system.control is not None and dimensions == 3:
-        raise InputError(
-            "control", f"feedback on shells[{solid}], an elastic wall, is known in two dimensions only", f"use dimensions=2, {thin}"
-        )
     if saturates(system):
         problem = f"the voltage on shells[{solid}], an elastic wall, has no limit that is marched yet"
         raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {thin}")
 
 
-def _require_plane_electrodes(system: System, dimensions: int) -> None:
-    """Raise InputError if feedback by electrodes or by any law is asked for in three dimensions, or is to saturate."""
-    if any(isinstance(law, Feedback) for law in laws_of(system)) and dimensions == 3:
-        problem = "Feedback is solved in two dimensions only"
-        raise InputError("control", problem, 'use dimensions=2, or PDControl with transducers = "paper"')
+def _require_linear_electrodes(system: System) -> None:
+    """Raise InputError if feedback by electrodes is to saturate."""
     if not any(law.transducers == "electrodes" for law in laws_of(system)):
         return
     paper = 'or transducers = "paper"'
-    if dimensions == 3:
-        raise InputError("control.transducers", "'electrodes' is solved in two dimensions only", f"use dimensions=2, {paper}")
     if saturates(system):
         problem = "electrodes push along the wall too, where no limit of the voltage is marched yet"
         raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {paper}")

@@ -5,9 +5,11 @@ Re s > 0. A wall whose own impedance with feedback, Z(s)/s, has one too on all o
 function is least on the boundary), and then no fluid and no other such wall can make their determinant zero there. Where feedback acts
 on V as well, V alone has to be passive first, so that Z has no poles.
 
-The line is walked at nodes as far from each other as the functions bend: beside each resonance of V and of the law at distances that grow
-from sigma_0, and by a growing step in between. A delay turns the feedback between nodes: where by more than half a radian, its phase
-counts at its worst.
+In waves along the axis U and V together have to be: the Hermitian part of their 2 x 2, over s, is positive definite.
+
+The line is walked at nodes as far from each other as the functions bend: beside each resonance of V (of U and V) and of the law at
+distances that grow from sigma_0, and by a growing step in between. A delay turns the feedback between nodes: where by more than half a
+radian, its phase counts at its worst.
 """
 
 from __future__ import annotations
@@ -38,11 +40,11 @@ _SURE = 0.25
 
 def passive_orders(problem: Problem, modes: Modes, least: float) -> Orders:
     """Return which orders no feedback of the problem can make grow by more than a rate per transit; True only where that is certain."""
-    known = modes.two_dimensional and all(fluid is None or type(fluid) is FluidRegion for fluid in problem.fluids)
+    known = np.ndim(modes.wavenumber) == 0 and all(fluid is None or type(fluid) is FluidRegion for fluid in problem.fluids)
     found = np.full(modes.count, known)
     for wall in problem.shells:
         if wall.gains is not None and found.any():
-            found[found] = _passive(wall, Modes(modes.orders[found], sparse=modes.sparse), least)
+            found[found] = _passive(wall, Modes(modes.orders[found], modes.wavenumber, modes.sparse), least)
     return found
 
 
@@ -52,7 +54,10 @@ def _passive(wall: ShellModel, modes: Modes, least: float) -> Orders:
     fed = np.asarray(wall.gains.weight(modes.orders)) * np.ones(modes.count) != 0.0
     if not fed.any():
         return np.ones_like(fed)
-    some = Modes(modes.orders[fed], sparse=modes.sparse)
+    passive = ~fed
+    if wall.gains.delay and not modes.two_dimensional:
+        return passive  # a delay that no node follows would have to be bounded along the wall too
+    some = Modes(modes.orders[fed], modes.wavenumber, modes.sparse)
     s = np.asarray(least + 1j * _frequencies(wall, some, least), dtype=np.complex128)
     resistance = wall.resistance(some, s)
     if wall.gains.delay:
@@ -62,7 +67,6 @@ def _passive(wall: ShellModel, modes: Modes, least: float) -> Orders:
         whole, alone = (np.asarray(one.operator(some, s).impedance) for one in (wall, wall.with_gains(None)))
         fed_back = np.abs((whole - alone) / s)
         resistance = np.where(worst, np.minimum(resistance, wall.mass * least - fed_back), resistance)
-    passive = np.ones(modes.count, dtype=np.bool_)
     passive[fed] = (resistance > _SURE * wall.mass * least).all(axis=1)
     return passive
 
@@ -76,7 +80,7 @@ def _frequencies(wall: ShellModel, modes: Modes, least: float) -> FloatArray:
     common += [np.asarray(np.abs(frequency + max(width, least) * beside)) for frequency, width in wall.gains.resonances]
     if wall.gains.delay:
         common.append(np.arange(0.0, _LATE) * (_TURNED / wall.gains.delay))
-    own = {x.tobytes(): x for x in (wall.with_gains(None).highest_frequency(modes), wall.highest_frequency(modes))}
+    own = {x.tobytes(): x for one in (wall.with_gains(None), wall) for x in one.along_frequencies(modes).T}
     each = [np.abs(x[:, None] + least * beside) for x in own.values()]
     rows = [np.broadcast_to(x, (modes.count, x.size)) for x in common]
     return np.sort(np.concatenate([*rows, *each], axis=1), axis=1)

@@ -166,7 +166,7 @@ def _resonance(problem: Problem, modes: Modes) -> float:
 def along_alone(problem: Problem, modes: Modes) -> Problem:
     """Return the problem whose elastic walls bend and stretch along themselves alone.
 
-    Voltages find no inertia in motions through the thickness (:data:`coaxshell.structure.solid_transducers.ALONG`).
+    Voltages find no inertia in motions through the thickness (:func:`coaxshell.structure.solid_transducers.along_wall`).
     """
     if not problem.two_faced:
         return problem

@@ -128,18 +128,6 @@ def axial_stiffness(section: Section, modes: Modes) -> FloatArray:
     return layer_stiffness(section, at) + open_circuit_stiffness(section, modes, at)
 
 
-def axial_operator(section: Section, modes: Modes, s: ComplexArray) -> WallOperator:
-    """Return impedance, V/W and U/W of a wall whose load is normal to it.
-
-    K + I s^2 is symmetric; U and V are eliminated by the 2 x 2 of their own. V drops out of order 0 and U at k = 0, where they do not
-    couple to W: their rows, which may be singular by themselves, become copies of the other's.
-    """
-    stiffness = axial_stiffness(section, modes)
-    if stiffness.ndim == 3:
-        stiffness = stiffness[..., None]
-    return eliminated(AxialStiffness(*(stiffness[a, b] for a, b in ENTRIES)), section.mass * s * s, modes)
-
-
 ENTRIES = ((U, U), (U, V), (U, W), (V, V), (V, W), (W, W))
 """Places of the six entries of a symmetric stiffness on (U, V, W)."""
 
@@ -155,8 +143,18 @@ class AxialStiffness(NamedTuple):
     ww: npt.NDArray[Any]
 
 
+def entries_of(stiffness: npt.NDArray[Any]) -> AxialStiffness:
+    """Return the entries of a stiffness of shape (3, 3, orders) or (3, 3, orders, nodes)."""
+    columns = stiffness[..., None] if stiffness.ndim == 3 else stiffness
+    return AxialStiffness(*(columns[a, b] for a, b in ENTRIES))
+
+
 def eliminated(k: AxialStiffness, inertia: ComplexArray, modes: Modes) -> WallOperator:
-    """Return impedance, V/W and U/W of a wall of a stiffness K and an inertia I s^2."""
+    """Return impedance, V/W and U/W of a wall of a stiffness K and an inertia I s^2, whose load is normal to it.
+
+    K + I s^2 is symmetric; U and V are eliminated by the 2 x 2 of their own. V drops out of order 0 and U at k = 0, where they do not
+    couple to W: their rows, which may be singular by themselves, become copies of the other's.
+    """
     uv, uw, vw = k.uv, k.uw, k.vw
     uu = inertia + np.where(np.equal(modes.wavenumber, 0.0), k.vv, k.uu)
     vv = inertia + np.where(modes.column == 0, k.uu, k.vv)

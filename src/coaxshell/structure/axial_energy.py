@@ -25,22 +25,22 @@ def axial_energy(section: Section, motion: WallMotion) -> WallEnergy:
     return WallEnergy(
         kinetic=np.asarray(section.mass * kinetic),
         strain=axial_strain_energy(section, motion),
-        piezoelectric=_form(weight, open_circuit_stiffness(section, modes, at), motion),
+        piezoelectric=energy_of_stiffness(weight, open_circuit_stiffness(section, modes, at), motion),
     )
 
 
 def axial_strain_energy(section: Section, motion: WallMotion) -> FloatArray:
     """Return what the layers hold by their own stiffness, shape (T,)."""
     at = strain(Modes(motion.orders, motion.wavenumber), section.radius)
-    return _form(_weight(section, motion), layer_stiffness(section, at), motion)
+    return energy_of_stiffness(_weight(section, motion), layer_stiffness(section, at), motion)
 
 
 def _weight(section: Section, motion: WallMotion) -> FloatArray:
     return 0.5 * section.radius * motion.circle
 
 
-def _form(weight: FloatArray, stiffness: FloatArray, motion: WallMotion) -> FloatArray:
-    """Return the sum over the orders of (U, V, W) K (U, V, W)."""
+def energy_of_stiffness(weight: FloatArray, stiffness: FloatArray, motion: WallMotion) -> FloatArray:
+    """Return the sum over the orders of (U, V, W) K (U, V, W) with some weights, K of shape (3, 3, orders): (T,)."""
     assert motion.u is not None
     displacements = motion.u, motion.v, motion.w
     diagonal = sum(square(weight * stiffness[a, a], x, x) for a, x in enumerate(displacements))

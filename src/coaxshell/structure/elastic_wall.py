@@ -30,15 +30,16 @@ from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
 from coaxshell.structure.solid_transducers import (
-    ALONG,
     Driven,
     Loop,
+    LoopPart,
     Transducers,
+    along_wall,
     at_rest,
     closed_loop,
     driven_of,
     field_of_volts,
-    loop_rows,
+    loop_part,
 )
 
 UNSTATED_FREQUENCY = 300.0
@@ -55,6 +56,23 @@ class Asked(NamedTuple):
     depth: float
 
 
+class VoltPort(NamedTuple):
+    """What voltages on the driven layers do to what is shown.
+
+    Attributes
+    ----------
+    loop : LoopPart
+    rows : ndarray, shape (orders, quantities driven, shapes)
+        Weights of the shapes in the motion along the wall that volts make.
+    resting : ndarray, shape (orders, quantities, driven)
+        What they make at once.
+    """
+
+    loop: LoopPart
+    rows: FloatArray
+    resting: FloatArray
+
+
 class Port(NamedTuple):
     """What some orders show at their faces and within, per unit of each shape.
 
@@ -65,11 +83,14 @@ class Port(NamedTuple):
     faces : ndarray, shape (orders, 2, shapes)
         u_r of the faces.
     shown : ndarray, shape (orders, quantities, shapes)
+    volts : VoltPort or None
+        What voltages do, where a loop is closed.
     """
 
     squares: FloatArray
     faces: FloatArray
     shown: FloatArray
+    volts: VoltPort | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -217,13 +238,23 @@ class ElasticWall(ShellModel):
 
     def loop(self, modes: Modes, s: ComplexArray) -> Loop | None:
         """Return what its transducers do to it; None without any, or where none acts and none is open."""
-        if self.transducers is None or (self.gains is None and not self.transducers.opened.any()):
+        if not self.closes_a_loop:
             return None
         pairs = list(zip(self.basis(modes), self.driven(modes), strict=True))
-        rows = [loop_rows(part, driven, self.wetted) for part, driven in pairs]
-        moved = np.concatenate([at_rest(part, -part.faces, driven) for part, driven in pairs])
-        read = np.concatenate([at_rest(part, driven.readings, driven) for part, driven in pairs])
-        return closed_loop(self._summed(modes, s, rows), (moved, read), self.transducers, self._law(modes, s))
+        parts = [loop_part(part, driven, self.wetted) for part, driven in pairs]
+        return self._loop_of(parts, [part.squares for part, _ in pairs], modes, s)
+
+    @property
+    def closes_a_loop(self) -> bool:
+        """Whether any layer acts, or is an open circuit."""
+        return self.transducers is not None and (self.gains is not None or bool(self.transducers.opened.any()))
+
+    def _loop_of(self, parts: Sequence[LoopPart], squares: Sequence[FloatArray], modes: Modes, s: ComplexArray) -> Loop:
+        assert self.transducers is not None
+        sums = [modal_sums(part.rows, square, s) for part, square in zip(parts, squares, strict=True)]
+        resting = np.concatenate([part.moved for part in parts]), np.concatenate([part.read for part in parts])
+        whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
+        return closed_loop(whole, resting, self.transducers, self._law(modes, s))
 
     @kept_with_modes
     def driven(self, modes: Modes) -> tuple[Driven, ...]:
@@ -243,19 +274,30 @@ class ElasticWall(ShellModel):
 
     def _by_volts(self, modes: Modes, s: ComplexArray, asked: tuple[Asked, ...], loop: Loop) -> ComplexArray:
         """Return what voltages add to quantities per load on either face: by the motion that they make, in their layers by the field."""
-        assert self.transducers is not None
-        rows, fields = [], []
+        parts = []
         for part, driven in zip(self.basis(modes), self.driven(modes), strict=True):
             shown = self._shown(part, asked)
             for row, one in enumerate(asked):
                 shown[:, row] *= -1.0 if one.what == "potential" and one in self._asked_potentials else 1.0
-            along = (shown * (np.arange(shown.shape[-1]) < ALONG))[:, :, None] * driven.loads[:, None]
-            rows.append(along.reshape(part.orders.size, -1, shown.shape[-1]))
-            each = [field_of_volts(part, self.transducers, self.layer_at(x.depth), self.radius + x.depth, x.what) for x in asked]
-            fields.append(np.stack(each, axis=1) + at_rest(part, shown, driven))
-        per_volt = self._summed(modes, s, rows).reshape(len(asked), -1, modes.count, s.size)
-        per_volt = per_volt + np.moveaxis(np.concatenate(fields), 0, -1)[..., None]
-        return np.asarray(np.einsum("qjmk,jbmk->qbmk", per_volt, loop.volts))
+            parts.append(self._per_volt(part, driven, shown, asked))
+        sums = self._summed(modes, s, [rows for rows, _ in parts])
+        return _shown_by_volts(sums, [resting for _, resting in parts], loop)
+
+    def _per_volt(self, part: OrdersBasis, driven: Driven, shown: FloatArray, asked: Sequence[Asked]) -> tuple[FloatArray, FloatArray]:
+        """Return what volts on each driven layer add to quantities, ``shown`` per unit of each shape.
+
+        Weights of all shapes in the motion along the wall, (orders, quantities driven, shapes), and what answers at once, by the field and
+        through the thickness, (orders, quantities, driven).
+        """
+        assert self.transducers is not None
+        along = (shown * (np.arange(shown.shape[-1]) < along_wall(part.wavenumber)))[:, :, None] * driven.loads[:, None]
+        each = [field_of_volts(part, self.transducers, self.layer_at(x.depth), self.radius + x.depth, x.what) for x in asked]
+        return along.reshape(part.orders.size, -1, shown.shape[-1]), np.stack(each, axis=1) + at_rest(part, shown, driven)
+
+    @property
+    def shows_control(self) -> bool:
+        """Whether it is under control."""
+        return self.transducers is not None
 
     @property
     def shown_potentials(self) -> int:
@@ -284,17 +326,27 @@ class ElasticWall(ShellModel):
         """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it.
 
         W, V and U of the middle, the six stresses at the design depth (:data:`coaxshell.structure.elastic_depth.STRESSES`) and the
-        potentials; at :attr:`depth_read` all but the potentials, if there is one.
+        potentials; at :attr:`depth_read` all but the potentials, if there is one. Under control what the law reads and gives come last.
         """
-        parts = []
-        for port in self.ports(modes):
+        parts, ports = [], self.ports(modes)
+        for port in ports:
             pressed, weights = -port.faces * np.array(self.wetted)[:, None], _products(port.faces)
             if reads:
                 shown = (port.shown[:, :, None] * pressed[:, None]).reshape(len(weights), -1, weights.shape[-1])
                 weights = np.concatenate([weights, shown], axis=1)
             parts.append(modal_sums(weights, port.squares, s))
         found = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
-        return FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
+        per_load = found[3:].reshape(-1, 2, *found.shape[1:])
+        volts = [port.volts for port in ports if port.volts is not None]
+        if not volts:
+            return FaceReceptance(*found[:3]), per_load
+        loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], modes, s)
+        if reads:
+            sums = [modal_sums(one.rows, port.squares, s) for one, port in zip(volts, ports, strict=True)]
+            whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
+            by_volts = _shown_by_volts(whole, [one.resting for one in volts], loop)
+            per_load = np.concatenate([per_load + by_volts, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
+        return self._closed(found[:3], loop), per_load
 
     @kept_with_modes
     def ports(self, modes: Modes) -> tuple[Port, ...]:
@@ -307,8 +359,17 @@ class ElasticWall(ShellModel):
             if moved != stressed:
                 rows[:, :count] = all_by_shapes(part, self.layer_at(moved), self.radius + moved)[:, :count]
             volts = [-shown_by_shapes(part, i, r, "potential")[:, None] for i, r in zip(self.piezoelectric, middles, strict=True)]
-            found.append(Port(part.squares, part.faces, np.concatenate([rows, *volts], axis=1)))
+            shown = np.concatenate([rows, *volts], axis=1)
+            found.append(Port(part.squares, part.faces, shown, self._volts_of(part, shown)))
         return tuple(found)
+
+    def _volts_of(self, part: OrdersBasis, shown: FloatArray) -> VoltPort | None:
+        """Return what voltages do to what stations read, None where no loop is closed."""
+        if not self.closes_a_loop:
+            return None
+        assert self.transducers is not None
+        driven = driven_of(part, self.transducers)
+        return VoltPort(loop_part(part, driven, self.wetted), *self._per_volt(part, driven, shown, self.asked_of_stations))
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make what all blocks of nodes share in three dimensions, before all threads ask for it."""
@@ -411,6 +472,13 @@ class ElasticWall(ShellModel):
     def energy(self, motion: WallMotion) -> WallEnergy:
         """Refuse: the energy of a solid wall needs its motion through the thickness."""
         raise NotImplementedError("the energy of an elastic wall is that of its shapes")
+
+
+def _shown_by_volts(sums: ComplexArray, resting: Sequence[FloatArray], loop: Loop) -> ComplexArray:
+    """Return what voltages add to quantities per load on either face, (quantities, 2, orders, nodes)."""
+    at_once = np.concatenate(resting)
+    per_volt = sums.reshape(*at_once.shape[1:], *sums.shape[1:]) + np.moveaxis(at_once, 0, -1)[..., None]
+    return np.asarray(np.einsum("qjmk,jbmk->qbmk", per_volt, loop.volts))
 
 
 def _of_faces(part: OrdersBasis) -> FloatArray:

@@ -22,12 +22,12 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.structure.axial import ENTRIES, AxialStiffness, axial_stiffness, eliminated
+from coaxshell.structure.axial import ENTRIES, AxialStiffness, axial_stiffness
 from coaxshell.structure.constituents import Constituent, weighted
 from coaxshell.structure.control_law import ControlLaw
 from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.section import Section
-from coaxshell.structure.shell_model import Arm, FieldGain, Gain, WallEnergy, WallMotion, WallOperator, WallStiffness
+from coaxshell.structure.shell_model import Arm, FieldGain, Gain, WallEnergy, WallMotion, WallStiffness
 from coaxshell.structure.thin import wall_stiffness
 from coaxshell.structure.thin_wall import ThinWall, strain_energy
 
@@ -89,17 +89,19 @@ class LossyWall(ThinWall):
         rows = np.stack([np.stack(wall_stiffness(section, modes.orders)) for _, section in self.parts])
         return WallStiffness(*_summed(rows, self._factors(s)))
 
-    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
-        """Return impedance, V/W and U/W without feedback."""
-        if modes.two_dimensional:
-            return super().passive(modes, s)
+    def dynamic_axial_stiffness(self, modes: Modes, s: ComplexArray) -> AxialStiffness:
+        """Return K(s) at an axial wavenumber, each entry of shape (orders, nodes)."""
         each = [axial_stiffness(section, modes) for _, section in self.parts]
         rows = np.stack([np.stack([k[a, b] for a, b in ENTRIES]) for k in each])
-        return eliminated(AxialStiffness(*_summed(rows, self._factors(s))), self.mass * s * s, modes)
+        return AxialStiffness(*_summed(rows, self._factors(s)))
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return that of the wall at its stiffest."""
         return self._stiffest.highest_frequency(modes)
+
+    def _stiffness_along(self, modes: Modes) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return those of the wall at its stiffest."""
+        return self._stiffest._stiffness_along(modes)
 
     def fastest_wave(self, max_wavenumber: float) -> float:
         """Return that of the wall at its stiffest."""

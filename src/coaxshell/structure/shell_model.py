@@ -19,9 +19,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Self, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -47,6 +48,10 @@ class Gain(NamedTuple):
     def columns(self) -> Gain:
         """Gains with an axis for the nodes."""
         return Gain(_column(self.v), _column(self.w), None if self.u is None else _column(self.u))
+
+    def times(self, factor: npt.NDArray[Any] | float) -> Gain:
+        """Return the gain in other units, or times a factor for each order, or for each order and node where it has columns."""
+        return Gain(factor * self.v, factor * self.w, None if self.u is None else factor * self.u)
 
     def recovered(self, tangential: Ratio, axial: Ratio | None = None) -> Ratio:
         """Return the quantity per unit W where V is ``tangential`` and U ``axial`` times W."""
@@ -104,6 +109,11 @@ class FieldGain(NamedTuple):
         if potential is None:
             raise ValueError("the point lies in a piezoelectric layer: give the potential of that layer")
         return total + self.potential * potential
+
+    def plus(self, other: FieldGain) -> FieldGain:
+        """Return the sum with a gain of fields alone."""
+        added = {name: values + self.fields.get(name, 0.0) for name, values in other.fields.items()}
+        return self._replace(**added)  # type: ignore[arg-type]
 
     def times(self, factor: FloatArray | float) -> FieldGain:
         """Return the gain in other units, or times a factor for each order."""
@@ -292,6 +302,10 @@ class ShellModel(ABC):
     def highest_frequency(self, modes: Modes) -> FloatArray:
         """Return the highest frequency at which each mode resonates by itself, radians per transit: steps and contours resolve it."""
 
+    def along_frequencies(self, modes: Modes) -> FloatArray:
+        """Return the frequencies at which each mode resonates along the wall where W is held, shape (orders, number of them)."""
+        return self.highest_frequency(modes)[:, None]
+
     def fastest_wave(self, max_wavenumber: float) -> float:
         """Return the speed, in c_e, of the fastest wave along its axis up to a wavenumber; 0 where nothing runs along it."""
         return 0.0
@@ -341,6 +355,20 @@ class ShellModel(ABC):
     def layer_number(self, role: str) -> int | None:
         """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
         return None
+
+    @property
+    def shows_control(self) -> bool:
+        """Whether what the control law reads and gives are the last two of the voltages shown."""
+        return False
+
+    @property
+    def shown_potentials(self) -> int:
+        """How many voltages stations along the axis show."""
+        return 0
+
+    def shown_voltages(self, modes: Modes, s: ComplexArray) -> tuple[Gain, ...]:
+        """Return these per unit (V, W, U), each of shape (orders, 1) or (orders, nodes), where one W serves both faces."""
+        return ()
 
     def potential_gains(self, modes: Modes) -> tuple[Gain, ...]:
         """Return volts per unit (V, W, U) of every open-circuit layer, from the inside out (Eq. 20)."""

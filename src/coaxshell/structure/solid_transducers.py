@@ -11,10 +11,13 @@ and the voltages follow from the readings, u = L(s) y. With a_b what a load on f
 a change of the receptances whose rank is the number of transducers. det(1 - L Y) vanishes at the poles of the wall in vacuo.
 
 "electrodes": a layer between electrodes has the potential Phi = psi u, psi from 1/2 on its inner face to -1/2 on its outer one, which makes
-the enthalpy stationary within. It loads the wall by d'x = -int (psi' (e33 eps_r + e32 eps_theta) - psi (m/r) e15 gamma_r_theta) r dr, and
-an open circuit reads y = -d'x/C, C = psi'G psi its capacitance per radian, and stiffens its layer by d d'/C. Of a layer that is driven and
-read at once a bridge takes all that its own voltage does, the stretch of the thickness too, and the strain along the wall is left,
-y = int psi' e32~ eps_theta r dr/C~, C~ = C (1 + e33^2/(c33 mu33)). In a thin wall d is e32~ B(z_a) R.
+the enthalpy stationary within. It loads the wall by
+
+    d'x = -int (psi' (e33 eps_r + e32 eps_theta + e31 eps_z) - psi e15 ((m/r) gamma_r_theta + k gamma_rz)) r dr,
+
+and an open circuit reads y = -d'x/C, C = psi'G psi its capacitance per radian, and stiffens its layer by d d'/C. Of a layer that is driven
+and read at once a bridge takes all that its own voltage does, the stretch of the thickness too, and the strain along the wall is left,
+y = int psi' (e32~ eps_theta + e31~ eps_z) r dr/C~, C~ = C (1 + e33^2/(c33 mu33)). In a thin wall d is e32~ B(z_a) R.
 
 "paper": a sensor is the potential in the middle of its layer, whose faces are grounded; an actuator pushes along the radius alone, as the
 field's hoop stress does through u_r/r, with the paper's pressure per volt, spread evenly over the thickness of its layer.
@@ -28,17 +31,20 @@ from typing import NamedTuple
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.structure.elastic_basis import OrdersBasis, layer_strains
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements, layer_strains
 from coaxshell.structure.elastic_depth import STRESSES, Shown, place_in_layer, shown_by_shapes
 from coaxshell.structure.elastic_mesh import LayerMesh
-from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, RADIAL_HOOP
+from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, RADIAL_AXIAL, RADIAL_HOOP
 
-ALONG = 2
-"""Shapes of each order that bend and stretch along the wall; all others move through its thickness.
 
-These answer voltages without inertia, and what sensors that are driven read of them is what loads on the faces make: resonances of the
-thickness, a thousand times faster than the shock, are no business of a control law, which would drive them without any bound.
-"""
+def along_wall(wavenumber: float) -> int:
+    """Return how many shapes of each order bend and stretch along the wall, the lowest; all others move through its thickness.
+
+    Two, or three in a wave along the axis: as many as displacements take part. The others answer voltages without inertia, and what
+    sensors that are driven read of them is what loads on the faces make: resonances of the thickness, a thousand times faster than the
+    shock, are no business of a control law, which would drive them without any bound.
+    """
+    return displacements(wavenumber)
 
 
 @dataclass(frozen=True)
@@ -113,7 +119,7 @@ def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
         middle = 0.5 * (sensor.layer.inner + sensor.layer.outer)
         read = -shown_by_shapes(basis, transducers.sensors[0], middle, "potential")
         return Driven(push[:, None], read[:, None], np.zeros((basis.orders.size, 1)))
-    found = [_between_electrodes(basis.mesh.layers[number], basis.orders) for number in transducers.driven]
+    found = [_between_electrodes(basis.mesh.layers[number], basis.orders, basis.wavenumber) for number in transducers.driven]
     loads, readings = [], []
     for number, layer in zip(transducers.driven, found, strict=True):
         shapes = basis.shapes[..., basis.mesh.layers[number].nodes]
@@ -129,7 +135,7 @@ def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
 class _Electroded(NamedTuple):
     """One layer: d on displacements at its points, (orders, displacements, points), C, (orders,), and psi at the points.
 
-    ``along`` and ``free`` are d of the hoop strain alone and C where the thickness is free.
+    ``along`` and ``free`` are d of the strains along the wall alone and C where the thickness is free.
     """
 
     load: FloatArray
@@ -139,14 +145,14 @@ class _Electroded(NamedTuple):
     free: FloatArray
 
 
-def _between_electrodes(part: LayerMesh, orders: FloatArray) -> _Electroded:
-    layer, local, weights, slope = part.layer, layer_strains(part, orders, 0.0), part.weights, part.derivative
+def _between_electrodes(part: LayerMesh, orders: FloatArray, wavenumber: float) -> _Electroded:
+    layer, local, weights, slope = part.layer, layer_strains(part, orders, wavenumber), part.weights, part.derivative
     assert layer.coupling is not None
     assert layer.permittivity is not None
     e, mu, per_radius = np.array(layer.coupling), layer.permittivity, orders[:, None] / part.radius
     electric = np.einsum("qi,q,qj->ij", slope, mu[0] * weights, slope) + np.zeros((orders.size, 1, 1))
     places, last = np.arange(part.radius.size), part.radius.size - 1
-    electric[:, places, places] += mu[1] * weights * per_radius**2
+    electric[:, places, places] += mu[1] * weights * per_radius**2 + mu[2] * weights * wavenumber**2
     profile = np.zeros((orders.size, part.radius.size))
     profile[:, 0], profile[:, last] = 0.5, -0.5
     at_faces = 0.5 * (electric[:, 1:-1, 0] - electric[:, 1:-1, last])
@@ -154,10 +160,12 @@ def _between_electrodes(part: LayerMesh, orders: FloatArray) -> _Electroded:
     radial = np.einsum("j,mjqcp->mqcp", e[0, [RADIAL, HOOP, AXIAL]], local[:, [RADIAL, HOOP, AXIAL]])
     load = np.einsum("mq,mqcp->mcp", -weights * (profile @ slope.T), radial)
     load += np.einsum("mq,mqcp->mcp", weights * per_radius * profile * e[1, RADIAL_HOOP], local[:, RADIAL_HOOP])
+    load += np.einsum("mq,mqcp->mcp", weights * wavenumber * profile * e[2, RADIAL_AXIAL], local[:, RADIAL_AXIAL])
     capacitance = np.einsum("mi,mij,mj->m", profile, electric, profile)
-    c33, c23 = layer.stiffness[RADIAL][RADIAL], layer.stiffness[RADIAL][HOOP]
-    reduced = e[0, HOOP] - e[0, RADIAL] * c23 / c33
-    along = reduced * np.einsum("mq,mqcp->mcp", -weights * (profile @ slope.T), local[:, HOOP])
+    c33 = layer.stiffness[RADIAL][RADIAL]
+    reduced = {place: e[0, place] - e[0, RADIAL] * layer.stiffness[RADIAL][place] / c33 for place in (HOOP, AXIAL)}
+    weighted = -weights * (profile @ slope.T)
+    along = sum(coupling * np.einsum("mq,mqcp->mcp", weighted, local[:, place]) for place, coupling in reduced.items())
     return _Electroded(load, capacitance, profile, along, capacitance * (1.0 + e[0, RADIAL] ** 2 / (c33 * mu[0])))
 
 
@@ -167,9 +175,9 @@ def field_of_volts(basis: OrdersBasis, transducers: Transducers, number: int, ra
     if not transducers.electrodes or number not in transducers.driven or what not in STRESSES:
         return found
     part, at = place_in_layer(basis, number, radius)
-    profile = _between_electrodes(part, basis.orders).profile
+    profile = _between_electrodes(part, basis.orders, basis.wavenumber).profile
     e = np.array(part.layer.coupling)[:, STRESSES[what]]
-    along = e[1] * basis.orders / radius
+    along = e[1] * basis.orders / radius + e[2] * basis.wavenumber
     found[:, transducers.driven.index(number)] = e[0] * (profile @ (at @ part.derivative)) - along * (profile @ at)
     return found
 
@@ -202,7 +210,8 @@ def loop_rows(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -
     pressed = -basis.faces * np.array(wetted)[:, None]
     read = driven.readings[:, :, None] * pressed[:, None]
     answer = driven.readings[:, :, None] * driven.loads[:, None]
-    moved[..., ALONG:] = answer[..., ALONG:] = 0.0
+    along = along_wall(basis.wavenumber)
+    moved[..., along:] = answer[..., along:] = 0.0
     return np.concatenate([one.reshape(size, -1, shapes) for one in (moved, read, answer)], axis=1)
 
 
@@ -211,14 +220,33 @@ def at_rest(basis: OrdersBasis, shown: FloatArray, driven: Driven) -> FloatArray
 
     ``shown`` are quantities per unit of each shape, (orders, quantities, shapes).
     """
-    high = slice(ALONG, None)
+    high = slice(along_wall(basis.wavenumber), None)
     return np.asarray(np.einsum("mqn,mjn,mn->mqj", shown[..., high], driven.loads[..., high], 1.0 / basis.squares[:, high]))
 
 
-def inertia_left_out(squares: FloatArray, s: ComplexArray) -> ComplexArray:
-    """Return by how much more a voltage pushes each shape that answers it without inertia, 1 + s^2/omega^2, shape (shapes, nodes)."""
+class LoopPart(NamedTuple):
+    """What closes a loop, of some orders: weights of all shapes (:func:`loop_rows`), and what volts do at once.
+
+    ``moved`` are inward displacements of the faces, (orders, 2, driven), ``read`` readings, (orders, driven, driven), per volt.
+    """
+
+    rows: FloatArray
+    moved: FloatArray
+    read: FloatArray
+
+
+def loop_part(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -> LoopPart:
+    """Return it from the shapes of some orders and their transducers."""
+    return LoopPart(loop_rows(basis, driven, wetted), at_rest(basis, -basis.faces, driven), at_rest(basis, driven.readings, driven))
+
+
+def inertia_left_out(squares: FloatArray, s: ComplexArray, along: int) -> ComplexArray:
+    """Return by how much more a voltage pushes each shape that answers it without inertia, 1 + s^2/omega^2, shape (shapes, nodes).
+
+    ``along`` is how many shapes bend and stretch along the wall (:func:`along_wall`).
+    """
     factor = np.ones((squares.size, s.size), np.complex128)
-    factor[ALONG:] += s * s / squares[ALONG:, None]
+    factor[along:] += s * s / squares[along:, None]
     return factor
 
 

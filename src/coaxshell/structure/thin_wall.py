@@ -17,10 +17,22 @@ import numpy as np
 from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
-from coaxshell.structure.axial import axial_gain, axial_operator, laminate_of, natural_frequencies, potential, strain
+from coaxshell.structure.axial import (
+    AxialStiffness,
+    U,
+    V,
+    axial_gain,
+    axial_stiffness,
+    eliminated,
+    entries_of,
+    laminate_of,
+    natural_frequencies,
+    potential,
+    strain,
+)
 from coaxshell.structure.axial_energy import axial_energy, axial_strain_energy
 from coaxshell.structure.axial_stress import axial_stress_gain, stress_of_fields
-from coaxshell.structure.control_law import ControlLaw
+from coaxshell.structure.control_law import ControlGains, ControlLaw
 from coaxshell.structure.section import PiezoelectricLayer, Section
 from coaxshell.structure.shell_model import (
     FieldGain,
@@ -90,10 +102,14 @@ class ThinWall(ShellModel):
         """Return K(s) in two dimensions, each entry of shape (orders, 1), or (orders, nodes) where it depends on s."""
         return WallStiffness(*(entry[:, None] for entry in self.stiffness(modes)))
 
+    def dynamic_axial_stiffness(self, modes: Modes, s: ComplexArray) -> AxialStiffness:
+        """Return K(s) on (U, V, W) at an axial wavenumber, each entry of shape (orders, 1) or (orders, nodes)."""
+        return entries_of(axial_stiffness(self.section, modes))
+
     def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
         """Return impedance, V/W and U/W without feedback."""
         if not modes.two_dimensional:
-            return axial_operator(self.section, modes, s)
+            return eliminated(self.dynamic_axial_stiffness(modes, s), self.mass * s * s, modes)
         return tangent_eliminated(self.dynamic_stiffness(modes, s), self.mass * s * s, modes)
 
     def highest_frequency(self, modes: Modes) -> FloatArray:
@@ -101,6 +117,19 @@ class ThinWall(ShellModel):
         if not modes.two_dimensional:
             return natural_frequencies(self.section, modes)[:, -1]
         return np.asarray(np.sqrt(self.stiffness(modes).vv / self.mass))
+
+    def along_frequencies(self, modes: Modes) -> FloatArray:
+        """Return the frequencies of V, or of U and V, where W is held, shape (orders, 1) or (orders, 2)."""
+        if modes.two_dimensional:
+            return super().along_frequencies(modes)
+        uu, uv, vv = self._stiffness_along(modes)
+        middle, half = 0.5 * (uu + vv), np.hypot(0.5 * (uu - vv), uv)
+        return np.sqrt(np.maximum(np.stack([middle - half, middle + half], axis=1), 0.0) / self.mass)
+
+    def _stiffness_along(self, modes: Modes) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return K_uu, K_uv and K_vv at an axial wavenumber, each (orders,)."""
+        k = axial_stiffness(self.section, modes)
+        return k[U, U], k[U, V], k[V, V]
 
     def fastest_wave(self, max_wavenumber: float) -> float:
         """Return the faster of stretching (or shear) waves, sqrt(a11/M), and bending waves of the largest wavenumber, 2 k sqrt(d11/M)."""
@@ -126,8 +155,29 @@ class ThinWall(ShellModel):
             return super().sensor_gain(modes, role)
         return self._potential_gain(layer, modes)
 
+    @property
+    def shows_control(self) -> bool:
+        """Whether stations show what the law reads and gives: where it is no sum of a potential and its rate."""
+        return self.gains is not None and not isinstance(self.gains, ControlGains)
+
+    @property
+    def shown_potentials(self) -> int:
+        """How many voltages stations show: of its piezoelectric layers, and under such control what the law reads and gives."""
+        return len(self.section.piezoelectric) + (2 if self.shows_control else 0)
+
+    def shown_voltages(self, modes: Modes, s: ComplexArray) -> tuple[Gain, ...]:
+        """Return them per unit (V, W, U), each of shape (orders, 1) or (orders, nodes)."""
+        found = tuple(gain.columns for gain in self.potential_gains(modes))
+        if not self.shows_control:
+            return found
+        assert self.gains is not None
+        law, read = self.gains.at(s, modes), self.sensor_gain(modes).columns
+        return (*found, read, read.times(law))
+
     def layer_number(self, role: str) -> int | None:
-        """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
+        """Return the number of the layer of a role among the voltages shown; what the law reads stands for a sensor where it is shown."""
+        if role == "sensor" and self.shows_control:
+            return len(self.section.piezoelectric)
         return next((number for number, layer in enumerate(self.section.piezoelectric) if serves(layer.role, role)), None)
 
     @kept_with_modes

@@ -1,6 +1,6 @@
 """What amplifiers give to layers between electrodes, and what the fields of these hold (theory manual, "Electrodes").
 
-The charge of a driven layer, e32~ B(z_a) (V, W) + (mu33~/t) u per area, takes the power u dD/dt from its amplifier: what does not move
+The charge of a driven layer, e32~ B(z_a) (V, W, U) + (mu33~/t) u per area, takes the power u dD/dt from its amplifier: what does not move
 the wall, the work of the actuators on it, charges the layer's capacitance, (1/2) (mu33~/t) u^2 per area.
 """
 
@@ -29,17 +29,20 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
         if wall.gains is None or not charges:
             continue
         driven, area, w, v = True, wall.radius * motion.circle, motion.normal[i], motion.tangential[i]
+        u = None if motion.axial is None else motion.axial[i]
         if motion.voltage is None:
-            volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w)
+            volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w, u)
         else:
             volts = motion.voltage[i]
         history = grid.invert(volts)
         for charge, capacitance in charges:
-            current = s * (_combined(charge, v, w) + capacitance * volts)
+            current = s * (_combined(charge, v, w, u) + capacitance * volts)
             supplied += SurfaceWork(grid, area, current)(volts)
             held += 0.5 * capacitance * np.einsum("m,hmt,hmt->t", area, history, history)
     return (supplied, held) if driven else None
 
 
-def _combined(gain: Gain, tangential: ComplexArray, normal: ComplexArray) -> ComplexArray:
-    return np.asarray(gain.columns.v * tangential + gain.columns.w * normal)
+def _combined(gain: Gain, tangential: ComplexArray, normal: ComplexArray, axial: ComplexArray | None) -> ComplexArray:
+    per = gain.columns
+    found = per.v * tangential + per.w * normal
+    return np.asarray(found if per.u is None or axial is None else found + per.u * axial)

@@ -54,8 +54,8 @@ def _of_wall(motion: Motion, shell: int, instants: slice) -> WallMotion:
 def actuator_work(motion: Motion) -> FloatArray:
     """Return the work that the actuators of all shells have taken from them, shape (T,).
 
-    Minus the integral of the actuators' pressure times dw/dt over the surfaces, and of electrodes of their traction times dv/dt: the
-    linear law's (Eqs. 4, 17) or, where the voltage saturates, what was given.
+    Minus the integral of the actuators' pressure times dw/dt over the surfaces, and of electrodes of their tractions times dv/dt and du/dt:
+    the linear law's (Eqs. 4, 17) or, where the voltage saturates, what was given.
     """
     problem, grid, s = motion.problem, motion.grid, motion.grid.nodes
     given = motion.actuation
@@ -82,5 +82,8 @@ def actuator_work(motion: Motion) -> FloatArray:
             if np.any(drive.v):
                 traction = drive.v * law * volts
                 total -= SurfaceWork(grid, wall.radius * motion.circle, motion.tangential[i] * s)(traction)
+            if drive.u is not None and motion.axial is not None:
+                traction = drive.u * law * volts
+                total -= SurfaceWork(grid, wall.radius * motion.circle, motion.axial[i] * s)(traction)
         total -= SurfaceWork(grid, wall.radius * motion.circle, motion.normal_velocity[i])(pressure)
     return total

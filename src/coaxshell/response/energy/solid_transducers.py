@@ -8,7 +8,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.elastic_wall import ElasticWall
-from coaxshell.structure.solid_transducers import inertia_left_out
+from coaxshell.structure.solid_transducers import along_wall, inertia_left_out
 
 
 def volts_of(motion: Motion, shell: int) -> ComplexArray | None:
@@ -33,14 +33,14 @@ def strokes(motion: Motion, shell: int, volts: ComplexArray) -> ComplexArray:
     wall, solid, s = motion.problem.shells[shell], motion.solid, motion.grid.nodes
     assert isinstance(wall, ElasticWall)
     assert solid is not None
-    found = np.empty_like(volts)
+    found, along = np.empty_like(volts), along_wall(motion.wavenumber)
     for part, driven in zip(wall.basis(motion.modes), wall.driven(motion.modes), strict=True):
         for place in range(part.orders.size):
             order = part.members.start + place
             share = np.reciprocal(part.squares[place][:, None] + s * s)
             for parity in range(volts.shape[1]):
                 loads = solid.loads[:, shell, parity, order] * np.array(wall.wetted)[:, None]
-                pushed = inertia_left_out(part.squares[place], s) * (driven.loads[place].T @ volts[:, parity, order])
+                pushed = inertia_left_out(part.squares[place], s, along) * (driven.loads[place].T @ volts[:, parity, order])
                 forces = pushed - part.faces[place].T @ loads
                 found[:, parity, order] = driven.loads[place] @ (forces * share)
     return found

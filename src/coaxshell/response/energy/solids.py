@@ -19,7 +19,7 @@ from coaxshell.response.energy.solid_transducers import driven_at, open_fields, 
 from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import WallEnergy
-from coaxshell.structure.solid_transducers import inertia_left_out
+from coaxshell.structure.solid_transducers import along_wall, inertia_left_out
 
 
 def solid_energy(motion: Motion, shell: int) -> WallEnergy:
@@ -39,7 +39,7 @@ def solid_energy(motion: Motion, shell: int) -> WallEnergy:
         for parity in range(loads.shape[1]):
             forces = -part.faces[place].T @ loads[:, parity]
             if volts is not None:
-                forces += inertia_left_out(part.squares[place], motion.grid.nodes) * (
+                forces += inertia_left_out(part.squares[place], motion.grid.nodes, along_wall(motion.wavenumber)) * (
                     driven_at(wall, motion, order).T @ volts[:, parity, order]
                 )
             total += _of_parity(motion, part, place, forces)

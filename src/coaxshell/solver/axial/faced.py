@@ -39,7 +39,7 @@ class FacedWave:
     """
 
     def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, *, reads: bool = True) -> None:
-        self.problem, self.modes = problem, modes
+        self.problem, self.modes, self.s = problem, modes, s
         self._readings: list[ComplexArray | WallOperator] = []
         receptances = []
         for wall in problem.shells:
@@ -85,8 +85,7 @@ class FacedWave:
         v = operator.tangential * w
         u = np.zeros_like(w) if operator.axial is None else operator.axial * w
         found[:3] = w, v, u
-        for number, gain in enumerate(wall.potential_gains(self.modes)[: len(found) - len(READ)]):
-            per = gain.columns
+        for number, per in enumerate(wall.shown_voltages(self.modes, self.s)[: len(found) - len(READ)]):
             found[len(READ) + number] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
 
 

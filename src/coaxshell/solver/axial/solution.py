@@ -15,6 +15,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution, is_whole
+from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.shell_model import FIELDS, SOLID_STRESSES
 
 LINES = ("line_displacement", "line_force")
@@ -42,9 +43,10 @@ class SpatialSolution:
     sampling : AxialSampling
         The axial wavenumbers that were added up.
     fields : dict of str to ndarray, shape (stations, shells, parities, M + 1, T)
-        Of :data:`coaxshell.structure.shell_model.FIELDS` and, "potential 0", ..., of the piezoelectric layers' open-circuit voltages; those
-        that are not there are zero, as u at stations in the source's plane. Where instants are missing, "potential_rate 0", ... are the
-        derivatives of these voltages by time.
+        Of :data:`coaxshell.structure.shell_model.FIELDS` and, "potential 0", ..., of the piezoelectric layers' open-circuit voltages, after
+        which of walls under control by electrodes or a law other than PD come what the law reads and what it gives; those that are not
+        there are zero, as u at stations in the source's plane. "potential_rate 0", ... are the derivatives of these voltages by time, where
+        a law is a sum of both.
     estimates : Estimates
         Relative to the answer in the norm over the surface of all of an axial period.
     warnings : tuple of str
@@ -115,8 +117,40 @@ class SpatialSolution:
             tuple(found[f"{name} {number}"][station] for number in layers if f"{name} {number}" in found)
             for name in ("potential", "potential_rate")
         )
+        given = control_voltage(self.problem, potentials, rates)
         stresses = {name: of[name] for name in SOLID_STRESSES if self.problem.two_faced}
         motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates, stresses)
         return ModalSolution(
-            self.problem, self.settings, self.time, of["w"], of["v"], self.estimates, self.warnings, self.timings, along=motion
+            self.problem,
+            self.settings,
+            self.time,
+            of["w"],
+            of["v"],
+            self.estimates,
+            self.warnings,
+            self.timings,
+            control_voltage=given,
+            along=motion,
         )
+
+
+def control_voltage(problem: Problem, potentials: Sequence[FloatArray], rates: Sequence[FloatArray]) -> FloatArray | None:
+    """Return the voltage that the law of each shell asks for, V, (shells, ...), 0 of shells without; None where no wall shows it.
+
+    Parameters
+    ----------
+    problem : Problem
+    potentials, rates : sequence of ndarray, shape (shells, ...)
+        The voltages that walls show, and their derivatives by time where some law is a sum of both.
+    """
+    if not any(wall.shows_control for wall in problem.shells):
+        return None
+    found = np.zeros_like(potentials[0])
+    for i, wall in enumerate(problem.shells):
+        if wall.shows_control:
+            found[i] = potentials[wall.shown_potentials - 1][i]
+        elif isinstance(wall.gains, ControlGains):
+            number = wall.layer_number("sensor")
+            if number is not None:
+                found[i] = wall.gains.proportional * potentials[number][i] + wall.gains.derivative * rates[number][i]
+    return found

@@ -29,6 +29,7 @@ from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.softened import Softened, softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
+from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -36,10 +37,6 @@ from coaxshell.solver.settings import Settings
 from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.solution import KEPT_BYTES
 from coaxshell.solver.spectral import Stopwatch
-from coaxshell.solver.stability import require_stable
-
-_CHECKED = 16
-"""Wavenumbers at which a feedback is checked; poles move with k as smoothly as with the order."""
 
 
 def solve_spatial(
@@ -71,8 +68,7 @@ def solve_spatial(
     period = sampling.period * problem.scales.length
     settings = replace(settings, modes=sampling.max_order, axial_modes=sampling.highest, axial_period=period)
     require_room(problem, settings)
-    for modes in sampling.modes[:: max(1, len(sampling.modes) // _CHECKED)]:
-        require_stable(problem, modes.max_order, settings.duration, wavenumber=float(modes.wavenumber))
+    require_stable_waves(problem, sampling, settings.duration)
     stopwatch.lap("stability of the feedback")
     run = {"scenario": system.canonical(), "resolution": settings.arguments()}
     with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:
@@ -96,6 +92,7 @@ def solve_spatial(
     estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, soft, forces, force_error)
     stopwatch.lap("error estimates")
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
+    warnings += checks.ideal_loop(problem, settings)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
     solution = replace(solution, warnings=(*warnings, *checks.actuators(*(solution.at(i) for i in range(len(settings.stations))))))
     if linked is not None:
@@ -117,7 +114,7 @@ def _softened(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, link
 
 def _voltage_rates(problem: Problem, grid: LaplaceGrid, spectra: dict[str, ComplexArray]) -> dict[str, ComplexArray]:
     """Return the transforms of the derivatives by time of piezoelectric layers' voltages, which derivative feedback reads."""
-    if all(wall.gains is None for wall in problem.shells):
+    if all(wall.gains is None or wall.shows_control for wall in problem.shells):
         return {}
     voltages = {name: spectrum for name, spectrum in spectra.items() if name.startswith("potential ")}
     return {name.replace("potential", "potential_rate"): spectrum * grid.nodes for name, spectrum in voltages.items()}

@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.faced import READ, faced_amplitudes
@@ -21,7 +20,6 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
-from coaxshell.structure.elastic_wall import ElasticWall
 
 TOGETHER = 4
 """Wavenumbers whose amplitudes are added up at once, by a matrix product."""
@@ -30,7 +28,6 @@ TOGETHER = 4
 SQUARES = "squares"
 _ODD = ("u", "shear", "radial_axial")
 """What goes along the axis as the odd function o."""
-_ORDER_0 = Modes.up_to(0)
 
 
 def station_sums(
@@ -97,7 +94,7 @@ def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: Lapl
     layers, motions = piezoelectric_layers(problem), []
     for normal in normals_of(problem, system, family, grid, block):
         motion = [normal, system.tangential(normal), system.axial(normal)]
-        motions.append(np.array([*motion, *_potentials(problem, system.modes, layers, *motion)]))
+        motions.append(np.array([*motion, *_potentials(problem, system, layers, *motion)]))
     return np.stack(motions, axis=2)
 
 
@@ -120,18 +117,22 @@ def amplitude_names(problem: Problem) -> list[str]:
 
 
 def piezoelectric_layers(problem: Problem) -> int:
-    """Return the largest number of piezoelectric layers of a wall."""
-    return max(len(wall.piezoelectric) if isinstance(wall, ElasticWall) else len(wall.potential_gains(_ORDER_0)) for wall in problem.shells)
+    """Return the largest number of voltages that a wall shows: of piezoelectric layers, and what some laws read and give."""
+    return max(wall.shown_potentials for wall in problem.shells)
 
 
 def _potentials(
-    problem: Problem, modes: Modes, layers: int, normal: list[ComplexArray], tangential: list[ComplexArray], axial: list[ComplexArray]
+    problem: Problem,
+    system: ModalSystem,
+    layers: int,
+    normal: list[ComplexArray],
+    tangential: list[ComplexArray],
+    axial: list[ComplexArray],
 ) -> list[list[ComplexArray]]:
-    """Return the open-circuit voltage of each piezoelectric layer of each wall, by layer and wall; 0 of a wall with fewer."""
+    """Return the voltages that each wall shows (:meth:`ShellModel.shown_voltages`), by voltage and wall; 0 of a wall with fewer."""
     found = [[np.zeros_like(w) for w in normal] for _ in range(layers)]
     for i, (wall, w, v, u) in enumerate(zip(problem.shells, normal, tangential, axial, strict=True)):
-        for number, gain in enumerate(wall.potential_gains(modes)):
-            per = gain.columns
+        for number, per in enumerate(wall.shown_voltages(system.modes, system.s)):
             found[number][i] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
     return found
 

@@ -1,0 +1,42 @@
+"""Stability of feedback in three dimensions: of every order at every axial wavenumber, by passivity where that proves it, else by counting.
+
+A wave (m, k) is a system by itself. Walls that stay passive with their feedback cannot make one grow (:mod:`coaxshell.solver.passivity`),
+which is asked at all wavenumbers of a run; poles of the others are counted at a sample of wavenumbers, as they move with k as smoothly as
+with the order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.passivity import passive_orders
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.stability import require_stable
+
+CHECKED = 16
+"""Wavenumbers at which poles are counted."""
+
+
+def require_stable_waves(problem: Problem, sampling: AxialSampling, duration: float) -> None:
+    """Raise InputError, naming gain, order and wavenumber, if the closed loop is unstable at a wavenumber of a run."""
+    if all(wall.gains is None for wall in problem.shells):
+        return
+    for modes in sample(doubtful_waves(problem, sampling.modes, 1.0 / duration)):
+        require_stable(problem, modes.max_order, duration, wavenumber=float(modes.wavenumber))
+
+
+def doubtful_waves(problem: Problem, waves: Sequence[Modes], least: float) -> list[Modes]:
+    """Return the wavenumbers at which some order is not proven to grow by no more than a rate per transit."""
+    if problem.two_faced:
+        return list(waves)
+    return [modes for modes in waves if not passive_orders(problem, modes, least).all()]
+
+
+def sample(waves: Sequence[Modes]) -> list[Modes]:
+    """Return some of many wavenumbers, the first and the last among them."""
+    places = np.unique(np.rint(np.linspace(0.0, len(waves) - 1.0, min(len(waves), CHECKED))).astype(int))
+    return [waves[place] for place in places]
