@@ -167,7 +167,7 @@ def margins_of(orders: FloatArray, s: ComplexArray, loop: ComplexArray) -> LoopM
 def _crossings(values: FloatArray, allowed: npt.NDArray[np.bool_]) -> FloatArray:
     """Return where between two nodes values cross 0, 0 to 1, shape (orders, nodes - 1); NaN where they do not."""
     one, other = values[:, :-1], values[:, 1:]
-    crosses = (np.signbit(one) != np.signbit(other)) & allowed
+    crosses = (np.signbit(one) != np.signbit(other)) & (one != other) & allowed  # zeros of either sign cross nothing
     return np.where(crosses, np.divide(one, one - other, out=np.full_like(one, np.nan), where=crosses), np.nan)
 
 
