@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from coaxshell.solver.settings import Settings
     from coaxshell.studies import (
         Choice,
+        ControlDesign,
         Execution,
         Integer,
         LogNormal,
@@ -81,6 +82,7 @@ if TYPE_CHECKING:
         Optimum,
         Range,
         Uniform,
+        design_control,
         fit,
         gradient,
         optimise,
@@ -99,6 +101,7 @@ __all__ = [
     "Absorber",
     "AbsorberRing",
     "Choice",
+    "ControlDesign",
     "Elastic",
     "Execution",
     "Explosive",
@@ -140,6 +143,7 @@ __all__ = [
     "Viscoelastic",
     "__version__",
     "absorber_ring",
+    "design_control",
     "export",
     "fit",
     "fluids",

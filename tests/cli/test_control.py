@@ -34,3 +34,12 @@ def test_refused(run, arguments, words):
     told = run("control", *arguments)
     assert told.code == 2
     assert words in told.err
+
+
+def test_a_law_is_designed(run):
+    arguments = ("--design", "--delay", "5 us", "--kind", "rate", "--modes", "1", "--duration", "0.5", "--save", "led.toml")
+    told = run("control", "electrodes", *arguments)
+    assert told.code == 0
+    assert "rate feedback" in told.out
+    assert 'transducers = "electrodes"' in Path("led.toml").read_text()
+    assert run("control", "electrodes", "--delay", "5 us").err.startswith("error: --delay: belongs to --design")

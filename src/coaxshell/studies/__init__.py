@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.numerics.renamed import renamed
+from coaxshell.studies.control_design import ControlDesign, design_control
 from coaxshell.studies.execution import Execution
 from coaxshell.studies.executors import dask_executor
 from coaxshell.studies.fitting.fitted import FIT_PARTS, Fit
@@ -28,6 +29,7 @@ __all__ = [
     "FIT_PARTS",
     "OPTIMUM_PARTS",
     "Choice",
+    "ControlDesign",
     "Execution",
     "Fit",
     "FitStudy",
@@ -43,6 +45,7 @@ __all__ = [
     "SweepStudy",
     "Uniform",
     "dask_executor",
+    "design_control",
     "fit",
     "fit_plan",
     "gradient",
