@@ -87,10 +87,23 @@ def test_gains_and_layers_are_variables_too(quick):
     assert held.best.targets["outer.actuator_field_ratio"] <= 0.33
 
 
+def test_counts_are_an_outer_loop(quick):
+    variables = {"absorbers.count": cx.Integer(3, 5), "absorbers.damping": cx.Range(1e4, 1e8, "log"), "absorbers.mass": cx.Range(1, 40)}
+    arguments = {"objectives": "inner.peak_stress", "constraints": "absorbers.mass <= 60 kg/m", "workers": 1}
+    found = cx.optimise(RING, variables=variables, method="gradient", evaluations=3 * 6 + 2 * 3, **arguments, **quick)
+    counts = [one.values[0] for one in found.history]
+    assert counts[:18] == [3, 4, 5] * 6
+    better = {n: min(one.objectives[0] for one in found.history[:18] if one.values[0] == n and one.feasible) for n in (3, 4, 5)}
+    assert set(counts[18:]) == set(sorted(better, key=lambda n: better[n])[:2])
+    assert found.best.feasible
+    assert found.best.objectives[0] <= min(better.values())
+
+
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"variables": {"absorbers[*].mass": [1.0, 2.0]}}, "method: .*has 2 values"),
+        ({"variables": {"absorbers[*].mass": [1.0, 2.0]}}, "method: .*needs a variable that varies continuously"),
+        ({"variables": {**VARIABLES, "absorbers[*].linear_stiffness": list(range(1, 7))}}, "method: .*every combination"),
         ({"objectives": "absorbers.dissipated_energy"}, "method: .*dissipated_energy has none"),
         ({"objectives": ["inner.peak_stress", "absorbers.mass"]}, "method"),
         ({"engine": "direct"}, "engine"),

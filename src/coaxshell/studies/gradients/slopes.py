@@ -74,7 +74,14 @@ def slope_metrics(metric: Metric, power: float, variables: list[tuple[tuple[str,
         raise InputError("method", f'"gradient" needs metrics that have one, and {metric.name} has none', remedy)
     searched = SlopeMetric(f"{metric.name} as searched", metric.units, metric.long_name, of=metric, power=power)
     by = (
-        SlopeMetric(f"d({metric.name}) by {fields[0][0]}", metric.units, metric.long_name, of=metric, power=power, fields=fields)
+        SlopeMetric(
+            f"d({metric.name}) by {fields[0][0] if fields else 'a count'}",
+            metric.units,
+            metric.long_name,
+            of=metric,
+            power=power,
+            fields=fields,
+        )
         for fields in variables
     )
     return (searched, *by)

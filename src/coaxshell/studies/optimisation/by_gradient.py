@@ -4,16 +4,21 @@ Every evaluation is a run forwards and one backwards for each metric, whatever t
 a power (:mod:`coaxshell.studies.gradients.norms`), which is smooth; designs are compared by the peak itself. Limits on peaks hold the
 peak itself, with the slope of the mean in proportion (C. Le et al., Stress-based topology optimization for continua, Struct. Multidisc.
 Optim. 41 (2010) 605-620). The starts take their steps together, so that their runs share all workers and nothing depends on who is
-faster; one that has arrived begins anew elsewhere.
+faster; one that has arrived begins anew elsewhere. Counts and choices are an outer loop: every combination of them has starts of its
+own, and after each round of steps the better half of the combinations goes on (successive halving: K. Jamieson, A. Talwalkar,
+Non-stochastic best arm identification and hyperparameter optimization, AISTATS 2016).
 """
 
 from __future__ import annotations
 
+import itertools
+import math
 import re
 import threading
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import product
 from queue import Queue
 from typing import Any, NamedTuple
 
@@ -32,6 +37,10 @@ POWER = 64.0
 """Power of the mean that stands for a peak in the search."""
 STARTS = 4
 """Starts side by side, unless told otherwise."""
+MOST_COMBINATIONS = 32
+"""Combinations of counts and choices that are all tried."""
+ROUND = 6
+"""Steps of every start after which the worse half of the combinations is given up."""
 _STATISTICS = ("", "mean", "worst")
 _ANGLE = re.compile(r"absorbers\[(\d+)\]\.angle")
 _PRECISION = 1e-8
@@ -86,12 +95,16 @@ class Slopes:
         Raises
         ------
         InputError
-            A variable takes steps, is uncertain too, or a metric or a statistic has no gradient.
+            Counts have too many combinations, or nothing varies beside them; a variable is uncertain too; a metric or a statistic has no
+        gradient.
         """
+        many = math.prod(len(variable.levels) for variable in space.variables if variable.levels)
+        if many > MOST_COMBINATIONS:
+            problem = f'"gradient" tries every combination of counts and choices, and there are {many}'
+            raise InputError("method", problem, f'use method="cma-es", or at most {MOST_COMBINATIONS} combinations')
+        if all(variable.levels for variable in space.variables):
+            raise InputError("method", '"gradient" needs a variable that varies continuously', 'use method="cma-es"')
         for variable in space.variables:
-            if variable.levels:
-                problem = f'"gradient" takes variables that vary continuously, and {variable.name} has {len(variable.levels)} values'
-                raise InputError("method", problem, 'use method="cma-es", or a range of a property that is no count')
             paths = (*variable.paths, *variable.mirrored)
             both = uncertain & {*paths, *(f"absorbers.{path.split('.')[-1]}" for path in paths if path.startswith("absorbers"))}
             if both:
@@ -99,7 +112,10 @@ class Slopes:
         wrong = next((target.name for target in targets.all if target.statistic not in _STATISTICS), None)
         if wrong is not None:
             raise InputError("method", f'"gradient" knows mean and worst of uncertain properties, not {wrong}', 'use method="cma-es"')
-        moved = [(*((path, 1.0) for path in one.paths), *((path, -1.0) for path in one.mirrored)) for one in space.variables]
+        moved = [
+            () if one.levels else (*((path, 1.0) for path in one.paths), *((path, -1.0) for path in one.mirrored))
+            for one in space.variables
+        ]
         more = tuple(slope for metric in targets.metrics for slope in slope_metrics(metric, POWER, moved))
         return cls(replace(targets, metrics=(*targets.metrics, *more)), space)
 
@@ -182,7 +198,9 @@ def _of_spacing(limit: Limit) -> bool:
 
 
 def _stretch(variable: Variable, share: float) -> float:
-    """Return what a variable changes by per unit of its place in the unit cube."""
+    """Return what a variable changes by per unit of its place in the unit cube; nothing where its values are counted."""
+    if variable.levels:
+        return 0.0
     if variable.log:
         return float(np.log(variable.high / variable.low) * variable.at(share))
     return variable.high - variable.low
@@ -199,11 +217,12 @@ class _NowhereError(Exception):
 class _Start(threading.Thread):
     """One descent after another in a thread, which asks for designs and waits for them."""
 
-    def __init__(self, number: int, first: FloatArray, slopes: Slopes, seed: int) -> None:
+    def __init__(self, number: int, first: FloatArray, slopes: Slopes, seed: int, combination: int = 0) -> None:
         super().__init__(daemon=True, name=f"start {number}")
         self.asked: Queue[FloatArray | BaseException] = Queue()
         self.answer: Queue[FloatArray | None] = Queue()
-        self.stopped = False
+        self.stopped, self.combination, self.best = False, combination, math.inf
+        self._counted = np.array([bool(one.levels) for one in slopes.variables])
         self._first, self._slopes, self._rng = first, slopes, np.random.default_rng([seed, number])
         self._at: FloatArray | None = None
         self._linear: Linear | None = None
@@ -216,7 +235,7 @@ class _Start(threading.Thread):
             while True:
                 with suppress(_NowhereError):
                     self._descend(point)
-                point = self._rng.random(point.size)
+                point = np.where(self._counted, point, self._rng.random(point.size))
         except _StoppedError:
             pass
         except BaseException as error:  # noqa: BLE001 - raised again in the thread that waits
@@ -232,7 +251,7 @@ class _Start(threading.Thread):
             constraints = {"type": "ineq", "fun": lambda x: self._at_point(x).limits, "jac": lambda x: self._at_point(x).limit_slopes}
         keywords: Any = {
             "jac": lambda x: self._at_point(x).slope / self._size,
-            "bounds": [(0.0, 1.0)] * point.size,
+            "bounds": [(at, at) if held else (0.0, 1.0) for at, held in zip(point.tolist(), self._counted, strict=True)],
             "constraints": constraints,
             "options": {"ftol": _PRECISION, "maxiter": 10_000},
         }
@@ -248,6 +267,8 @@ class _Start(threading.Thread):
                 raise _StoppedError
             self._linear = self._worse() if table is None else self._slopes(table, point, self._arcs)
             self._at = point.copy()
+            if table is not None and (self._linear.limits >= -2.0 * _INSIDE).all():
+                self.best = min(self.best, self._linear.objective)
         return self._linear
 
     def _worse(self) -> Linear:
@@ -267,25 +288,43 @@ def search_by_gradient(tables: Tables, slopes: Slopes, start: FloatArray, starts
     start : ndarray, shape (n,)
         The base system's place, where the first start begins; the others in a Latin hypercube.
     starts : int or None
+        Of each combination of counts.
     seed : int
     """
-    count = starts or STARTS
+    shares = [[(k + 0.5) / len(one.levels) for k in range(len(one.levels))] if one.levels else [math.nan] for one in slopes.variables]
+    combinations = np.array(list(product(*shares)))  # NaN where a variable is not counted
+    count = starts or (STARTS if len(combinations) == 1 else 1)
     points = qmc.LatinHypercube(start.size, rng=seed).random(count)
     points[0] = start
-    runners = [_Start(number, point, slopes, seed) for number, point in enumerate(points)]
+    placed = [np.where(np.isnan(one), point, one) for one in combinations for point in points]
+    runners = [_Start(number, point, slopes, seed, number // count) for number, point in enumerate(placed)]
+    every = list(runners)
     for runner in runners:
         runner.start()
     try:
-        while True:
+        for step in itertools.count():
             asked = [runner.asked.get() for runner in runners]
             for one in asked:
                 if isinstance(one, BaseException):
                     raise one
+            if step and step % ROUND == 0:  # every start has read its last answer by now
+                kept = _better_half(runners)
+                asked = [one for runner, one in zip(runners, asked, strict=True) if runner in kept]
+                runners = kept
             for runner, table in zip(runners, tables(np.array(asked)), strict=True):
                 runner.answer.put(table)
     finally:
-        for runner in runners:
+        for runner in every:
             runner.stopped = True
             runner.answer.put(None)
-        for runner in runners:
+        for runner in every:
             runner.join()
+
+
+def _better_half(runners: list[_Start]) -> list[_Start]:
+    """Return the starts of the better half of the combinations; a start that is left out waits for an answer until the search ends."""
+    best: dict[int, float] = {}
+    for runner in runners:
+        best[runner.combination] = min(best.get(runner.combination, math.inf), runner.best)
+    kept = sorted(best, key=lambda one: (best[one], one))[: (len(best) + 1) // 2]
+    return [runner for runner in runners if runner.combination in kept]
