@@ -1,4 +1,4 @@
-"""Pages that the package writes itself at every build: conformance report, commands, licences, limits, quantities, two reports."""
+"""Pages that the package writes itself at every build: reports, commands, licences, limits, quantities, and a picture of the house."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from cli_pages import command_reference
+from house_picture import write_picture
 from licence_pages import licence_table
 from limit_pages import limit_table
 from quantity_pages import quantity_table
@@ -15,6 +16,8 @@ from sphinx.application import Sphinx
 from sphinx.config import Config
 from thickness_pages import thickness_report
 from verification_pages import newest_source, verification_report
+
+import coaxshell
 
 _BEGUN: list[Future[None]] = []
 
@@ -36,6 +39,7 @@ def write_pages(app: Sphinx) -> None:
     pages = {"commands": command_reference, "licences": licence_table, "limits": limit_table, "quantities": quantity_table}
     for name, page in pages.items():
         _replace_if_changed(folder / f"{name}.md", page())
+    write_picture(Path(coaxshell.__file__).parent, folder / "house.svg")
     for report in _BEGUN:
         report.result()
 
