@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
 from coaxshell.apps.paper.reproduction.results import VERDICTS
-from coaxshell.apps.paper.thickness.judged import judged_with_both, rows
+from coaxshell.apps.paper.sphere.judged import topic
+from coaxshell.apps.paper.thickness.judged import OF_ABSORBERS, absorbers_judged_with_both, judged_with_both, rows
+from coaxshell.apps.paper.thickness.kept import as_table, from_table, known_of_absorbers
 from coaxshell.apps.paper.thickness.report import power_law, report
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.thin_error import thin_map
@@ -51,6 +55,32 @@ def test_statements_about_histories_and_waves_are_judged_with_both():
     assert [row[0] for row in found] == [str(number) for number in range(6, 21)]
     assert all(row[2] in VERDICTS and row[3] in VERDICTS for row in found)
     assert all(thin != exact for *_, thin, exact in found)  # other numbers, whatever they come to
+
+
+def test_kept_statements_on_absorbers_are_what_is_found():
+    """All of them, in the order of the topics; and made again coarsely, one of a single absorber and one of a ring."""
+    kept = known_of_absorbers()
+    assert [one.claim.name for one in kept] == [name for module in OF_ABSORBERS for name in topic(module).names]
+    assert all(verdict in VERDICTS for row in rows(kept) for verdict in row[2:4])
+    assert json.loads(json.dumps(as_table(from_table(as_table(kept))))) == as_table(kept)
+    (coarse,) = absorbers_judged_with_both(Settings(duration=4.0, time_step=4e-2, modes=8), modules=("count",))
+    thin, exact = coarse.findings["corrected"], coarse.findings["exact"]
+    assert (
+        thin.measured.keys()
+        == exact.measured.keys()
+        == kept[[one.claim.name for one in kept].index(coarse.claim.name)].corrected.measured.keys()
+    )
+    for name, value in thin.measured.items():
+        assert exact.measured[name] == pytest.approx(value, abs=5.0)  # per cent
+        assert exact.measured[name] != value
+
+
+@pytest.mark.slow
+def test_statements_on_absorbers_made_again_are_those_kept():
+    for now, known in zip(absorbers_judged_with_both(), known_of_absorbers(), strict=True):
+        for which, found in now.findings.items():
+            assert found.verdict == known.findings[which].verdict
+            assert found.measured == pytest.approx(known.findings[which].measured, rel=1e-3)
 
 
 def test_power_laws_hold_their_part_of_the_map():

@@ -47,6 +47,8 @@ UNSTATED_FREQUENCY = 300.0
 
 SPARED, LEAST_SEARCHED = 4, 2
 """Degrees that the search for the largest stress does without, whose polynomials are good to 1e-3 between their points, and the least."""
+SPARED_ALONG = 2
+"""Those that a search along the axis does without, which reads no place between its points again: good to 3e-4."""
 
 
 class Asked(NamedTuple):
@@ -162,15 +164,15 @@ class ElasticWall(ShellModel):
         inside = core.inner <= self.radius <= core.outer
         return 0.0 if inside else 0.5 * (core.inner + core.outer) - self.radius
 
-    def points(self, order: float, wavenumber: float = 0.0) -> tuple[FloatArray, ...]:
+    def points(self, order: float, wavenumber: float = 0.0, spared: int = SPARED) -> tuple[FloatArray, ...]:
         """Return depths of each layer, from the inside out, through which a polynomial holds its stress up to an order and wavenumber.
 
-        Gauss-Lobatto points of a degree :data:`SPARED` below that of the displacements, which resolves waves to 1e-6. Between two layers
+        Gauss-Lobatto points of a degree so much below that of the displacements, which resolves waves to 1e-6. Between two layers
         the outer one is meant at a depth: the last point of a layer lies within it by a hair.
         """
         found, hair = [], 1e-8 * (self.layers[-1].outer - self.layers[0].inner)
         for layer in self.layers:
-            rule = lobatto(max(LEAST_SEARCHED, self.degree_of(layer, order, wavenumber) - SPARED))
+            rule = lobatto(max(LEAST_SEARCHED, self.degree_of(layer, order, wavenumber) - spared))
             depths = layer.inner - self.radius + 0.5 * layer.thickness * (1.0 + rule.points)
             depths[-1] = layer.outer - self.radius - (0.0 if layer is self.layers[-1] else hair)
             found.append(depths)

@@ -2,7 +2,7 @@
 
 With x = sum c_n (shape n), shapes normal to each other in mass and stiffness and u'Mu the integral over r dr of one mode, the energies of a
 mode are (beta pi/2) sum dc_n/dt^2, kinetic, and (beta pi/2) sum omega_n^2 c_n^2, strain and piezoelectric together; that of potentials is
-the sum over their rows L^-1 Q x (:class:`coaxshell.structure.elastic_basis.PotentialOfLayer`).
+the sum over their rows L^-1 Q x (:attr:`coaxshell.structure.elastic_basis.OrdersBasis.electric_rows`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import driven_at, open_fields, volts_of
-from coaxshell.structure.elastic_basis import OrdersBasis, PotentialOfLayer
+from coaxshell.structure.elastic_basis import OrdersBasis
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import WallEnergy
 from coaxshell.structure.solid_transducers import along_wall, inertia_left_out
@@ -29,6 +29,8 @@ def solid_energy(motion: Motion, shell: int) -> WallEnergy:
     assert solid is not None
     pairs = [(part, place) for part in wall.basis(motion.modes) for place in range(part.orders.size)]
     volts = volts_of(motion, shell)
+    for part in wall.basis(motion.modes):
+        assert part.electric_rows is not None  # made before all threads ask for them
 
     def of_order(pair: tuple[OrdersBasis, int]) -> FloatArray:
         part, place = pair
@@ -62,9 +64,6 @@ def _of_parity(motion: Motion, part: OrdersBasis, place: int, forces: ComplexArr
     amplitude_kept = grid.invert(amplitude)[:, motion.kept]
     whole = part.squares[place] @ amplitude_kept**2
     electric = np.zeros_like(whole)
-    for layer in part.mesh.layers:
-        if layer.layer.coupling is not None:
-            rows = PotentialOfLayer(layer, part.orders[place : place + 1], part.wavenumber).rows[0]
-            shown = np.einsum("icp,ncp->in", rows, part.shapes[place][..., layer.nodes])
-            electric += np.sum((shown @ amplitude_kept) ** 2, axis=0)
+    for rows in part.electric_rows:
+        electric += np.sum((rows[place] @ amplitude_kept) ** 2, axis=0)
     return np.stack([np.sum(rate**2, axis=0), whole - electric, electric])

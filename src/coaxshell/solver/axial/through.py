@@ -27,14 +27,14 @@ from coaxshell.solver.axial.sums import TOGETHER, of_odd
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import band
-from coaxshell.structure.elastic_wall import Asked, ElasticWall
+from coaxshell.structure.elastic_wall import SPARED_ALONG, Asked, ElasticWall
 
 
 def searched_depths(solution: SpatialSolution, shell: int) -> list[FloatArray]:
     """Return depths of each layer of an elastic wall (a), from the inside out, through which a polynomial holds its stresses."""
     wall = solution.problem.resolving(band(laplace_grid(solution.settings))).shells[shell]
     assert isinstance(wall, ElasticWall)
-    return list(wall.points(solution.sampling.max_order, solution.sampling.highest))
+    return list(wall.points(solution.sampling.max_order, solution.sampling.highest, SPARED_ALONG))
 
 
 def stresses_through(solution: SpatialSolution, shell: int, asked: Sequence[Asked], stations: Sequence[int]) -> FloatArray:

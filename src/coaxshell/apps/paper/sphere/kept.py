@@ -19,11 +19,13 @@ DATA = "claims.json"
 _NAMES = {"slice": CORRECTED, SPHERE: SPHERE}
 
 
+def plain(finding: Finding) -> dict[str, Any]:
+    """Return what is found about a claim as plain values, numbers with five digits."""
+    return {**asdict(finding), "measured": {name: float(f"{value:.5g}") for name, value in finding.measured.items()}}
+
+
 def as_table(found: Judgement) -> dict[str, Any]:
     """Return a judgement as plain values, numbers with five digits."""
-
-    def plain(finding: Finding) -> dict[str, Any]:
-        return {**asdict(finding), "measured": {name: float(f"{value:.5g}") for name, value in finding.measured.items()}}
 
     def row(one: Judged) -> dict[str, Any]:
         at = found.resolutions[one.claim.name].arguments()

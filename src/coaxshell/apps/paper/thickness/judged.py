@@ -1,8 +1,8 @@
-"""The paper's statements about its bare shells, judged with thin walls and with exact ones by the same criteria."""
+"""The paper's statements about its shells and its absorbers, judged with thin walls and with exact ones by the same criteria."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from coaxshell.apps.paper.claims import Judged, claims
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 MODULES = ("setting", "bare", "waves")
 """Of claims about the bare shells: their histories, and the waves around them, which are read where the fluids wet the walls."""
+OF_ABSORBERS = ("stiffness", "mass", "cubic", "count", "damping")
+"""Of claims about absorbers, which hold thin walls along lines, exact ones over arcs as long as these are thick."""
 
 ENERGY = "energy-is-radiated-away"
 """What the sphere has no energy per length for."""
@@ -33,11 +35,32 @@ def _each(wanted: Mapping[str, System], resolution: Settings, progress: Progress
 
 
 def judged_with_both(resolution: Settings = RESOLUTION) -> tuple[Judged, ...]:
-    """Return the statements with what is found with thin walls, under the name of the corrected model, and with exact ones, "exact"."""
+    """Return statements about bare shells by what is found with thin walls, named as the corrected model, and with exact ones, "exact"."""
+    return _judged([*((name, resolution) for module in MODULES for name in topic(module).names), (ENERGY, resolution)])
+
+
+def absorbers_judged_with_both(resolution: Settings = RESOLUTION, modules: Sequence[str] = OF_ABSORBERS) -> tuple[Judged, ...]:
+    """Return those about absorbers: some fifty runs, three minutes of a processor.
+
+    Parameters
+    ----------
+    resolution : Settings
+        Finest of all runs; those of a topic are no finer than is enough for it.
+    modules : sequence of str
+        Of the claims.
+    """
+    return _judged([(name, topic(module).resolution(resolution)) for module in modules for name in topic(module).names])
+
+
+def _judged(asked: Sequence[tuple[str, Settings]]) -> tuple[Judged, ...]:
+    """Return statements by name, judged from runs of their resolutions; those of one resolution share their runs."""
     known = {claim.name: claim for claim in claims()}
-    variants = {CORRECTED: Runs(resolution), EXACT: Runs(resolution, solver=_each, variant=EXACT)}
-    names = [*(name for module in MODULES for name in topic(module).names), ENERGY]
-    return tuple(Judged(known[name], {which: known[name].work(runs) for which, runs in variants.items()}) for name in names)
+    variants: dict[Settings, dict[str, Runs]] = {}
+    found = []
+    for name, at in asked:
+        both = variants.setdefault(at, {CORRECTED: Runs(at), EXACT: Runs(at, solver=_each, variant=EXACT)})
+        found.append(Judged(known[name], {which: known[name].work(runs) for which, runs in both.items()}))
+    return tuple(found)
 
 
 def rows(judged: tuple[Judged, ...]) -> list[tuple[str, ...]]:

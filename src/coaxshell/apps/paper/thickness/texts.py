@@ -41,8 +41,9 @@ PEAK_CAPTION = "Largest hoop stress over that of exact walls:"
 MOTION_CAPTION = "Difference of the normal displacement from exact walls':"
 CLAIMS_TITLE = "The paper's statements with exact walls"
 CLAIMS = (
-    "Statements of the paper about its bare shells, their histories and the waves around them, under its own source, judged by the same "
-    "criteria from runs that differ in their walls alone; pressures beside a wall are those where the fluids wet it. Of {count} {turned}."
+    "Statements of the paper about its bare shells, their histories and the waves around them, and about its absorbers, under its own "
+    "source, judged by the same criteria from runs that differ in their walls alone; pressures beside a wall are those where fluids wet "
+    "it, and absorbers hold thin walls along lines, exact ones over arcs as long as these are thick. Of {count} {turned}."
 )
 CLAIM_HEADINGS = ("no.", "statement", "thin", "exact", "found with thin walls", "found with exact walls")
 FIT_HEADINGS = ("wall", "wetted at", "error of the hoop stress", "within a factor")
