@@ -62,6 +62,14 @@ GRADIENTS = (
         "studies/test_fit.py",
     ),
     Mutation(
+        "gradient-losses",
+        "response/relaxing.py",
+        "spectrum *= np.conj(factor.at(grid.nodes))",
+        "spectrum *= factor.at(grid.nodes)",
+        "losses of a wall, transposed",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
         "gradient-nodes",
         "solver/adjoint/nodes.py",
         "kappa = law_of.mass_displacement(first, second)",

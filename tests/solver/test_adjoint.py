@@ -157,6 +157,15 @@ def test_laws_of_absorbers_that_are_solved_at_each_node():
     assert_allclose(along(sensitivity(system), changes), difference(system, changes), rtol=1e-7)
 
 
+def test_stresses_of_walls_with_losses():
+    """The stress is g(s) of the motion: backwards g is its conjugate, and g itself moves with the loss factor."""
+    lossy = {f"shells[0].layers[1].material.{name}": value for name, value in (("loss_factor", 0.03), ("reference_frequency", 1000.0))}
+    system = BASE.replace(absorbers=layout()).with_overrides(lossy)
+    wanted = {"shells[0].layers[1].material.loss_factor": 0.01, "absorbers[0].mass": 0.01, "shells[0].layers[1].thickness": 1e-3}
+    changes, settings = relative(system, wanted), {"duration": 0.8, "modes": 6}
+    assert_allclose(along(sensitivity(system, **settings), changes), difference(system, changes, **settings), rtol=1e-7)
+
+
 @pytest.mark.parametrize("cubic", [None, 0.0, 1e22])
 def test_walls_fluids_gains_and_sources(cubic):
     system = BASE if cubic is None else BASE.replace(absorbers=layout(cubic=cubic))

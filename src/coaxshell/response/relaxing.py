@@ -51,11 +51,37 @@ def relaxed(solution: ModalSolution, factor: Relaxation | None, histories: Float
     return np.asarray(found * np.exp(grid.shift * grid.time))
 
 
+def relaxed_transposed(solution: ModalSolution, factor: Relaxation | None, slope: FloatArray) -> FloatArray:
+    """Return the transpose of :func:`relaxed`: what histories change, (..., T), from what g(s) of them changes, of the same shape."""
+    if factor is None:
+        return slope
+    grid = LaplaceGrid(solution.settings.time_step, solution.time.size - 1)
+    whole = np.zeros((*slope.shape[:-1], grid.samples))
+    whole[..., : grid.time.size] = slope * np.exp(grid.shift * grid.time)
+    spectrum = fft.rfft(whole, axis=-1, workers=WORKERS, overwrite_x=True)
+    spectrum *= np.conj(factor.at(grid.nodes))
+    found = fft.irfft(spectrum, grid.samples, axis=-1, workers=WORKERS, overwrite_x=True)
+    found *= np.exp(-grid.shift * grid.time_step * np.arange(grid.samples))
+    kept, beyond = found[..., : grid.time.size].copy(), found[..., grid.time.size :]
+    steps = np.arange(1.0, beyond.shape[-1] + 1)
+    faded = beyond * _fading(steps)
+    value, slopes, curvatures = faded.sum(axis=-1), faded @ steps, faded @ (0.5 * steps**2)
+    kept[..., -1] += value + 1.5 * slopes + curvatures
+    kept[..., -2] -= 2.0 * (slopes + curvatures)
+    kept[..., -3] += 0.5 * slopes + curvatures
+    return np.asarray(kept)
+
+
+def _fading(steps: FloatArray) -> FloatArray:
+    """Return by how much what lies so many steps beyond the end of a run has faded."""
+    return np.asarray(np.exp(-_FADING * np.minimum(steps / min(_FADED, steps.size), 2.0) ** 4))
+
+
 def _continued(histories: FloatArray, grid: LaplaceGrid) -> FloatArray:
     """Return histories over a whole period: beyond their end a parabola, faded out."""
     third, second, last = histories[..., -3, None], histories[..., -2, None], histories[..., -1, None]
     steps = np.arange(1.0, grid.samples - histories.shape[-1] + 1)
-    fading = np.exp(-_FADING * np.minimum(steps / min(_FADED, steps.size), 2.0) ** 4)
+    fading = _fading(steps)
     slope, curvature = 1.5 * last - 2.0 * second + 0.5 * third, last - 2.0 * second + third
     return np.concatenate([histories, (last + slope * steps + 0.5 * curvature * steps**2) * fading], axis=-1)
 

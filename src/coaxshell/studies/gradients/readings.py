@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.modal import scaled, voltage_gain
 from coaxshell.response.quantities import Where, shell_metrics
+from coaxshell.response.relaxing import Relaxing, relaxed, relaxed_transposed
 from coaxshell.response.voltages import actuator_limit, mean_shares
 from coaxshell.solver.adjoint.answer import Reading
 from coaxshell.solver.electrodes import segment_length
@@ -20,12 +21,18 @@ from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.structure.control_law import ControlGains
+from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.shell_model import Gain
 from coaxshell.studies.gradients.norms import Norm, power_mean, root_mean_square
 from coaxshell.studies.metrics import Metric
 
-Parts = tuple[Gain, Gain | None]
-"""Gains on W and V, and on their rates, by which a quantity is made of them."""
+
+class Parts(NamedTuple):
+    """Gains on W and V, each under a factor g(s) of losses or None for 1, and on their rates, by which a quantity is made of them."""
+
+    at_once: tuple[tuple[Relaxation | None, Gain], ...]
+    rate: Gain | None = None
+
 
 _VOLTAGES = ("peak_actuator_voltage", "peak_actuator_field", "actuator_field_ratio")
 _SEGMENT_METRICS = ("segment_actuator_voltage", "segment_actuator_field", "segment_field_ratio")
@@ -56,7 +63,10 @@ class SmoothMetric:
     def amplitudes(self, solution: ModalSolution, problem: Problem | None = None) -> FloatArray:
         """Return the modal amplitudes (parities, M + 1, T) of the quantity; with the gains of another problem if given."""
         at_once, rate = self.parts(problem or solution.problem)
-        modal = at_once.w[:, None] * solution.normal[self.shell] + at_once.v[:, None] * solution.tangential[self.shell]
+        normal, tangential = solution.normal[self.shell], solution.tangential[self.shell]
+        modal = np.zeros_like(normal)
+        for factor, gain in at_once:
+            modal += relaxed(solution, factor, gain.w[:, None] * normal + gain.v[:, None] * tangential)
         if rate is not None:
             assert solution.normal_rate is not None
             assert solution.tangential_rate is not None
@@ -73,12 +83,19 @@ class SmoothMetric:
     def reading(self, solution: ModalSolution, solved: SolvedSpectra, slope: FloatArray) -> Reading:
         """Return what a unit of W and V at every node changes, from what a unit of each amplitude does."""
         grid, (at_once, rate) = solved.grid, self.parts(solution.problem)
-        every = np.zeros((*slope.shape[:2], grid.time.size))
-        every[..., :: solution.settings.refinement] = slope
-        spectrum = grid.invert_transposed(every)
         normal, tangential = np.zeros((2, *solved.normal.shape), np.complex128)
-        normal[self.shell], tangential[self.shell] = at_once.w[:, None] * spectrum, at_once.v[:, None] * spectrum
+
+        def at_nodes(histories: FloatArray) -> ComplexArray:
+            every = np.zeros((*slope.shape[:2], grid.time.size))
+            every[..., :: solution.settings.refinement] = histories
+            return grid.invert_transposed(every)
+
+        for factor, gain in at_once:
+            spectrum = at_nodes(relaxed_transposed(solution, factor, slope))
+            normal[self.shell] += gain.w[:, None] * spectrum
+            tangential[self.shell] += gain.v[:, None] * spectrum
         if rate is not None:
+            spectrum = at_nodes(slope)
             normal[self.shell] += rate.w[:, None] * (spectrum * grid.nodes)
             tangential[self.shell] += rate.v[:, None] * (spectrum * grid.nodes)
         return Reading(normal, tangential)
@@ -107,7 +124,7 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
     Raises
     ------
     InputError
-        If it is none, or its wall has losses or is an elastic solid, whose stress depends on the whole history.
+        If it is none, or its wall is an elastic solid, whose stress is no sum of V and W.
     """
     if not has_gradient(metric):
         remedy = "use the RMS or the peak of stress, displacement or voltage of a shell, such as inner.rms_stress, or a mass"
@@ -122,7 +139,8 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
     def of_table(problem: Problem) -> Parts:
         assert entry is not None
         assert entry[0].gain is not None
-        return entry[0].gain(seen(problem), shell), None  # type: ignore[return-value]
+        gain = entry[0].gain(seen(problem), shell)
+        return Parts(gain.parts if isinstance(gain, Relaxing) else ((None, gain),))  # type: ignore[arg-type]
 
     def of_voltage(problem: Problem) -> Parts:
         run, gains = seen(problem), problem.shells[shell].gains
@@ -136,14 +154,16 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
         elif quantity.endswith("ratio"):
             share = share / actuator_limit(run, shell).volts
         if gains is None:
-            return scaled(sensor, 0.0 * share), None  # type: ignore[return-value]
+            return Parts(((None, scaled(sensor, 0.0 * share)),))  # type: ignore[arg-type]
         if not isinstance(gains, ControlGains):
             remedy = "use its sensor's voltage, or a PDControl"
             raise InputError("metric", f"{metric.name!r} has no gradient: a law H(s) remembers earlier instants", remedy)
-        return scaled(sensor, gains.proportional * share), scaled(sensor, gains.derivative * share)  # type: ignore[return-value]
+        at_once, rate = scaled(sensor, gains.proportional * share), scaled(sensor, gains.derivative * share)
+        return Parts(((None, at_once),), rate)  # type: ignore[arg-type]
 
     parts, where = (of_voltage, "anywhere") if entry is None else (of_table, entry[1])
-    if not all(isinstance(part, Gain) for part in parts(problem) if part is not None):
-        remedy = "use its displacement, or a wall without losses of the theory of thin walls"
+    made = parts(problem)
+    if not all(isinstance(part, Gain) for part in (*(gain for _, gain in made.at_once), made.rate) if part is not None):
+        remedy = "use its displacement, or a wall of the theory of thin walls"
         raise InputError("metric", f"{metric.name!r} has no gradient: in this wall it is no sum of V and W of the same instant", remedy)
     return SmoothMetric(metric, shell, where, power, parts)  # type: ignore[arg-type]

@@ -21,7 +21,7 @@ from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.studies.gradients.norms import Norm
-from coaxshell.studies.gradients.readings import SmoothMetric, smooth_metric
+from coaxshell.studies.gradients.readings import Parts, SmoothMetric, smooth_metric
 from coaxshell.studies.metrics import Metric
 from coaxshell.studies.reading import DesignReading, MetricSource
 from coaxshell.studies.varied_fields import Field, field_of, varied
@@ -97,13 +97,6 @@ class MetricSensitivity:
         answer["angle"] = (found.around.angle * share)[member] * facing
         return answer
 
-    @cached_property
-    def _of_gains(self) -> list[FloatArray]:
-        """What the metric changes by per unit of the gains on W, V, dW/dt and dV/dt, each of shape (M + 1,)."""
-        solution, shell, slope = self._solution, self._smooth.shell, self._norm.slope
-        motion = (solution.normal, solution.tangential, solution.normal_rate, solution.tangential_rate)
-        return [np.einsum("hmt,hmt->m", slope, x[shell]) if x is not None else np.zeros(slope.shape[1]) for x in motion]
-
     def of(self, path: str) -> float:
         """Return what the metric changes by per unit of a field, in SI (degrees for angles).
 
@@ -158,15 +151,13 @@ class MetricSensitivity:
             raise InputError(field.path, problem, "begin inside of it") from None
 
     def _change_of_gains(self, before: Problem, after: Problem) -> float:
-        bars = self._of_gains
-        totals = []
-        for problem in (before, after):
-            at_once, rate = self._smooth.parts(problem)
-            total = bars[0] @ at_once.w + bars[1] @ at_once.v
-            if rate is not None:
-                total += bars[2] @ rate.w + bars[3] @ rate.v
-            totals.append(float(total))
-        return totals[1] - totals[0]
+        """Return the change by what makes the quantity of the motion, which stays as it is: gains, and the losses in them."""
+        first, second = (self._smooth.parts(problem) for problem in (before, after))
+        if _equal(first, second):
+            return 0.0
+        ends = (self._smooth.amplitudes(self._solution, problem) for problem in (before, after))
+        old, new = (float(np.einsum("hmt,hmt->", self._norm.slope, amplitudes)) for amplitudes in ends)
+        return new - old
 
     def _change_of_links(self, sets: list[AbsorberSet], before: Problem, after: Problem) -> float:
         """Return the change by the laws of links and by the arcs that they hold; *sets* carry every absorber of the description."""
@@ -204,6 +195,14 @@ class MetricSensitivity:
         if turned.any():
             total += float(self._of_absorbers["angle"] @ turned)
         return self._finite(total, "absorbers.cubic_stiffness")
+
+
+def _equal(first: Parts, second: Parts) -> bool:
+    """Return whether two quantities are made of the motion in the same way."""
+    pairs = [*zip(first.at_once, second.at_once, strict=True), ((None, first.rate), (None, second.rate))]
+    same_factors = all(one[0] == other[0] for one, other in pairs)
+    gains = [(one[1], other[1]) for one, other in pairs if one[1] is not None and other[1] is not None]
+    return same_factors and all(np.array_equal(one.v, other.v) and np.array_equal(one.w, other.w) for one, other in gains)
 
 
 def _of_design(metric: Metric, system: System) -> dict[str, FloatArray]:
