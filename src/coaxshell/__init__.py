@@ -89,6 +89,7 @@ if TYPE_CHECKING:
         robustness,
         sensitivity,
         sweep,
+        to_state_space,
     )
 
 _ROOMS = ("coaxshell.model", "coaxshell.solver.settings", "coaxshell.response", "coaxshell.studies")
@@ -163,6 +164,7 @@ __all__ = [
     "simulate",
     "stability_margins",
     "sweep",
+    "to_state_space",
 ]
 
 

@@ -73,6 +73,22 @@ FEEDBACK = (
         "studies/test_control_design.py",
     ),
     Mutation(
+        "mirrored-poles",
+        "numerics/vector_fitting.py",
+        "found = np.where(found.real > 0.0, -found.conj(), found)",
+        "found = np.where(found.real > 0.0, -found.conj(), 1.01 * found)",
+        "the zeros of sigma are the poles",
+        "studies/test_state_space.py",
+    ),
+    Mutation(
+        "estimated-drive",
+        "studies/control_design/lqg.py",
+        "a = order.a - push @ state - estimate @ read + estimate @ through @ state",
+        "a = order.a + push @ state - estimate @ read + estimate @ through @ state",
+        "the filter knows what the controller does",
+        "studies/test_state_space.py",
+    ),
+    Mutation(
         "charge-of-condenser",
         "response/electrical.py",
         "moved.columns.w * w + capacitance * voltage",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from coaxshell.numerics.renamed import renamed
-from coaxshell.studies.control_design import ControlDesign, design_control
+from coaxshell.studies.control_design import ControlDesign, StateSpaceModel, design_control, to_state_space
 from coaxshell.studies.execution import Execution
 from coaxshell.studies.executors import dask_executor
 from coaxshell.studies.fitting.fitted import FIT_PARTS, Fit
@@ -42,6 +42,7 @@ __all__ = [
     "Optimum",
     "Range",
     "SensitivityStudy",
+    "StateSpaceModel",
     "SweepStudy",
     "Uniform",
     "dask_executor",
@@ -57,6 +58,7 @@ __all__ = [
     "solve_each",
     "sweep",
     "sweep_design",
+    "to_state_space",
     "uncertainty_of",
 ]
 
