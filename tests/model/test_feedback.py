@@ -66,7 +66,7 @@ def test_from_other_packages():
         ({"numerator": [1], "weights": [1, None]}, ("weights[1]:",)),
         ({"numerator": [1], "sensor_corner": 0}, ("sensor_corner:", "greater than 0")),
         ({"numerator": [1], "shells": []}, ("shells:", "at least one")),
-        ({"numerator": [1], "saturation": True}, ("saturation:", "not an entry of Feedback")),
+        ({"numerator": [1], "segments": 4, "dead": [1], "weights": 2, "transducers": "electrodes"}, ("weights:", "modal filter")),
         ({"delay": 0}, ("numerator:", "is missing")),
     ],
     ids=str,

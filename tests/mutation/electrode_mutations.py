@@ -82,9 +82,25 @@ ELECTRODES = (
     Mutation(
         "complementary-minor",
         "solver/electrode_loops.py",
-        "each.prod(axis=0, keepdims=True) * np.linalg.det(self.between_dead(self.inverse))",
-        "each.prod(axis=0, keepdims=True)",
+        "np.concatenate([each, np.linalg.det(self.between_dead(self.inverse))[None]])",
+        "np.concatenate([each, np.ones_like(each[:1])])",
         "the determinant of live segments alone",
         "solver/test_segments.py",
+    ),
+    Mutation(
+        "side-of-the-limit",
+        "solver/limited_step.py",
+        "sides[held] * limit[held]",
+        "limit[held]",
+        "voltages stop at both limits",
+        "solver/test_limited_voltages.py",
+    ),
+    Mutation(
+        "closed-loop-of-the-lack",
+        "solver/limited_voltages.py",
+        "given = free + times(loops.inverse, lacking)",
+        "given = free + lacking",
+        "what a lack of voltage changes in what is asked for",
+        "solver/test_limited_voltages.py",
     ),
 )

@@ -200,11 +200,10 @@ def test_gains_of_each_shell():
     ("changes", "words"),
     [
         ({"engine": "direct"}, ("control.transducers", "pressure alone", 'engine="spectral"')),
-        ({"saturation": True}, ("control.saturation", "push along the wall", "saturation = false")),
     ],
 )
 def test_refused_in_words(changes, words):
-    system = electrodes(0.0, 1.0, saturation=changes.pop("saturation", False))
+    system = electrodes(0.0, 1.0)
     with pytest.raises(InputError) as caught:
         cx.simulate(system, duration=1, time_step=0.02, modes=4, **changes)
     for word in words:

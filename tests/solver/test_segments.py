@@ -174,7 +174,6 @@ def test_both_walls_need_the_same_law_to_be_passive():
         ({"segments": 2, "dead": [0, 1]}, "control.dead: lists all 2 segments"),
         ({"segments": 4, "segment_gap": 1.0}, "control.segment_gap: 1 m leaves nothing of 4 segments of shells[0]"),
         ({"segments": 4, "transducers": "paper"}, "control.segments: 4 are not known to the paper's law"),
-        ({"segments": 4, "saturation": True}, "control.saturation"),
     ],
 )
 def test_bad_input_is_told_before_anything_is_computed(control, said):

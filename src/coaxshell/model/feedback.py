@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
@@ -89,16 +89,16 @@ class Feedback(Described):
     """What reads and drives: "paper" reads curvature and drives by a pressure alone, "electrodes" strain, by traction and moment too."""
     shells: Annotated[tuple[int | End, ...] | Literal["all"], BeforeValidator(_shells)] = "all"
     """Which shells: "all", or numbers from 0 inside, "inner", "outer", "middle"; ``System.controlled_shells`` gives the numbers."""
+    saturation: bool = False
+    """Whether the actuator's voltage stops at the field limit."""
     field_limit: Annotated[float, quantity("electric field", above=0)] | None = None
-    """Field on the actuator (V/m) above which a warning is given; the material's own unless given."""
+    """Largest field on the actuator (V/m), above which a warning is given; the material's own unless given."""
     segments: Count | None = None
     """Electrodes around each wall, all layers cut at the same places, each with its own loop; one that varies freely unless given."""
     segment_gap: Gap | None = None
     """Between neighbouring segments along the mid-surface, a strip held at ground (m)."""
     dead: Dead | None = None
     """Segments held at ground, which neither sense nor push: 0 has its middle at theta = 0, the others follow counterclockwise."""
-
-    saturation: ClassVar[bool] = False
 
     @classmethod
     def from_zeros(cls, zeros: Sequence[complex], poles: Sequence[complex], gain: float, **others: Any) -> Self:

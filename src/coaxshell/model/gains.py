@@ -17,6 +17,11 @@ def saturates(system: SystemParts) -> bool:
     return any(law.saturation for law in laws_of(system))
 
 
+def limits_voltages(system: SystemParts) -> bool:
+    """Return whether voltages stop at a limit that are marched beside the linear answer: of electrodes, and of laws other than PD."""
+    return any(law.saturation and (law.transducers == "electrodes" or isinstance(law, Feedback)) for law in laws_of(system))
+
+
 def segments_of(system: SystemParts) -> int | None:
     """Return into how many segments the electrodes around each wall under control are cut; None where they are not."""
     return next((law.segments for law in laws_of(system) if law.segments is not None), None)

@@ -137,12 +137,12 @@ class CutElectrode(NamedTuple):
         return Peak(value, float(time[window][instant]), angle, growing, lower_half=value)
 
 
-def cut_voltage(solution: ModalSolution, shell: int) -> CutElectrode | None:
-    """Return the voltages of the segments of a shell's electrodes; None where they are not cut."""
+def cut_voltage(solution: ModalSolution, shell: int, *, asked: bool = False) -> CutElectrode | None:
+    """Return the voltages of the segments of a shell's electrodes, given or *asked* for; None where they are not cut."""
     wall, kept = solution.problem.shells[shell], getattr(solution, "segment_voltage", None)
     if kept is None or not isinstance(wall, SegmentedWall) or wall.gains is None:
         return None
-    return CutElectrode(wall.segments, kept[shell])
+    return CutElectrode(wall.segments, kept[shell] if asked else applied(kept[shell], actuator_limit(solution, shell)))
 
 
 def mean_shares(solution: ModalSolution, shell: int, length: float) -> FloatArray:
@@ -184,7 +184,7 @@ def largest_demanded_voltage(solution: ModalSolution, shell: int, window: slice,
 
     With what the lower half of the orders gives, unless it is not to be ``halved``.
     """
-    cut = cut_voltage(solution, shell)
+    cut = cut_voltage(solution, shell, asked=True)
     if cut is not None:
         return cut.largest(solution.time, window)
     voltage = demanded_voltage(solution, shell)  # whole, because its derivative needs the neighbours of every instant

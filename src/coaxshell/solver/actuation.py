@@ -48,7 +48,7 @@ def voltage_asked(solved: SolvedSpectra) -> ComplexArray:
     ndarray, shape (shells, parities, M + 1, nodes)
     """
     if solved.voltage is not None:
-        return solved.voltage
+        return solved.voltage if solved.asked is None else solved.asked
     voltage = np.zeros_like(solved.normal)
     for i, wall in enumerate(solved.problem.shells):
         if isinstance(wall, ElasticWall):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import saturates, segments_of
+from coaxshell.model.gains import limits_voltages, saturates, segments_of
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -49,13 +49,10 @@ def require_sources_alone(system: System, dimensions: int) -> None:
 
 
 def _require_linear_electrodes(system: System) -> None:
-    """Raise InputError if feedback by electrodes is to saturate."""
-    if not any(law.transducers == "electrodes" for law in laws_of(system)):
-        return
-    paper = 'or transducers = "paper"'
-    if saturates(system):
-        problem = "electrodes push along the wall too, where no limit of the voltage is marched yet"
-        raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {paper}")
+    """Raise InputError if feedback by electrodes, or by any law but PD, is to saturate beside absorbers."""
+    if limits_voltages(system) and system.absorber_list:
+        problem = "beside absorbers no limit of the voltage is marched yet but that of PDControl with the paper's transducers"
+        raise InputError("control.saturation", problem, "leave the absorbers out, or use saturation = false and compare voltage and limit")
 
 
 def require_whole_electrodes(system: System, what: str, remedy: str) -> None:

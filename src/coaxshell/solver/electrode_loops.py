@@ -78,15 +78,20 @@ class ElectrodeLoops:
         size = found.shape[1] * found.shape[2]
         return np.asarray(found.reshape(len(found), size, size))
 
-    def determinants(self) -> ComplexArray:
-        """Return |1 - H C_q|, (patterns, nodes); where dead segments tie the patterns that of all together, (1, nodes).
+    def factors(self) -> ComplexArray:
+        """Return |1 - H C_q|, (patterns, nodes), and where dead segments tie the patterns one row more, whose product is that of all.
 
         Of the loops of live ones alone it is the product over patterns times |(1 - H C)^-1| on the dead segments, the complementary minor.
         """
         each = np.linalg.det(self.matrix)
         if not self.patterns.dead:
             return np.asarray(each)
-        return np.asarray(each.prod(axis=0, keepdims=True) * np.linalg.det(self.between_dead(self.inverse)))
+        return np.concatenate([each, np.linalg.det(self.between_dead(self.inverse))[None]])
+
+    def determinants(self) -> ComplexArray:
+        """Return |1 - H C_q|, (patterns, nodes); where dead segments tie the patterns that of all together, (1, nodes)."""
+        each = self.factors()
+        return each.prod(axis=0, keepdims=True) if self.patterns.dead else each
 
 
 def times(matrix: ComplexArray, vector: ComplexArray) -> ComplexArray:

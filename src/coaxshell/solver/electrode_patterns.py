@@ -55,6 +55,11 @@ class Patterns(ABC):
         """Points that are held at ground."""
         return ()
 
+    @property
+    def cut(self) -> bool:
+        """Whether points are segments."""
+        return False
+
 
 @dataclass(frozen=True, eq=False)
 class CutPatterns(Patterns):
@@ -115,6 +120,11 @@ class CutPatterns(Patterns):
     def dead(self) -> tuple[int, ...]:
         """Dead segments."""
         return self.walls[0].dead
+
+    @property
+    def cut(self) -> bool:
+        """True."""
+        return True
 
 
 @dataclass(frozen=True, eq=False)

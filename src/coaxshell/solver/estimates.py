@@ -15,13 +15,25 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.solver.orders_left_out import Interface, left_out, surface_norms
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.orders_left_out import Interface, left_out, relative, surface_norms
 from coaxshell.solver.solution import Estimates
 from coaxshell.solver.step_error import band_limit, march_error, membrane_error
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 ORDERS_FACTOR = 2.0
 STEP_FACTOR = 2.0
+
+
+def march_defect(
+    grid: LaplaceGrid, defect: tuple[ComplexArray, ComplexArray], histories: tuple[FloatArray, FloatArray], step: float
+) -> FloatArray:
+    """Return the printed error of a march of limited voltages, (shells, 2): the motion that its own answer, cut once more, would add.
+
+    ``defect`` are transforms of W and V of that motion, ``histories`` W and V of the run at instants ``step`` apart.
+    """
+    missing = surface_norms(*(grid.invert(x) for x in defect)).sum(axis=-1)
+    return STEP_FACTOR * relative(missing, surface_norms(*histories).sum(axis=-1) * (step / grid.time_step))
 
 
 def estimated_errors(

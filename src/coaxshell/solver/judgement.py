@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from coaxshell.model.gains import saturates
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.solver import checks, estimates
@@ -43,6 +45,8 @@ def _judgement(solution: ModalSolution, solved: SolvedSpectra, asked_for: Settin
     interface = interface_of(solved, solution.normal, slice(None, None, settings.refinement), asked)
     spectra, histories = (solved.normal, solved.tangential), (solution.normal, solution.tangential)
     errors = estimates.estimated_errors(solved.passive, spectra, histories, settings.time_step, interface)
+    if solved.defect is not None:
+        errors = replace(errors, march=estimates.march_defect(solved.grid, solved.defect, histories, settings.time_step))
     stopwatch.lap("error estimates")
     warnings = [*structure.notes, *checks.absorbers(solved, settings.refinement), *checks.before(problem, solved.grid, order)]
     warnings += tolerance_missed(asked_for, order, errors, saturating=saturates(problem.system))

@@ -57,7 +57,7 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
         if links.count or actuation is not None:
             require_room(structure.problem, solution.settings)  # a saved run may come from a larger machine
         kept = reflected(structure, lambda one: solve_linked(one, links, saturate=actuation is not None))
-    if continued and kept.marched:
+    if continued and kept.marched and kept.voltage is None:
         return _of_forces(kept.structure, links, kept.force, kept.displacement, kept.actuation, continued, kept.laws)
     return kept
 

@@ -35,7 +35,7 @@ _BLOCK = 512
 _SPACING = 0.8
 _HALVINGS = 8
 _STARTS, _ITERATIONS = 12, 40
-_ROUGHLY = 1.5
+_ROUGHLY = 1.2
 """How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
 
 
@@ -75,12 +75,18 @@ def never_gives(problem: Problem, contour: Contour) -> bool:
 
 def determinants(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> ComplexArray:
     """Return D/D0 of each pattern, shape (patterns, nodes), or, where dead segments tie them, of all together, (1, nodes)."""
+    each, tied = _factors(problem, passive, modes, nodes)
+    return each.prod(axis=0, keepdims=True) if tied else each
+
+
+def _factors(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> tuple[ComplexArray, bool]:
+    """Return factors of D/D0, shape (rows, nodes), and whether they are those of one determinant, or of one pattern each."""
     found = []
     patterns = patterns_of(problem, controlled(problem), modes.orders, 1)
     for start in range(0, nodes.size, _BLOCK):
         s = nodes[start : start + _BLOCK]
-        found.append(ElectrodeLoops.of(problem, VoltageResponse.at(passive, problem, modes, s), patterns, s).determinants())
-    return np.concatenate(found, axis=1)
+        found.append(ElectrodeLoops.of(problem, VoltageResponse.at(passive, problem, modes, s), patterns, s).factors())
+    return np.concatenate(found, axis=1), bool(patterns.dead)
 
 
 def growing(problem: Problem, max_order: int, least: float) -> PatternPoles | None:
@@ -95,23 +101,26 @@ def growing(problem: Problem, max_order: int, least: float) -> PatternPoles | No
 def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
     """Return the patterns with poles right of a contour; where the determinant turns fast between nodes there are more of them."""
     passive, nodes = problem.open_loop, contour.nodes
-    ratio = determinants(problem, passive, modes, nodes)
+    ratio, tied = _factors(problem, passive, modes, nodes)
     for _ in range(_HALVINGS):
         quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
         if not quick.any():
             break
         between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
         nodes = np.append(nodes, between)
-        ratio = np.append(ratio, determinants(problem, passive, modes, between), axis=1)
+        ratio = np.append(ratio, _factors(problem, passive, modes, between)[0], axis=1)
         ascending = np.argsort(nodes.imag)
         nodes, ratio = nodes[ascending], ratio[:, ascending]
-    counts = np.rint(-(turning(ratio) + np.angle(1.0 / ratio[:, -1])) / np.pi)
+    turned = turning(ratio) + np.angle(1.0 / ratio[:, -1])
+    if tied:  # the product of many turns too far between nodes
+        turned, ratio = turned.sum(keepdims=True), ratio.prod(axis=0, keepdims=True)
+    counts = np.rint(-turned / np.pi)
     bad = np.flatnonzero(counts > 0)
     return PatternPoles(bad.astype(np.float64), counts[bad], nodes, ratio[bad]) if bad.size else None
 
 
 class PatternGrowth(NamedTuple):
-    """The fastest growing motion found: e^{(rate + i frequency) t} in a pattern, t in transits."""
+    """The fastest growing motion found: e^{(rate + i frequency) t} in a pattern, t in transits; NaN where only its rate is known."""
 
     pattern: int
     rate: float
@@ -127,32 +136,31 @@ def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least:
         middle = float(np.sqrt(low * high))
         beyond = counted(problem, modes, Contour.of(problem, modes, middle))
         found, low, high = (found, low, middle) if beyond is None else (beyond, middle, high)
-    best = PatternGrowth(int(found.patterns[0]), low, _frequency(found))
+    best = PatternGrowth(int(found.patterns[0]), low, np.nan)
     for row, ratio in zip(found.patterns, found.ratio, strict=True):
         slope = np.gradient(ratio, found.nodes)
         way = np.abs(ratio / np.where(slope == 0.0, 1e-300, slope))
-        s = _newton(problem, modes, int(row), found.nodes[np.argsort(way)[:_STARTS]], 0.5 * low)
+        lowest = np.flatnonzero((way <= np.append(way[1:], np.inf)) & (way <= np.append(np.inf, way[:-1])))
+        nearest = [np.argsort(way)[:_STARTS], lowest[np.argsort(way[lowest])[:_STARTS]]]
+        starts = found.nodes[np.unique(np.concatenate(nearest))]
+        s = _newton(problem, modes, int(row), starts, 0.5 * low)
         if s.size and s.real.max() > best.rate:
             fastest = s[s.real.argmax()]
             best = PatternGrowth(int(row), float(fastest.real), abs(float(fastest.imag)))
     return best
 
 
-def _frequency(found: PatternPoles) -> float:
-    """Return where the ratio of the first pattern turns most from node to node: beside a pole, whose place is not known better."""
-    turns = np.angle(found.ratio[0, 1:] / found.ratio[0, :-1]) / np.diff(found.nodes.imag)
-    return float(found.nodes.imag[int(turns.argmin())])
-
-
 def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: float) -> ComplexArray:
     """Return the zeros of a pattern's determinant that Newton's method finds from some places, none left of a rate."""
-    passive, change = problem.open_loop, s
+    passive, change, farthest = problem.open_loop, s, 2.0 * np.abs(s).max(initial=0.0)
     for _ in range(_ITERATIONS):
         step = 1e-6 * np.abs(s)
         here, ahead = determinants(problem, passive, modes, np.concatenate([s, s + step]))[row].reshape(2, -1)
         change = here * step / np.where(ahead == here, 1e-300, ahead - here)
-        s = np.maximum((s - change).real, slowest) + 1j * (s - change).imag
-        if (np.abs(change) < 1e-9 * np.abs(s)).all():
+        near = np.abs(s - change) < farthest
+        s, change = (s - change)[near], change[near]
+        s = np.maximum(s.real, slowest) + 1j * s.imag
+        if (np.abs(change) < 1e-9 * np.abs(s)).all():  # also where none is left
             break
     return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
 
@@ -166,7 +174,7 @@ def require_stable_segments(problem: Problem, max_order: int, duration: float) -
     cut, laws = segments_of(problem.system), laws_of(problem.system)
     assert cut is not None
     fastest = fastest_growth(problem, max_order, found, 1.0 / duration)
-    hertz = engineering(fastest.frequency / (2.0 * np.pi * problem.scales.time), "Hz")
+    hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
     if laws[0].dead:
         where = f"{found.counts[0]:.0f} motions, of all orders together, grow without bound, the fastest"
     else:
@@ -176,7 +184,7 @@ def require_stable_segments(problem: Problem, max_order: int, duration: float) -
         where = f"order {listed}, with those that {cut} segments tie to it, grows without bound, fastest order "
         where += f"{fastest.pattern} with {others}, ..."
     entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
-    told = f"by e^({fastest.rate:.3g} t), t in transits, at {hertz}"
+    told = f"by e^({fastest.rate:.3g} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
     raise InputError(entries, f"{value} makes the closed loop unstable: {where} {told}", remedy(problem))
 
 

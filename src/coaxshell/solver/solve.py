@@ -10,7 +10,7 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import saturates
+from coaxshell.model.gains import limits_voltages, saturates
 from coaxshell.model.parts import laws_of
 from coaxshell.model.system import System
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -143,13 +143,13 @@ def _solved(
     settings = replace(asked_for, modes=structure.modes.max_order)
     system, grid, keep = problem.system, structure.grid, slice(None, None, settings.refinement)
     links = absorber_set(problem, system.absorber_list, source_parities(problem))
-    saturate = saturates(system)
-    bare = saturate or problem.segmented
+    saturate = saturates(system) and not limits_voltages(system)
+    bare = saturates(system) or problem.segmented
     (structure.open_loop if bare else structure).solve(units=links.count > 0 or bare)
     stopwatch.lap("modal system at all Laplace nodes")
     solved = reflected(structure, lambda one: solve_linked(one, links, progress, saturate=saturate), progress)
     structure = solved.structure
-    if links.count or saturate:
+    if links.count or saturates(system):
         stopwatch.lap("absorbers and saturation")
     require_finite_stages(solved)
     w, v = (grid.invert(x)[..., keep] for x in (solved.normal, solved.tangential))

@@ -52,8 +52,12 @@ class SolvedSpectra:
         What links of any law did, where there are such.
     voltage : ndarray, shape (shells, parities, M + 1, nodes), or None
         Transforms of the voltages of actuators, V, where they are given to the structure without feedback.
+    asked : ndarray, same shape, or None
+        Those that the laws ask for, where a limit was reached.
     segments : ndarray, shape (shells, N, T), or None
-        Voltages of the segments of electrodes, where these are cut.
+        Voltages of the segments of electrodes as they are asked for, where these are cut.
+    defect : tuple of ndarray, or None
+        Transforms of W and V, of what the march of limited voltages leaves unsolved.
     seen : StructureSpectra or None
         What marched, where anything did: the structure, or what its absorbers see of it (:mod:`coaxshell.solver.interface.seen`).
     """
@@ -70,7 +74,9 @@ class SolvedSpectra:
     exact: tuple[ComplexArray, ComplexArray] | None = None
     laws: LawHistories | None = None
     voltage: ComplexArray | None = None
+    asked: ComplexArray | None = None
     segments: FloatArray | None = None
+    defect: tuple[ComplexArray, ComplexArray] | None = None
     seen: StructureSpectra | None = None
 
     @property

@@ -51,9 +51,12 @@ class VoltageResponse:
     ) -> VoltageResponse:
         """Return it from the compliance C_ij (shells, shells, orders, nodes) and V/W of each wall, without feedback."""
         shells = controlled(problem)
-        walls = [electroded(problem, i) for i in shells]
-        slid = np.stack([wall.driven_along(modes, s) for wall in walls])
-        load = np.stack([wall.drive(modes).columns.recovered(ratio[i]) for wall, i in zip(walls, shells, strict=True)])
+        walls = [problem.shells[i] for i in shells]
+        shape = (modes.count, s.size)
+        slid = np.stack([np.broadcast_to(wall.driven_along(modes, s), shape) for wall in walls])
+        load = np.stack(
+            [np.broadcast_to(wall.drive(modes).columns.recovered(ratio[i]), shape) for wall, i in zip(walls, shells, strict=True)]
+        )
         sensed = np.stack([wall.sensor_gain(modes).columns.recovered(ratio[i]) for wall, i in zip(walls, shells, strict=True)])
         read = np.empty((len(shells), len(shells), *load.shape[1:]), np.complex128)
         for a, i in enumerate(shells):
@@ -106,7 +109,7 @@ def response_of(structure: StructureSpectra) -> VoltageResponse:
 def read_without(structure: StructureSpectra) -> ComplexArray:
     """Return what the sensors read of the motion without voltages, V, (controlled, parities, M + 1, nodes)."""
     bare = structure.open_loop
-    gains = [(i, electroded(structure.problem, i).sensor_gain(structure.modes).columns) for i in controlled(structure.problem)]
+    gains = [(i, structure.problem.shells[i].sensor_gain(structure.modes).columns) for i in controlled(structure.problem)]
     return np.stack([gain.v * bare.tangential[i] + gain.w * bare.normal[i] for i, gain in gains])
 
 

@@ -134,7 +134,7 @@ class MetricSource(DesignReading):
         """Return the largest voltage that the control law asks for anywhere, before any saturation, V; 0 without control."""
         if self.solution.problem.shells[shell].gains is None:
             return 0.0
-        cut = [one for one in (cut_voltage(solution, shell) for solution in self._solutions) if one is not None]
+        cut = [one for one in (cut_voltage(solution, shell, asked=True) for solution in self._solutions) if one is not None]
         if cut:
             return max(one.largest(self.solution.time, self._whole).value for one in cut)
         voltages = (demanded_voltage(solution, shell) for solution in self._solutions)

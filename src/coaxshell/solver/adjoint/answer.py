@@ -121,7 +121,7 @@ def backwards(solved: SolvedSpectra, reading: Reading) -> Backwards:
     InputError
         If actuators saturated.
     """
-    if solved.actuation is not None:
+    if solved.actuation is not None or solved.asked is not None:
         raise InputError(
             "control.saturation", "is reached in this run, and has no gradient", "use saturation=False, or a higher field limit"
         )

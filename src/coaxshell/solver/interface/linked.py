@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.model.gains import limits_voltages
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.faced_forces import surface_motion
@@ -13,6 +14,7 @@ from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult
 from coaxshell.solver.interface.seen import as_seen
+from coaxshell.solver.limited_voltages import solve_limited
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.orders_left_out import Interface
@@ -36,6 +38,11 @@ def solve_linked(
     too, for comparison. Actuators that nowhere reach their limit leave the linear law, and so the answer without saturation.
     """
     grid = structure.grid
+    if limits_voltages(structure.problem.system):
+        limited = solve_limited(structure, absorbers, progress)
+        if limited is not None:
+            return limited
+        saturate = False
     if structure.problem.segmented:
         return solve_segmented(structure, absorbers)
     if saturate:

@@ -19,7 +19,7 @@ from coaxshell.apps.verification.independent.walls import Wall
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.gains import gains_of, law_of, saturates
+from coaxshell.model.gains import gains_of, law_of, saturates, segments_of
 from coaxshell.model.parts import laws_of
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.shells import Shell
@@ -66,8 +66,9 @@ class Assembly:
         """Return the assembly of a system of elastic shells for a duration in transits, at an axial wavenumber in 1/a."""
         a, c, rho = system.reference_radius, system.exterior.sound_speed, system.exterior.density
         if any(law.transducers == "electrodes" for law in laws_of(system)):
-            if wavenumber or saturates(system):
-                raise NotImplementedError("electrodes are written without wavenumbers and limits in the independent solver")
+            whole = isinstance(system.control, Feedback) or (segments_of(system) is None and not saturates(system))
+            if wavenumber or not whole:
+                raise NotImplementedError("electrodes are written without wavenumbers, and cut and limited for Feedback alone, here")
             system = _with_standard_permittivity(system)
         walls = tuple(Wall.of(shell) for shell in system.shells if isinstance(shell, Shell))
         if len(walls) != len(system.shells):
@@ -87,8 +88,8 @@ class Assembly:
 
     @property
     def saturates(self) -> bool:
-        """Whether the controller's voltage is limited."""
-        return saturates(self.system)
+        """Whether the voltage of the paper's law is limited."""
+        return saturates(self.system) and not isinstance(self.system.control, Feedback)
 
     def block(self, m: int) -> Block:
         """Return the matrices of one order."""

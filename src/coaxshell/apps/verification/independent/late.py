@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from coaxshell.apps.verification.independent.assembly import Assembly, Block
+from coaxshell.apps.verification.independent.limits import Limits
 from coaxshell.numerics.arrays import FloatArray
 
 _NODES = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0
@@ -31,6 +32,8 @@ class Late:
         phi per unknown.
     loads : ndarray, shape (laws, size)
         Per volt.
+    limits : Limits or None
+        What amplifiers give of what is asked for.
     """
 
     law: tuple[FloatArray, FloatArray]
@@ -40,10 +43,11 @@ class Late:
     loads: FloatArray
     step: float = 0.0
     volts: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    limits: Limits | None = None
 
     @classmethod
-    def of(cls, assembly: Assembly, parts: Sequence[Block], size: int) -> Late:
-        """Return it for the blocks of an assembly, one after another in a vector of unknowns."""
+    def of(cls, assembly: Assembly, parts: Sequence[Block], size: int, blocks: Sequence[tuple[int, int]]) -> Late:
+        """Return it for the blocks of an assembly, (parity, order) each, one after another in a vector of unknowns."""
         assert assembly.rational is not None
         rows = sum(len(part.late) for part in parts)
         places, read, loads = np.zeros(rows, dtype=np.intp), np.zeros((rows, size)), np.zeros((rows, size))
@@ -58,7 +62,10 @@ class Late:
                 read[row, start + place] = 0.0
                 row += 1
             start += wide
-        return cls(assembly.law, assembly.rational.delay / assembly.transit, places, read, loads)
+        limits = Limits.of(assembly, blocks)
+        if limits is not None and not assembly.rational.delay:
+            raise NotImplementedError("segments and limits are written for delayed laws in the independent solver")
+        return cls(assembly.law, assembly.rational.delay / assembly.transit, places, read, loads, limits=limits)
 
     def beginning(self, step: float, steps: int) -> Late | None:
         """Return it with room for a run's voltages, at rest; None without a delay."""
@@ -66,7 +73,7 @@ class Late:
             return None
         if self.delay < _FEWEST * step:
             raise NotImplementedError("a delay of less than two steps is not written in the independent solver")
-        return Late(self.law, self.delay, self.places, self.read, self.loads, step, np.zeros((self.places.size, steps + 1)))
+        return replace(self, step=step, volts=np.zeros((self.places.size, steps + 1)))
 
     def keep(self, instant: int, x: FloatArray, v: FloatArray) -> None:
         """Keep the voltages at an instant, u = b_0 y'' + b_1 y' + b_2 y with y'' from the law."""
@@ -88,4 +95,4 @@ class Late:
             weight = np.prod([part[j] / (points[i] - points[j]) for j in others])
             if point >= 0:
                 total += weight * self.volts[:, point]
-        return total
+        return total if self.limits is None else self.limits.given(total)

@@ -19,6 +19,7 @@ from coaxshell.apps.verification.independent.late import Late
 from coaxshell.apps.verification.independent.links import Links, Places, shape
 from coaxshell.apps.verification.independent.sphere import incident_sphere
 from coaxshell.model.absorbers import Absorber
+from coaxshell.model.parts import laws_of
 from coaxshell.model.sources import Source
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
@@ -66,7 +67,8 @@ class RadialElements:
         self.system, self.modes, self.wavenumber = system, modes, wavenumber
         self.assembly = Assembly.of(system, duration, element, wavenumber or 0.0)
         absorbers = system.absorber_list
-        symmetric = all(s.angle == 0 for s in system.sources) and _layout(absorbers, 1) == _layout(absorbers, -1)
+        even = not any(law.dead for law in laws_of(system))
+        symmetric = even and all(s.angle == 0 for s in system.sources) and _layout(absorbers, 1) == _layout(absorbers, -1)
         self.blocks = [(0, m) for m in range(modes + 1)] + ([] if symmetric else [(1, m) for m in range(1, modes + 1)])
         parts = [self.assembly.block(m) for _, m in self.blocks]
         sizes = np.concatenate([[0], np.cumsum([part.mass.shape[0] for part in parts])]).astype(int)
@@ -75,7 +77,7 @@ class RadialElements:
         self._m = sp.block_diag([*(sp.csr_matrix(p.mass) for p in parts), sp.csr_matrix(np.diag(masses))], format="csc")
         self._c = sp.block_diag([*(sp.csr_matrix(p.damping) for p in parts), sp.csr_matrix(loose)], format="csc")
         self._k = sp.block_diag([*(sp.csr_matrix(p.stiffness) for p in parts), sp.csr_matrix(loose)], format="csc")
-        self._late = Late.of(self.assembly, parts, int(self._m.shape[0])) if self.assembly.rational else None
+        self._late = Late.of(self.assembly, parts, int(self._m.shape[0]), self.blocks) if self.assembly.rational else None
         self._exterior = parts[0].exterior_point
         self._starts = sizes[:-1]
         places = Places(self.blocks, self._starts.tolist(), int(sizes[-1]), int(self._m.shape[0]), len(self.assembly.walls))

@@ -1,0 +1,193 @@
+"""Voltages of electrodes that stop at a limit, marched beside the linear answer (theory manual, "Limited voltages").
+
+With a the voltages that the law asks for, u = clip(a) those given, of which delta = u - a is the lack, and a_0 what is asked for without
+any limit, all in patterns that are loops of their own (:mod:`coaxshell.solver.electrode_patterns`),
+
+    a = a_0 + K * delta,      K = (1 - H C)^-1 - 1,      delta = clip(a) - a,
+
+a convolution in time whose lack alone is marched: where no limit is reached the answer is the linear one, digit by digit. Weights of K are
+those of the trapezoidal rule, K at s = (2/dt)(1 - z)/(1 + z) (Ch. Lubich, Numer. Math. 52 (1988) 129), which makes no energy and answers
+any law and delay as the walls and fluids do, with all frequencies brought below pi/dt.
+
+A step itself is a = b + K_0 delta(a), solved in :mod:`coaxshell.solver.limited_step`. Dead segments are those whose limit is 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.convolution import History, HistorySum, KernelTable
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver.electrode_loops import ElectrodeLoops, times
+from coaxshell.solver.electrode_patterns import Patterns, patterns_of
+from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.saturation import voltage_limit
+from coaxshell.solver.limited_step import LimitedStep
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_without, response_of
+
+_BLOCK = 16
+"""Steps whose lack adds to each other directly."""
+_DAMPED = 1e-9
+"""What returns after a period of the weights."""
+_STRONGEST = 0.9999
+"""Part of a lack that comes back within its own step, at most: feedback ten thousand times as strong as the wall's inertia."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitedMarch:
+    """Constants of a march.
+
+    Attributes
+    ----------
+    patterns : Patterns
+    limits : ndarray, shape (walls, points)
+        V; 0 on dead segments.
+    weights : ndarray, shape (walls, walls, patterns, T)
+        Of K.
+    """
+
+    patterns: Patterns
+    limits: FloatArray
+    weights: FloatArray
+
+    @property
+    def returned(self) -> float:
+        """The largest share of a lack that comes back within its own step, -K_0, of any pattern."""
+        present = np.moveaxis(self.weights[..., 0], -1, 0)
+        return float(-np.linalg.eigvals(present).real.min())
+
+    def lack(self, asked: FloatArray, progress: Progress | None = None) -> tuple[FloatArray, int]:
+        """Return delta, (walls, patterns, T), from what is asked for without limits, and the iterations of all steps."""
+        steps = asked.shape[-1]
+        found, sums, history = np.zeros_like(asked), HistorySum(KernelTable(self.weights), 1), History()
+        step, iterations = LimitedStep(self.patterns, self.limits, self.weights[..., 0]), 0
+        for start in range(0, steps, _BLOCK):
+            block = slice(start, min(start + _BLOCK, steps))
+            size = block.stop - start
+            known = asked[..., block].copy()
+            if history.step:
+                known += sums.forcing(history, size)[:, 0]
+            for n in range(size):
+                delta, taken = step.solve(known[..., n])
+                iterations += taken
+                if taken:
+                    found[..., start + n] = delta
+                    known[..., n + 1 :] += np.einsum("ijqt,jq->iqt", self.weights[..., 1 : size - n], delta)
+            history, _ = sums.push(history, found[:, None, :, block])
+            if progress is not None:
+                progress(block.stop / steps, "voltages at their limit")
+        return found, iterations
+
+
+def limits_of(problem: Problem, patterns: Patterns) -> FloatArray:
+    """Return the limit at each point of each wall under control, V, (walls, points)."""
+    points = len(patterns.evaluate)
+    limits = np.array([[voltage_limit(problem, i)] * points for i in controlled(problem)])
+    limits[:, list(patterns.dead)] = 0.0
+    return limits
+
+
+def trapezoidal_nodes(grid: LaplaceGrid) -> tuple[ComplexArray, FloatArray]:
+    """Return s = (2/dt)(1 - z)/(1 + z) at half a circle of z, and the growth of weights by the steps of it, (T,)."""
+    steps = grid.steps + 1
+    count = int(fft.next_fast_len(steps, real=True))
+    radius = _DAMPED ** (1.0 / count)
+    z = radius * np.exp(-2j * np.pi * np.arange(count // 2 + 1) / count)
+    return np.asarray(2.0 / grid.time_step * (1.0 - z) / (1.0 + z)), radius ** -np.arange(float(steps))
+
+
+def step_weights(structure: StructureSpectra, patterns: Patterns) -> FloatArray:
+    """Return the weights of K, shape (walls, walls, patterns, T)."""
+    problem, grid = structure.problem, structure.grid
+    s, growth = trapezoidal_nodes(grid)
+    found = []
+    for start in range(0, s.size, 128):
+        some = s[start : start + 128]
+        response = VoltageResponse.at(problem.open_loop, problem, structure.modes, some)
+        loops = ElectrodeLoops.of(problem, response, patterns, some)
+        found.append(np.moveaxis(loops.inverse, (2, 3), (0, 1)))
+    whole = np.concatenate(found, axis=-1)
+    for wall in range(whole.shape[0]):
+        whole[wall, wall] -= 1.0
+    count = int(fft.next_fast_len(grid.steps + 1, real=True))
+    return np.asarray(fft.irfft(whole, count, axis=-1, workers=WORKERS)[..., : growth.size] * growth)
+
+
+def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
+    """Return the answer of a structure whose electrodes' voltages stop at their limit; None where none reaches it.
+
+    Raises
+    ------
+    InputError
+        If feedback is so strong within a step that its limit cannot be found.
+    """
+    problem, grid = structure.problem, structure.grid
+    response, without = response_of(structure), read_without(structure)
+    patterns = patterns_of(problem, response.shells, structure.modes.orders, without.shape[1])
+    loops, read, limits = (
+        ElectrodeLoops.of(problem, response, patterns, grid.nodes),
+        patterns.readings(without),
+        limits_of(problem, patterns),
+    )
+    if not _beyond(at_points(patterns, grid.invert(loops.voltages(read))), limits).any():
+        return None
+    march = LimitedMarch(patterns, limits, step_weights(structure, patterns))
+    if march.returned > _STRONGEST:
+        raise _too_coarse(grid)
+    free = loops.asked(read)
+    lack, iterations = march.lack(grid.invert(free), progress)
+    lacking = grid.transform_linear(lack)
+    given = free + times(loops.inverse, lacking)
+    asked = given - lacking
+    volts = at_points(patterns, grid.invert(asked))
+    off = np.einsum("qn,int->iqt", patterns.project, np.clip(volts, -limits[..., None], limits[..., None]) - volts) - lack
+    volts[:, list(patterns.dead)] = 0.0
+    voltage = of_all(problem, response, patterns.in_orders(given))
+    force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
+    return SolvedSpectra(
+        structure,
+        absorbers,
+        *driven(structure, response, voltage),
+        force,
+        displacement,
+        iterations=iterations,
+        voltage=voltage,
+        asked=of_all(problem, response, patterns.in_orders(asked)),
+        segments=of_all(problem, response, volts) if patterns.cut else None,
+        defect=driven_alone(structure, response, patterns, times(loops.inverse, grid.transform_linear(off))),
+    )
+
+
+def at_points(patterns: Patterns, voltage: FloatArray) -> FloatArray:
+    """Return voltages at the points, (walls, points, T), from those in patterns."""
+    found: FloatArray = np.einsum("nq,iqt->int", patterns.evaluate, voltage, optimize=True)
+    return found
+
+
+def _beyond(volts: FloatArray, limits: FloatArray) -> FloatArray:
+    """Return by how much voltages exceed limits, 0 where they do not; rounding, as of dead segments, does not count."""
+    over = np.abs(volts) - limits[..., None]
+    return np.where(over > 1e-9 * max(float(limits.max()), float(np.abs(volts).max())), over, 0.0)
+
+
+def driven_alone(
+    structure: StructureSpectra, response: VoltageResponse, patterns: Patterns, voltage: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the motion under voltages in patterns alone, without sources."""
+    in_orders = of_all(structure.problem, response, patterns.in_orders(voltage))
+    under, whole = driven(structure, response, np.zeros_like(in_orders)), driven(structure, response, in_orders)
+    return whole.normal - under.normal, whole.tangential - under.tangential
+
+
+def _too_coarse(grid: LaplaceGrid) -> InputError:
+    found = f"{grid.time_step:g} is too long a step for voltages that stop at their limit: feedback turns over within it"
+    return InputError("time_step", found, f"use time_step = {grid.time_step / 4:.2g}, or four times the refinement, or lower gains")
