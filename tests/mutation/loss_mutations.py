@@ -62,6 +62,14 @@ LOSSES = (
         "response/test_wall_stress.py",
     ),
     Mutation(
+        "bound-of-bending",
+        "response/depth_bounds.py",
+        "along[name] + gain.w",
+        "0.5 * along[name] + gain.w",
+        "what bending adds to the stress of an instant at most",
+        "response/test_wall_stress.py",
+    ),
+    Mutation(
         "weakest-layer",
         "response/wall_stress.py",
         "nearest = min(known",

@@ -7,7 +7,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.plotting import plot_wall_stress
-from coaxshell.response.wall_stress import stress_through
+from coaxshell.response.wall_stress import WallStress, stress_through
 from coaxshell.studies.metrics import metrics_of, require_readable
 from coaxshell.studies.reading import MetricSource
 
@@ -51,6 +51,22 @@ def test_no_place_has_more(steel, component):
             at = float(np.squeeze(np.abs(steel.stress(shell, peak.angle, peak.depth, component=component).sel(time=peak.time))))
             assert peak.value == pytest.approx(at, rel=1e-9)
         assert steel.peak_stress(shell, component).value == max(peak.value for peak in layers)
+
+
+@pytest.mark.parametrize("absorbers", [[], [cx.Absorber(angle=40.0, mass=10, damping=1e6, linear_stiffness=1e9)]])
+def test_bounds_leave_out_no_larger_stress(absorbers, monkeypatch):
+    response = cx.simulate(BARE.replace(absorbers=absorbers), duration=2.0, time_step=4e-3, modes=12)
+    for component in ("von_mises", "hoop"):
+        quick = [response.layer_peaks(shell, component) for shell in ("inner", "outer")]
+        with monkeypatch.context() as changed:
+            changed.setattr(WallStress, "_bounded", lambda *_: None)
+            assert quick == [response.layer_peaks(shell, component) for shell in ("inner", "outer")]
+        made = WallStress(response.solution, 1)
+        depths = [float(z) for z in np.concatenate(made.depths())]
+        for at, depth in zip(made.at(depths, component), depths, strict=True):
+            most = np.abs(response.stress("outer", ANGLES, depth, component=component)).max(axis=-1)
+            assert np.all(np.asarray(most) <= at._reach)
+            assert np.all(np.abs(np.diff(np.asarray(most))) <= np.diff(at._way))
 
 
 def test_stress_is_linear_through_a_layer_without_a_field(steel):

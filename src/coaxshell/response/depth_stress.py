@@ -46,6 +46,11 @@ class DepthStress:
     def __init__(self, modal: Mapping[str, FloatArray], cut: CutVoltage | None = None) -> None:
         self.modal, self._cut = modal, cut if cut is not None and any(cut.per_volt.values()) else None
 
+    @property
+    def orders(self) -> int:
+        """M + 1."""
+        return int(next(iter(self.modal.values())).shape[1])
+
     def reach(self, window: slice) -> FloatArray:
         """Return what the magnitude cannot exceed at any angle, at the instants of a window: a sum over orders of a norm of amplitudes."""
         parts = {name: modal[..., window] for name, modal in self.modal.items()}

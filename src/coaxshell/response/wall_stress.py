@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, reduce
+from functools import cached_property, partial, reduce
 from itertools import islice
 
 import numpy as np
@@ -25,6 +25,7 @@ from coaxshell.model.layers import Shell
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import FINE, circle_angles
 from coaxshell.response.components import STRESSES
+from coaxshell.response.depth_bounds import DepthStressWhereLarge, bounds
 from coaxshell.response.depth_stress import CutVoltage, DepthStress
 from coaxshell.response.modal import amplitudes, elastic_wall, stress_gain_of
 from coaxshell.response.peaks import Peak, folded
@@ -37,7 +38,7 @@ from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.laminate import missing_constants
 from coaxshell.structure.losses import Relaxation
-from coaxshell.structure.shell_model import SOLID_STRESSES
+from coaxshell.structure.shell_model import SOLID_STRESSES, Gain
 
 _FIRST = 16
 """Instants summed before the others are judged by what they can reach."""
@@ -166,12 +167,32 @@ class WallStress:
 
     def at(self, depths: Sequence[float | None], component: str) -> Iterator[DepthStress]:
         """Yield a stress at each of some depths (m), or of the core at the mid-surface."""
+        names = self._made_of if component == "von_mises" else (component,)
+        bounded = self._bounded(depths, names)
+        if bounded is not None:
+            yield from bounded
+            return
         for depth in depths:
-            names = self._made_of if component == "von_mises" else (component,)
             modal = {name: self.amplitudes(depth, name) for name in names}
             per_volt = {name: self._per_volt(depth, name) for name in names}
             cut = CutVoltage(per_volt, self._most_volts, self.volts) if any(per_volt.values()) and self._by_point else None
             yield DepthStress(modal, cut)
+
+    def _bounded(self, depths: Sequence[float | None], names: Sequence[str]) -> list[DepthStressWhereLarge] | None:
+        """Return the stresses at all depths in two dimensions, made where they may be largest; None where other parts add to them."""
+        solution, shell = self.solution, self.shell
+        gains = [{name: stress_gain_of(solution, shell, depth, name) for name in names} for depth in depths]
+        plain = [{name: gain for name, gain in one.items() if isinstance(gain, Gain)} for one in gains]
+        if any(len(one) < len(names) for one in plain) or any(self._per_volt(depth, name) for depth in depths for name in names):
+            return None
+
+        def stresses(of_depth: dict[str, Gain], instants: slice) -> dict[str, FloatArray]:
+            return {name: amplitudes(solution, shell, gain, instants) for name, gain in of_depth.items()}
+
+        return [
+            DepthStressWhereLarge(partial(stresses, of_depth), reach, change)
+            for of_depth, reach, change in zip(plain, *bounds(solution, shell, plain), strict=True)
+        ]
 
 
 def stress_through(motion: WallMotion, shell: int) -> WallStress | SolidWallStress:
@@ -265,9 +286,10 @@ def _of_layer(
 
 def _largest(at: DepthStress, window: slice, above: float) -> tuple[float, int, int]:
     """Return the largest magnitude at one depth with its instant and place on the circle; -1 if none exceeds *above*."""
+    if isinstance(at, DepthStressWhereLarge):
+        return at.largest(window, above)
     bound = at.reach(window)
-    orders = next(iter(at.modal.values())).shape[1]
-    width = max(1, BLOCK // (8 * orders))
+    width = max(1, BLOCK // (8 * at.orders))
     best, instant, place = above, -1, 0
     order = np.argsort(-bound, kind="stable")
     start, step = 0, _FIRST
