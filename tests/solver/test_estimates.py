@@ -7,7 +7,8 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.response.synthesis import mean_square
-from coaxshell.solver import estimates, structure_spectra
+from coaxshell.solver import estimates
+from coaxshell.solver.interface import seen
 
 STEP = {"duration": 3.0, "time_step": 2e-3}
 MANY = 600
@@ -235,7 +236,7 @@ def test_weights_of_membranes_that_the_step_does_not_resolve_are_told(monkeypatc
     found = cx.simulate(system, **settings)
     march = found.estimates.march
     assert told[0].max() > 1e-4
-    monkeypatch.setattr(structure_spectra, "unresolved_orders", lambda problem, grid, modes: np.zeros(modes.count, bool))
+    monkeypatch.setattr(seen, "unresolved_orders", lambda problem, grid, modes: np.zeros(modes.count, bool))
     without = cx.simulate(system, **settings)
     within(told[0], true_error(without, found), 0.8, 1.3)
     assert np.all(march > 1.9 * told[0])
