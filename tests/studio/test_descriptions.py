@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import pytest
@@ -198,3 +199,15 @@ def test_a_source_off_the_plane_is_told_before_anything_is_begun(client):
     answer = solve(client, system).json()
     assert (answer["problem"]["where"], answer["ok"]) == ("source.z", False)
     assert "off the plane of a run in two dimensions" in answer["problem"]["problem"]
+
+
+def test_what_other_choices_cost_is_told_before_they_are_made(client):
+    body = {"system": described("bare"), "resolution": {"duration": 3.0, "modes": 40}, "choices": True}
+    costs = client.post("/api/validate", json=body).json()["costs"]
+    system, settings = presets.load("bare"), limits.settings_of(body["resolution"], live=False)
+    elastic = limits.cost_of(system.with_overrides({"shells[1].theory": "elastic"}), settings)
+    assert costs["theories"][1] == elastic
+    assert costs["dimensions"] == limits.cost_of(system, dataclasses.replace(limits.FULL_SPATIAL, duration=3.0))
+    controlled = client.post("/api/validate", json={**body, "system": described("electrodes")}).json()["costs"]
+    assert controlled["dimensions"] is None, "electrodes are not solved in three dimensions"
+    assert "dimensions" not in client.post("/api/validate", json={**body, "choices": False}).json()["costs"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from coaxshell.errors import InputError
@@ -153,6 +154,29 @@ def cost_of(system: System, settings: Settings) -> dict[str, Any]:
     """Return what a run is estimated to cost, as plain data: seconds within a factor of 3, bytes of memory."""
     cost = run_cost(system, settings)
     return {"seconds": cost.seconds, "duration": cost.duration, "memory": cost.memory}
+
+
+def choices_of(system: System, settings: Settings) -> dict[str, Any]:
+    """Return what full resolution would cost in other dimensions, and with another theory of each wall; null where it has no solution.
+
+    Of a run in other dimensions the duration stays; the rest is as usual there.
+    """
+    other = replace(FULL if settings.dimensions == 3 else FULL_SPATIAL, duration=settings.duration)
+    turned = {"thin": "elastic", "elastic": "thin"}
+    theories = [
+        _cost_if_solvable(system, settings, {f"shells[{index}].theory": turned[shell.theory]}) if isinstance(shell, Shell) else None
+        for index, shell in enumerate(system.shells)
+    ]
+    return {"dimensions": _cost_if_solvable(system, other, {}), "theories": theories}
+
+
+def _cost_if_solvable(system: System, settings: Settings, changes: Mapping[str, Any]) -> dict[str, Any] | None:
+    try:
+        changed = system.with_overrides(changes)
+        require_solvable(changed, settings)
+        return cost_of(changed, settings)
+    except InputError:
+        return None
 
 
 def check_values(where: str, values: object) -> None:

@@ -53,7 +53,8 @@ async def read(work: Callable[[], T], data: dict[str, Any]) -> T:
 async def conversation(data: dict[str, Any], **more: Any) -> Response:
     """Return the answer to a description, valid or not, with further entries."""
     try:
-        answer = await read(lambda: _described(data), data)
+        # The costs of choices take milliseconds each: beside the event loop.
+        answer = await (run_in_threadpool(lambda: _described(data)) if data.get("choices") else read(lambda: _described(data), data))
     except InputError as error:
         return JSONResponse(refusals.told(error))
     return JSONResponse({**more, **answer})
@@ -79,6 +80,8 @@ def _described(data: dict[str, Any]) -> dict[str, Any]:
         costs = {"full": limits.cost_of(system, settings)}
         if isinstance(data.get("preview"), dict):
             costs["preview"] = limits.cost_of(system, limits.settings_of(data["preview"], live=True, system=system))
+        if data.get("choices") is True:
+            costs |= limits.choices_of(system, settings)
     return {
         **descriptions.told(system, settings.dimensions),
         "costs": costs,

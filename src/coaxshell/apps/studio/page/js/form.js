@@ -16,6 +16,7 @@ const SAMPLES = new Set(["time", "pressure"]);
 const OFF_THE_PLANE = new Set(["z", "inclination"]); // of sources: shown in three dimensions, and where a description has them
 
 let world, change, now, shells = 1, space = false; // what /api/schema says; (path, value, { live }) => void; () => system; how many shells there are; in three dimensions
+let costs = null; // of the run as it is, and with other choices
 let wanted = null; // what has the focus once the form is made anew: an action of an item, or else the item
 
 export function setUp(known, onChange, present) {
@@ -31,10 +32,11 @@ export function render(system, problems) {
   const form = by("form");
   shells = Array.isArray(system.shells) ? system.shells.length : 1;
   space = spatial(system.resolution);
+  costs = system.costs;
   const focus = document.activeElement?.dataset?.path;
   const parts = resolve(world.schema).properties;
   const names = [...ORDER, ...Object.keys(parts).filter((name) => !ORDER.includes(name))];
-  form.replaceChildren(dimensions(system.resolution, system.costs), ...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
+  form.replaceChildren(dimensions(system.resolution), ...names.filter((name) => name in parts).map((name) => section(name, parts[name], system[name])), resolution(system.resolution));
   mark(problems);
   if (wanted) {
     const { act, item } = wanted, box = form.querySelector(`[data-group="${CSS.escape(item)}"]`);
@@ -55,6 +57,18 @@ export function refresh(system) {
   for (const box of by("form").querySelectorAll("[data-record]")) box.replaceWith(editor(box.dataset.record, change));
   for (const text of by("form").querySelectorAll(".digest")) text.textContent = summary(text.dataset.of, text.dataset.of === "dimensions" ? system.resolution : read(system, text.dataset.of));
   if (by("cost")) by("cost").textContent = costText(system.costs);
+  costs = system.costs;
+  for (const option of by("form").querySelectorAll("[data-cost]")) option.textContent = option.dataset.words + costWords(option.dataset.cost);
+}
+
+// A choice with what the run would take: "dimensions/3", or the theory of a wall, "theory/0/elastic".
+const costed = (cost, value, words, selected) => el("option", { value, selected, "data-cost": cost, "data-words": words }, words + costWords(cost));
+
+function costWords(choice) {
+  if (costs?.dimensions === undefined) return "";
+  const [kind, which, theory] = choice.split("/"), mine = kind === "dimensions" ? Number(which) === (space ? 3 : 2) : now().shells[which]?.theory === theory;
+  const cost = mine ? costs.full : kind === "dimensions" ? costs.dimensions : costs.theories[which];
+  return cost ? ` (${cost.duration.replace(" ", "\u202f")})` : " (not solved)";
 }
 
 function group(path, name, open, text, ...body) {
@@ -89,11 +103,11 @@ const WAVES = {
 };
 
 // Two dimensions or three, and with three where along the axis, and what it costs.
-function dimensions(value, costs) {
+function dimensions(value) {
   const select = el("select", { id: "at-resolution.dimensions", "data-path": "resolution.dimensions", onchange: () => change("resolution.dimensions", Number(select.value)) },
-    ...[[2, "two: alike along the axis"], [3, "three: at stations"]].map(([number, text]) => el("option", { value: number, selected: number === (space ? 3 : 2) }, text)));
+    ...[[2, "two: alike along the axis"], [3, "three: at stations"]].map(([number, text]) => costed(`dimensions/${number}`, number, text, number === (space ? 3 : 2))));
   const choice = el("div", { class: "choice" }, el("label", { for: select.id }, "Dimensions"), select);
-  if (!space) return group("dimensions", "Dimensions", false, digest(value), choice);
+  if (!space) return group("dimensions", "Dimensions", false, digest(value), choice, el("p", { class: "hint", id: "cost" }, costText(costs)));
   const stations = leaf({ long: true, type: "string", list: true, description: "Axial positions at which the shells answer, such as 0, 70 cm" }, "resolution.stations", "stations", [value.stations ?? 0].flat().join(", "));
   return group("dimensions", "Dimensions", true, digest(value), choice, stations, el("p", { class: "hint" }, `At most ${world.limits.stations}, in m or as text, with commas between: 0, 0.25, 70 cm.`),
     ...Object.entries(WAVES).map(([name, schema]) => leaf(schema, `resolution.${name}`, name, value[name])), el("p", { class: "hint", id: "cost" }, costText(costs)));
@@ -307,7 +321,7 @@ function leaf(schema, path, name, value) {
     return el("div", { class: "field broad" }, text, select);
   }
   if (schema.enum) {
-    const select = el("select", { ...shared, onchange: () => change(path, select.value) }, ...schema.enum.map((one) => el("option", { value: one, selected: one === value }, one)));
+    const select = el("select", { ...shared, onchange: () => change(path, select.value) }, ...schema.enum.map((one) => (name === "theory" ? costed(`theory/${path.match(/\d+/)}/${one}`, one, one, one === value) : el("option", { value: one, selected: one === value }, one))));
     return el("div", { class: "field" }, text, select);
   }
   if (schema.type === "boolean") {

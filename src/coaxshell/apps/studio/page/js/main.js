@@ -8,6 +8,7 @@ import * as energy from "./energy.js";
 import * as events from "./events.js";
 import * as files from "./files.js";
 import * as form from "./form.js";
+import * as guide from "./guide.js";
 import * as handles from "./handles.js";
 import * as link from "./link.js";
 import * as loops from "./loops.js";
@@ -125,7 +126,7 @@ async function check({ since, path = "", whole = false, keepForm }) {
   const mine = ++checking;
   let answer;
   try {
-    answer = await request("/api/validate", { body: { system: page.system, resolution: given(page.resolution), ...(inSpace() ? { preview: preview() } : {}) } });
+    answer = await request("/api/validate", { body: asked() });
   } catch (error) { return fail(error); }
   if (mine !== checking) return;
   if (!answer.ok) { // what was typed stays as it was typed, the reason beside it
@@ -142,6 +143,16 @@ async function check({ since, path = "", whole = false, keepForm }) {
 
 const shape = (system) => JSON.stringify(system, (_, value) => (typeof value === "number" ? 0 : value));
 const forForm = () => ({ ...page.system, resolution: page.resolution, costs: page.costs });
+
+const asked = () => ({ system: page.system, resolution: given(page.resolution), choices: true, ...(inSpace() ? { preview: preview() } : {}) });
+
+// What the system takes as it is, and with other choices, stands in the form as soon as it is known.
+async function tellCosts() {
+  const of = page.system, answer = await request("/api/validate", { body: asked() }).catch(() => null);
+  if (!answer?.ok || of !== page.system) return;
+  page.costs = answer.costs;
+  form.refresh(forForm());
+}
 
 // What is left open is the library's to choose.
 const given = (resolution) => Object.fromEntries(Object.entries(resolution).filter(([, value]) => value !== null));
@@ -196,7 +207,7 @@ function opened(answer, from) {
   if (typeof view.station === "number") page.station = view.station;
   if (view.tab && document.getElementById(`tab-${view.tab}`)) tabs.choose(view.tab);
   understood(answer);
-  if (!inSpace()) adopt(answer.system);
+  if (!inSpace()) { adopt(answer.system); tellCosts(); }
   else { page.system = answer.system; check({ keepForm: false }); } // what it costs is told with its resolution alone
   return answer;
 }
@@ -284,6 +295,7 @@ function drawRuns() {
     curves.legend(page.runs);
     curves.draw(page.runs, quantityShown(), whichShells(), page.unit, space.stationShown(page.runs.current, page.station));
     drawTab(tabs.shown());
+    guide.look();
     by("pin").textContent = page.runs.pinned ? "Unpin" : "Pin";
     by("pin").disabled = !page.runs.current;
     say();
@@ -297,6 +309,7 @@ function drawTab(name) {
   if (name === "peaks") peaks.draw(page.runs);
   if (name === "studies") studies.offer();
   if (name === "designs") designs.draw();
+  guide.look();
   if (!page.runs.current) return;
   const { current } = page.runs, around = Boolean(current.stations);
   instead(by("wave"), around && "The wave is not shown in three dimensions yet: in Python, response.pressure and plotting.figure_cuts have it on cuts.");
@@ -432,7 +445,9 @@ async function begin() {
   events.listen();
   wire();
   const first = page.world.presets.find((one) => one.name === "hybrid"), fragment = link.held();
-  if (!fragment || !(await open({ fragment }, "a link", "/api/link/open"))) await open({ system: first.system }, first.name);
+  guide.setUp(() => ({ ...page, tab: tabs.shown(), designs: designs.count() }));
+  if (fragment && (await open({ fragment }, "a link", "/api/link/open"))) return;
+  if (await open({ system: first.system }, first.name)) guide.begin();
 }
 
 // For the tests: how long the last changes took until their curves were drawn.
