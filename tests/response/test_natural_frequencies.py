@@ -9,6 +9,7 @@ import pytest
 from scipy import special
 
 import coaxshell as cx
+from coaxshell import plotting
 from coaxshell.apps.verification.checks.published_frequencies import RING_177, WATER_177
 from coaxshell.errors import InputError
 
@@ -165,3 +166,24 @@ def test_rubber_damps_what_steel_does_not():
     found = cx.natural_frequencies(coated, 2, up_to=30.0)
     assert np.all(found["dry_damping_ratio"].sel(shell="inner").values > 1e-4)
     assert np.all(found["dry_damping_ratio"].sel(shell="outer").values == 0.0)
+
+
+def test_a_real_pole_does_not_ring():
+    """Growth or decay without oscillation is no natural frequency, whatever rounding makes of it."""
+    from coaxshell.numerics.poles import poles_near_axis
+
+    found = poles_near_axis(lambda s: 1.0 / (s - 0.3) + 1.0 / ((s + 0.01) ** 2 + 1.0), 3.0, 0.2)
+    np.testing.assert_allclose(found, [-0.01 + 1.0j], rtol=1e-9)
+
+
+def test_dispersion_curves_by_wavenumber():
+    by_k = cx.natural_frequencies("bare", [2], axial_wavenumber=[0.5, 2.0], up_to="300 Hz")
+    by_length = cx.natural_frequencies("bare", [2], [np.pi / 0.5, np.pi / 2.0], up_to="300 Hz")
+    np.testing.assert_array_equal(by_k["frequency"], by_length["frequency"])
+    np.testing.assert_allclose(by_k["axial_wavenumber"], [0.5, 2.0])
+    ax = plotting.plot_natural_frequencies(by_k)
+    assert ax.get_xlabel() == "axial wavenumber (rad/m)"
+    with pytest.raises(cx.InputError, match="axial_wavenumber: is given beside axial_half_wavelength"):
+        cx.natural_frequencies("bare", [2], 3.0, axial_wavenumber=1.0)
+    with pytest.raises(cx.InputError, match=r"axial_wavenumber: \[0.0, 1.0\] is not allowed"):
+        cx.natural_frequencies("bare", [2], axial_wavenumber=[0.0, 1.0])

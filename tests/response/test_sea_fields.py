@@ -100,6 +100,20 @@ def test_water_at_a_depth_cavitates_where_its_absolute_pressure_is_that_of_vapou
     assert (nothing.attrs["first_time"], nothing.attrs["first_place"]) == ("never", "nowhere")
 
 
+def test_three_dimensions_map_cavitation_in_a_cross_section() -> None:
+    """A wave that is alike along the axis is that of two dimensions, until what the shells scatter is back from the surface."""
+    source = cx.PlaneWave(angle=270.0, pulse=cx.Gaussian(peak_pressure="1.5 MPa", width="0.2 ms"))
+    system = BARE.replace(source=source, sea=cx.Sea(depth=3.0))
+    settings = {"duration": 6.0, "time_step": 4e-2, "modes": 6}
+    place = {"x": [-1.8, 0.0, 1.2], "y": [-1.5, 1.5, 2.4, 2.8], "time": np.arange(0.4, 6.0, 0.2)}
+    plane = cx.simulate(system, **settings).cavitation(**place)
+    space = cx.simulate(system, **settings, dimensions=3, stations=[0.0]).cavitation(**place, z=0.3)
+    np.testing.assert_allclose(space.lowest_pressure, plane.lowest_pressure, rtol=0, atol=0.02 * 1.5e6)
+    assert np.isfinite(plane["first"]).any()
+    np.testing.assert_array_equal(np.isfinite(space["first"]), np.isfinite(plane["first"]))
+    assert float(space.z) == 0.3
+
+
 def test_cavitation_needs_a_depth() -> None:
     run = cx.simulate(BARE, duration=0.5, time_step=2e-2, modes=4)
     with pytest.raises(InputError, match="the pressure at rest is unknown"):

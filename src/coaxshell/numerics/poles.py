@@ -29,6 +29,8 @@ _TOLERANCE, _MOST_TERMS = 1e-11, 50
 _HALVINGS = 4
 """How often a window that so many terms cannot fit is halved."""
 _STEPS = 60
+_REAL = 1e-8
+"""Im s/|s| below which a pole is real but for rounding: what it describes does not ring."""
 _SAME = 1e-8
 """Relative distance below which two poles are one, found twice."""
 
@@ -53,7 +55,7 @@ def poles_near_axis(function: Function, highest: float, most_damped: float) -> C
     for low, high in _windows(highest):
         for candidate in _candidates(function, low, high, _HALVINGS):
             pole = _polished(function, candidate)
-            if pole is None or not 0.0 < pole.imag <= highest or -pole.real > most_damped * abs(pole):
+            if pole is None or not _REAL * abs(pole) < pole.imag <= highest or -pole.real > most_damped * abs(pole):
                 continue
             if all(abs(pole - other) > _SAME * abs(pole) for other in found):
                 found.append(complex(0.0, pole.imag) if abs(pole.real) < 1e-13 * abs(pole) else pole)

@@ -141,6 +141,19 @@ class SpatialResponse(Response):
         """
         return fields.spatial_intensity(self.spatial, x, y, z, **options)
 
+    def cavitation(
+        self,
+        x: npt.ArrayLike | None = None,
+        y: npt.ArrayLike | None = None,
+        z: float = 0.0,
+        **options: Unpack[fields.CavitationOptions],
+    ) -> xr.Dataset:
+        """Return where the water outside falls below the pressure of vapour in the cross-section at *z* (in a), as in two dimensions.
+
+        The waves of the run are solved once more. See :func:`coaxshell.response.fields.cavitation.spatial_cavitation`.
+        """
+        return fields.spatial_cavitation(self.spatial, x, y, z=z, **options)
+
     def pressure_rms(self, region: str | int, radius: float | None = None, **options: Unpack[fields.SpatialRmsOptions]) -> xr.DataArray:
         """Return the RMS of the total pressure over the cross-section of a region at one *z* (in a, 0 unless given), Pa, dims (time,).
 

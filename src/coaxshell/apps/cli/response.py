@@ -23,7 +23,7 @@ _SHOWN = 12
 """Curves that are printed at most."""
 _OWN = (
     *("frequency", "quantity", "shell", "angle", "radius", "component", "depth"),
-    *("region", "source", "per", "length", "against", "modes"),
+    *("region", "z", "source", "per", "length", "against", "modes"),
 )
 _RENAMED = {name: name for name in (*_OWN, "dimensions")} | {"force": "line-force"}
 
@@ -45,6 +45,7 @@ def response(
     component: Annotated[str | None, typer.Option("--component", metavar="NAME", help="Of a stress or a motion.")] = None,
     depth: Annotated[str | None, typer.Option("--depth", metavar="LENGTH", help="Of a stress, m outward, or inner or outer.")] = None,
     region: Annotated[str | None, typer.Option("--region", metavar="NAME", help="Fluid over which a loss takes its mean.")] = None,
+    z: Annotated[str | None, typer.Option("--z", metavar="LENGTH", help="Along the axis, in three dimensions.", show_default="0")] = None,
     line_force: Annotated[
         str | None, typer.Option("--line-force", metavar="NAME,...", help="A shell and an angle where 1 N/m acts, not the sources.")
     ] = None,
@@ -72,7 +73,14 @@ def response(
     target = Outputs(force).figure_or_table(output)
     if compare and target is not None and (polar or target.suffix == ".csv"):
         raise InputError("--compare", "has two systems, which neither a table nor a polar figure holds", "ask for one at a time")
-    given: dict[str, Any] = {"shell": shell, "component": component, "depth": _number_or_text(depth), "region": region, "per": per}
+    given: dict[str, Any] = {
+        "shell": shell,
+        "component": component,
+        "depth": _number_or_text(depth),
+        "region": region,
+        "per": per,
+        "z": _number_or_text(z),
+    }
     given |= {"length": length, "angle": _numbers("--angle", angle), "radius": _numbers("--radius", radius), "force": _force(line_force)}
     given |= {name: None if text is None else options.whole(f"--{name}", text) for name, text in (("source", source), ("modes", modes))}
     given["dimensions"] = options.whole("--dimensions", dimensions)

@@ -1,6 +1,6 @@
 """Acoustic fields of a finished run: pressure, particle velocity and intensity on grids, and their means over a region."""
 
-from coaxshell.response.fields.cavitation import CavitationOptions, cavitation
+from coaxshell.response.fields.cavitation import CavitationOptions, cavitation, spatial_cavitation
 from coaxshell.response.fields.evaluate import intensity, pressure, velocity
 from coaxshell.response.fields.request import FieldOptions, PartOptions, PressureOptions, RmsOptions
 from coaxshell.response.fields.rms import pressure_rms
@@ -28,6 +28,7 @@ __all__ = [
     "intensity",
     "pressure",
     "pressure_rms",
+    "spatial_cavitation",
     "spatial_intensity",
     "spatial_pressure",
     "spatial_pressure_rms",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TypedDict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, Self, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +17,16 @@ from coaxshell.response.fields.evaluate import pressure_at
 from coaxshell.response.fields.grids import Grid, coordinates, grid_of
 from coaxshell.response.fields.mirrored import in_water
 from coaxshell.response.fields.request import positive, when_of
+from coaxshell.response.fields.spatial_pressure import spatial_pressure
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.axial.solve import laplace_grid
 from coaxshell.solver.cavitation import least_pressure
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 
 
 class CavitationOptions(TypedDict, total=False):
-    """Keyword arguments of a map of cavitation beside x and y."""
+    """Keyword arguments of a map of cavitation beside x and y, and z of three dimensions."""
 
     radius: npt.ArrayLike | None
     angle: npt.ArrayLike | None
@@ -78,30 +82,85 @@ def cavitation(
     InputError
         The system has no sea, or an argument is not allowed.
     """
-    problem, run_time = spectra.problem, spectra.grid.time
-    if problem.system.sea is None:
-        raise InputError("sea", "is not described: the pressure at rest is unknown", "give the system one, sea=cx.Sea(depth=...)")
-    vapour = positive("vapour_pressure", vapour_pressure, "Pa")
-    if x is None and y is None and radius is None and angle is None:
-        x = y = np.linspace(-REACH, REACH, SIDE)
-    grid = grid_of(x, y, radius, angle)
-    step = max(1, -(-(run_time.size - 1) // INSTANTS))
-    when = np.atleast_1d(when_of(run_time[::step] if time is None else time, float(run_time[-1]), problem.scales))
-    if when.size < 2 or np.any(np.diff(when) <= 0.0):
-        raise InputError("time", "needs two or more instants that follow each other", "leave it out, or give several")
-    turn = np.radians(grid.angle)
-    least = least_pressure(problem, grid.radius * np.cos(turn), grid.radius * np.sin(turn), vapour)
-    wet = (grid.radius >= problem.head) & in_water(problem, grid.radius, grid.angle)
-    lowest, first, lasting = np.full(wet.size, np.inf), np.full(wet.size, np.nan), np.zeros(wet.size)
-    duration = np.gradient(when)
-    for block in _blocks(when.size):
-        excess = pressure_at(spectra, grid, when[block]) - least
-        below = excess < 0.0
-        lasting += duration[block] @ below
-        new = np.isnan(first) & below.any(axis=0)
-        first[new] = when[block][below[:, new].argmax(axis=0)]
-        lowest = np.minimum(lowest, excess.min(axis=0) + vapour)
-    return _labelled(problem, grid, vapour, wet, (first, lowest, lasting))
+    asked = _Asked.of(spectra.problem, spectra.grid.time, (x, y, radius, angle), time, vapour_pressure)
+    return asked.map(pressure_at(spectra, asked.grid, asked.when[block]) for block in _blocks(asked.when.size))
+
+
+def spatial_cavitation(
+    spatial: SpatialSolution,
+    x: npt.ArrayLike | None = None,
+    y: npt.ArrayLike | None = None,
+    *,
+    z: float = 0.0,
+    radius: npt.ArrayLike | None = None,
+    angle: npt.ArrayLike | None = None,
+    time: npt.ArrayLike | None = None,
+    vapour_pressure: float = VAPOUR_PRESSURE,
+) -> xr.Dataset:
+    """Return the same of a run in three dimensions, over the cross-section at *z* (in a): its waves are solved once more for all instants.
+
+    Arguments, answer and errors are those of :func:`cavitation`.
+    """
+    run_time = laplace_grid(spatial.settings).time
+    asked = _Asked.of(spatial.problem, run_time, (x, y, radius, angle), time, vapour_pressure)
+    first, second = asked.grid.along
+    if asked.grid.polar:
+        found = spatial_pressure(spatial, z=z, radius=first, angle=second, time=asked.when)
+    else:
+        found = spatial_pressure(spatial, second, first, z, time=asked.when)
+    values = found.transpose("time", *asked.grid.dims).to_numpy().reshape(asked.when.size, -1)
+    return asked.map(values[block] for block in _blocks(asked.when.size)).assign_coords(z=found["z"])
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """Points and instants of a map.
+
+    Attributes
+    ----------
+    problem : Problem
+    grid : Grid
+    when : ndarray
+        Transits.
+    vapour : float
+        Pa.
+    """
+
+    problem: Problem
+    grid: Grid
+    when: FloatArray
+    vapour: float
+
+    @classmethod
+    def of(cls, problem: Problem, run_time: FloatArray, places: tuple[Any, Any, Any, Any], time: Any, vapour_pressure: float) -> Self:
+        """Return what is asked for, x and y or radius and angle, with the defaults; InputError if something is not allowed."""
+        if problem.system.sea is None:
+            raise InputError("sea", "is not described: the pressure at rest is unknown", "give the system one, sea=cx.Sea(depth=...)")
+        vapour = positive("vapour_pressure", vapour_pressure, "Pa")
+        if all(one is None for one in places):
+            across = np.linspace(-REACH, REACH, SIDE)
+            places = across, across, None, None
+        step = max(1, -(-(run_time.size - 1) // INSTANTS))
+        when = np.atleast_1d(when_of(run_time[::step] if time is None else time, float(run_time[-1]), problem.scales))
+        if when.size < 2 or np.any(np.diff(when) <= 0.0):
+            raise InputError("time", "needs two or more instants that follow each other", "leave it out, or give several")
+        return cls(problem, grid_of(*places), when, vapour)
+
+    def map(self, pressures: Iterable[FloatArray]) -> xr.Dataset:
+        """Return the map from the acoustic pressures at blocks of the instants, each (instants, points)."""
+        grid, when, turn = self.grid, self.when, np.radians(self.grid.angle)
+        least = least_pressure(self.problem, grid.radius * np.cos(turn), grid.radius * np.sin(turn), self.vapour)
+        wet = (grid.radius >= self.problem.head) & in_water(self.problem, grid.radius, grid.angle)
+        lowest, first, lasting = np.full(wet.size, np.inf), np.full(wet.size, np.nan), np.zeros(wet.size)
+        duration = np.gradient(when)
+        for block, pressure in zip(_blocks(when.size), pressures, strict=True):
+            excess = pressure - least
+            below = excess < 0.0
+            lasting += duration[block] @ below
+            new = np.isnan(first) & below.any(axis=0)
+            first[new] = when[block][below[:, new].argmax(axis=0)]
+            lowest = np.minimum(lowest, excess.min(axis=0) + self.vapour)
+        return _labelled(self.problem, grid, self.vapour, wet, (first, lowest, lasting))
 
 
 def _blocks(count: int) -> Iterator[slice]:
