@@ -168,7 +168,7 @@ const bars = ({ run }) => new Map(run.bars.map((bar) => [`${bar.shell === null |
 function comparison(solved) {
   const each = solved.map(bars), first = Math.max(0, solved.indexOf(designs[reference])), keys = [...new Set(each.flatMap((one) => [...one.keys()]))];
   const names = [...new Set(keys.map((key) => key.split("/")[0]))].sort((a, b) => order(a) - order(b));
-  const table = el("table", { class: "peaks designs" }, el("caption", {}, `Largest magnitudes; the change is against ${solved[first].name}, the least of each row stands bold`),
+  const table = el("table", { class: "peaks designs" }, el("caption", {}, `Largest magnitudes; the change is against “${solved[first].name}”, the least of each row stands bold`),
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), ...solved.map(({ name }) => el("th", { scope: "col", class: "number" }, name)))),
     ...names.map((name) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 1 + solved.length }, name ? capital(name.includes("shell") ? name : `${name} shell`) : "Absorbers")),
       ...keys.filter((key) => key.split("/")[0] === name).map((key) => {
@@ -192,7 +192,7 @@ function differing() {
   const rows = differences(designs), some = rows.slice(0, MOST_ROWS);
   if (!rows.length) return el("p", { class: "note" }, "The designs do not differ in anything but their names.");
   return el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "What differs" }, el("table", { class: "peaks designs" },
-    el("caption", {}, `Entries that differ${rows.length > some.length ? `: the first ${some.length} of ${rows.length}` : ""}; what is not as in ${designs[reference].name} is marked`),
+    el("caption", {}, `Entries that differ${rows.length > some.length ? `: the first ${some.length} of ${rows.length}` : ""}; what is not as in “${designs[reference].name}” is marked`),
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Entry"), ...designs.map(({ name }) => el("th", { scope: "col", class: "number" }, name)))),
     el("tbody", {}, ...some.map(({ path, label: words, values }) => el("tr", {}, el("th", { scope: "row", title: path }, capital(words)), ...values.map((value) => el("td", { class: `number${value === values[reference] ? "" : " differs"}` }, value || "–")))))));
 }
