@@ -53,8 +53,12 @@ def test_lopsided_layup(struck, distances):
 
 @pytest.mark.parametrize(
     ("layers", "gains"),
-    [(("passive", "self-sensing"), ([2.0, 20.0], [0.5, 1.0])), (("sensor", "self-sensing"), (-3.0, 0.2))],
-    ids=["one layer", "sensor and bridge"],
+    [
+        (("passive", "self-sensing"), ([2.0, 20.0], [0.5, 1.0])),
+        (("sensor", "self-sensing"), (-3.0, 0.2)),
+        (("charge-sensor", "self-sensing"), (3.0, 0.2)),
+    ],
+    ids=["one layer", "sensor and bridge", "charge sensor and bridge"],
 )
 def test_control_by_electrodes(struck, distances, layers, gains):
     # Loads of charged layers from their electric enthalpy. Measured 1.7e-7 or less.

@@ -115,6 +115,29 @@ def test_a_bridge_lacks_the_stiffness_of_an_open_circuit():
         np.testing.assert_allclose(one.operator(modes, s).impedance, other.operator(modes, s).impedance, rtol=1e-12)
 
 
+def test_a_charge_sensor_reads_as_an_open_one_and_stiffens_nothing():
+    # In the driven layer's place it is the bridge; an open sensor there adds one to k_p.
+    modes, s = Modes(np.arange(9.0)), np.array([2.0 + 30.0j])
+    bridge, charged = dimensionless(electrodes(3.0, 5.0)), dimensionless(electrodes(3.0, 5.0, "charge-sensor", "actuator"))
+    for wall, other in zip(charged.shells, bridge.shells, strict=True):
+        sensor, actuator = wall.section.piezoelectric
+        layers = replace(sensor, centre=actuator.centre), actuator
+        moved = replace(wall, section=replace(wall.section, piezoelectric=layers))
+        np.testing.assert_allclose(moved.operator(modes, s).impedance, other.operator(modes, s).impedance, rtol=1e-12)
+    open_ones = dimensionless(electrodes(3.0, 5.0, "sensor", "actuator"))
+    for wall, other in zip(charged.shells, open_ones.shells, strict=True):
+        np.testing.assert_array_equal(wall.sensor_gain(modes).v, other.sensor_gain(modes).v)
+        assert (wall.stiffness(modes).vv[1:] < other.stiffness(modes).vv[1:]).all()
+
+
+def test_charge_sensors_are_refused_where_they_are_not_known():
+    charged = electrodes(0.0, 0.0, "charge-sensor", "self-sensing")
+    with pytest.raises(InputError, match="thin walls alone"):
+        dimensionless(charged.with_overrides({"shells[0].theory": "elastic"}))
+    with pytest.raises(InputError, match="paper's law"):
+        charged.with_overrides({"control.transducers": "paper"})
+
+
 class TestEnergy:
     @pytest.mark.parametrize("loss_factor", [0.0, 0.05])
     def test_amplifiers_give_what_walls_and_fields_get(self, loss_factor):

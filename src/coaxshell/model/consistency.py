@@ -188,7 +188,7 @@ def _segments(law: PDControl | Feedback, shell: Shell, number: int, where: str) 
         found = f"{law.segment_gap:g} m leaves nothing of {law.segments} segments of shells[{number}]"
         raise InputError(f"{where}.segment_gap", found, f"must be less than {around:.4g} m")
     for place, layer in enumerate(shell.layers):
-        if layer.role in ("sensor", "actuator"):
+        if layer.role in ("sensor", "charge-sensor", "actuator"):
             raise InputError(
                 f"shells[{number}].layers[{place}].role",
                 f"{layer.role!r} reads or pushes alone, and segments are known of layers that do both",
@@ -200,10 +200,10 @@ def _one_of_each(shell: Shell, number: int, role: str) -> None:
     """Check that the paper's law, which knows one sensor and one actuator, has no choice of them."""
     of_electrodes = 'or use control.transducers = "electrodes"'
     first, *others = [i for i, layer in enumerate(shell.layers) if serves(layer.role, role)]
-    if shell.layers[first].role == "self-sensing":
+    if shell.layers[first].role in ("self-sensing", "charge-sensor"):
         raise InputError(
             f"shells[{number}].layers[{first}].role",
-            "'self-sensing' is not known to the paper's law, whose sensor has grounded faces",
+            f"{shell.layers[first].role!r} is not known to the paper's law, whose sensor has grounded faces",
             f"must be 'sensor' or 'actuator', {of_electrodes}",
         )
     if others:

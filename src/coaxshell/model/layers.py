@@ -14,15 +14,15 @@ from coaxshell.model.materials import AnyMaterial, Material
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.units import Length
 
-Role = Literal["core", "sensor", "actuator", "self-sensing", "passive"]
+Role = Literal["core", "sensor", "charge-sensor", "actuator", "self-sensing", "passive"]
 Wetted = Literal["mid-surface", "faces"]
 Theory = Literal["thin", "elastic"]
-PIEZOELECTRIC_ROLES = "'sensor', 'actuator', 'self-sensing' or 'passive'"
+PIEZOELECTRIC_ROLES = "'sensor', 'charge-sensor', 'actuator', 'self-sensing' or 'passive'"
 
 
 def serves(own: str, role: str) -> bool:
     """Return whether a layer of a role of its *own* serves as a "sensor" or "actuator": a self-sensing one as both."""
-    return own == role or (own == "self-sensing" and role in ("sensor", "actuator"))
+    return own == role or (own == "self-sensing" and role in ("sensor", "actuator")) or (own == "charge-sensor" and role == "sensor")
 
 
 class Layer(Described):
@@ -33,7 +33,8 @@ class Layer(Described):
     thickness: Length
     """Thickness (m)."""
     role: Role = Field(default_factory=lambda data: "core" if isinstance(data["material"], Elastic) else "passive")
-    """"core" bears the load; piezoelectric and wired: "sensor", "actuator", "self-sensing" (both, by a bridge); "passive": neither."""
+    """"core" bears the load; piezoelectric and wired: "sensor" (open circuit), "charge-sensor" (short circuit, read by its charge),
+    "actuator", "self-sensing" (both, by a bridge); "passive": none of these."""
 
     def __init__(
         self,
@@ -58,7 +59,7 @@ class Layer(Described):
                 raise InputError(
                     "role", f"'core' is not allowed for the piezoelectric {self.material.name!r}", f"must be {PIEZOELECTRIC_ROLES}"
                 )
-        elif self.role in ("sensor", "actuator", "self-sensing"):
+        elif self.role in ("sensor", "charge-sensor", "actuator", "self-sensing"):
             raise InputError(
                 "role",
                 f"{self.role!r} is not allowed for the {self.material.type} {self.material.name!r}",

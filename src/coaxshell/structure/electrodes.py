@@ -7,6 +7,7 @@ strain per (V, W),
     Q = e32~ B(z_a) u,      phi = -(t/mu33~) e32~ B(z_s),      B(z) = (m, -1)/R + z (m, -m^2)/R^2.
 
 The field of the open circuit stiffens its layer by (t/mu33~) e32~^2 B B'. A layer that is driven has none: its voltage is given. A
+charge-sensor's is held at zero by an amplifier that takes its charge, whose voltage on a condenser of the layer's own capacity is phi. A
 self-sensing one is driven, and a bridge takes mu33~ u/t from its charge, so that it reads what it would with its circuit open.
 
 With an axial wavenumber the forces N_z = -e31~ u and N_z z_a come to them: on (V, W, U) e32~ B is e32~ B_theta(z) + e31~ B_z(z), with the

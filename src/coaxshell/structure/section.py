@@ -55,7 +55,7 @@ class PiezoelectricLayer:
     Attributes
     ----------
     role : str
-        "sensor", "actuator", "self-sensing" or "passive".
+        "sensor", "charge-sensor", "actuator", "self-sensing" or "passive".
     thickness, centre : float
         t_j and the z of the layer's middle, m.
     coupling : float

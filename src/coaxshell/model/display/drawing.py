@@ -22,7 +22,14 @@ WALL = 0.09
 FRONT = 1.3
 """Distance of the drawn front from the axis, in the same unit."""
 
-ROLE_COLOURS = {"core": "#7A8794", "sensor": "#009E73", "actuator": "#D55E00", "self-sensing": "#CC79A7", "passive": "#B8A24A"}
+ROLE_COLOURS = {
+    "core": "#7A8794",
+    "sensor": "#009E73",
+    "charge-sensor": "#56B4E9",
+    "actuator": "#D55E00",
+    "self-sensing": "#CC79A7",
+    "passive": "#B8A24A",
+}
 """Colours of layers by role, told apart with any kind of colour vision."""
 _WATER = "#2F7FC1"
 _SHOCK = "#B5232A"

@@ -286,7 +286,7 @@ def _design(system: System, settings: Settings, ranked: list[tuple[Trial, Feedba
 def _reduction(system: System, alone: Response, response: Response, shell: int) -> Reduction:
     wall = system.shells[shell]
     core = wall.layers.index(wall.core)  # type: ignore[union-attr]
-    ceramics = [i for i, layer in enumerate(wall.layers) if layer.role in ("sensor", "actuator", "self-sensing")]  # type: ignore[union-attr]
+    ceramics = [i for i, layer in enumerate(wall.layers) if layer.role not in ("core", "passive")]  # type: ignore[union-attr]
     peaks = [[one.value for one in run.layer_peaks(shell, "hoop")] for run in (alone, response)]
     core_pair, ceramic_pair = ([run[core] for run in peaks], [max(run[i] for i in ceramics) for run in peaks])
     return Reduction(shell_name(shell, len(system.shells)), (core_pair[0], core_pair[1]), (ceramic_pair[0], ceramic_pair[1]))

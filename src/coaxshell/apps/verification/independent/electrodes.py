@@ -41,7 +41,7 @@ class Electrodes:
                 field = -e * stretched / (mu * t)  # of an open circuit, per (V, W, U)
                 if layer.role in ("actuator", "self-sensing"):
                     load += e * stretched / t
-                if layer.role in ("sensor", "self-sensing"):
+                if layer.role in ("sensor", "charge-sensor", "self-sensing"):
                     readings.append(t * field)
                 if layer.role == "sensor":
                     stiffness += mu * t * np.outer(field, field)
