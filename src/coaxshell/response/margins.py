@@ -22,7 +22,7 @@ from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.stability import require_stable
 
 _DEGREES, _HERTZ, _SECONDS, _FACTOR = "deg", "Hz", "s", "1"
-_WAVES = 12
+_WAVES = 6
 """Axial wavenumbers in three dimensions."""
 _VARIABLES = {
     "gain_margin": (_FACTOR, "least factor above 1 on the gain at which the order grows"),
@@ -63,7 +63,7 @@ def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) 
     -------
     Dataset, dims (shell, order), in three dimensions (shell, wavenumber, order)
         Infinite margins where no change of that kind makes an order grow, of the gain by about ten times or less. In three dimensions of
-        twelve axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not.
+        six axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not.
 
     Raises
     ------
