@@ -15,6 +15,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.solver.faced_forces import PARTS
+from coaxshell.solver.interface.linear_many import POINTS
 from coaxshell.solver.run_size import COMPLEX, REAL, Size, size_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import MAX_MODES, Settings
@@ -206,12 +207,20 @@ def _spectral_seconds(size: Size) -> float:
         return seconds
     seconds += 0.2e-6 * size.shells**2 * pairs
     if not size.marched:
-        per_node = 2e-6 * size.points if size.ring else 4e-10 * size.points**2 * size.orders * size.parities + 6e-10 * size.points**3
+        per_node = 2e-6 * size.points if size.ring else _unequal_seconds(size)
         return seconds + size.nodes * per_node
     outputs = size.shells + size.controlled
-    sums = 2.5e-8 * outputs * size.shells * size.orders * size.parities * math.log2(size.instants + 2)
+    kernels = outputs * size.shells * size.orders if size.controlled else size.kernels
+    sums = 2.5e-8 * kernels * size.parities * math.log2(size.instants + 2)
     limits = 4.5e-8 * (size.controlled * size.parities * size.orders) ** 2
     return seconds + size.instants * (1.2e-4 + sums + 1.5e-8 * size.points**2 + limits)
+
+
+def _unequal_seconds(size: Size) -> float:
+    """Return the time of linear absorbers that are no ring at one node: by matrices of all points, or of many by iteration."""
+    dense = 2e-10 * size.points**2 * size.orders * size.parities + 1e-10 * size.points**3
+    iterated = 2e-8 * size.points * size.orders * size.parities
+    return min(dense, iterated) if size.points >= POINTS and size.surfaces == 2 else dense
 
 
 def _direct_seconds(size: Size) -> float:

@@ -9,6 +9,7 @@ from coaxshell.model.pulses import Sampled
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.lattice import channels
 from coaxshell.solver.interface.linear_ring import is_ring
 from coaxshell.solver.rounds import rounds
 from coaxshell.solver.sampled_orders import crossing_order
@@ -69,6 +70,8 @@ class Size:
     """Rounds of the series that planes of the sea send back."""
     surfaces: int = 0
     """Surfaces on which links act."""
+    kernels: int = 0
+    """Kernels that a march without limits of actuators sums over the past."""
 
     @property
     def plane(self) -> float:
@@ -118,5 +121,6 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         solids=5 + max(wall.shown_potentials for wall in solids) if solids else 0,
         reflections=rounds(problem, settings.duration).done if settings.dimensions == 2 else 0,
         surfaces=len(problem.surfaces),
+        kernels=channels(problem, links, orders - 1).kernels,
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
     )

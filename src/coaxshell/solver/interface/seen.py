@@ -22,9 +22,8 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import KernelTable
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
-from coaxshell.solver.interface.lattice import folding, lattice_of
+from coaxshell.solver.interface.lattice import channels, folding
 from coaxshell.solver.kernels import combined_velocity_weights
-from coaxshell.solver.point_forces import point_force_shares
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.structure_spectra import StructureSpectra
 
@@ -150,18 +149,7 @@ def as_seen(structure: StructureSpectra, absorbers: AbsorberSet) -> StructureSpe
     """Return a structure as a march of some absorbers sees it by the fewest kernels: the structure itself where its orders are fewest."""
     if not absorbers.count:
         return structure
-    channels = len(structure.problem.surfaces) ** 2 * absorbers.parities
-    lattice = _lattice(structure, absorbers)
-    classes = lattice // 2 + 1 if lattice else structure.modes.count
-    if (2 * absorbers.count) ** 2 <= channels * classes:
+    way = channels(structure.problem, absorbers, structure.modes.max_order)
+    if way.alone:
         return StructureOfPoints(structure, absorbers)
-    return StructureOfClasses(structure, absorbers, lattice) if lattice else structure
-
-
-def _lattice(structure: StructureSpectra, absorbers: AbsorberSet) -> int:
-    """Return the places of the lattice of some absorbers, 0 if it has no fewer classes than there are orders, or does not tell all."""
-    if structure.problem.point_force_shares is not point_force_shares:
-        return 0
-    if absorbers.footprint is not None and len(absorbers.held_alike) > 1:
-        return 0
-    return lattice_of(absorbers.every_angle, structure.modes.max_order)
+    return StructureOfClasses(structure, absorbers, way.lattice) if way.lattice else structure
