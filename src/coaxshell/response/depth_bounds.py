@@ -141,4 +141,4 @@ def _norm(components: Mapping[str, FloatArray]) -> FloatArray:
 
 def _size(amplitudes: FloatArray) -> FloatArray:
     """Return the magnitude of each order, (M + 1, T), of amplitudes of one or two parities."""
-    return np.abs(amplitudes[0]) if len(amplitudes) == 1 else np.hypot(amplitudes[0], amplitudes[1])
+    return np.asarray(np.abs(amplitudes[0]) if len(amplitudes) == 1 else np.hypot(amplitudes[0], amplitudes[1]))

@@ -54,7 +54,7 @@ class ElectrodeLoops:
     @property
     def inverse(self) -> ComplexArray:
         """(1 - H C_q)^-1, shape (patterns, nodes, walls, walls)."""
-        return np.linalg.inv(self.matrix)
+        return np.asarray(np.linalg.inv(self.matrix), dtype=np.complex128)
 
     def asked(self, readings: ComplexArray) -> ComplexArray:
         """Return u_q, (walls, patterns, nodes), from what is read of the motion without voltages; dead segments as if they were alive."""

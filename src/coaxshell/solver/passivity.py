@@ -51,10 +51,10 @@ def passive_orders(problem: Problem, modes: Modes, least: float) -> Orders:
 def _passive(wall: ShellModel, modes: Modes, least: float) -> Orders:
     """Return for which orders a wall is passive with its feedback on Re s = *least*."""
     assert wall.gains is not None
-    fed = np.asarray(wall.gains.weight(modes.orders)) * np.ones(modes.count) != 0.0
+    fed: Orders = np.asarray(wall.gains.weight(modes.orders)) * np.ones(modes.count) != 0.0
     if not fed.any():
         return np.ones_like(fed)
-    passive = ~fed
+    passive: Orders = ~fed
     if wall.gains.delay and not modes.two_dimensional:
         return passive  # a delay that no node follows would have to be bounded along the wall too
     some = Modes(modes.orders[fed], modes.wavenumber, modes.sparse)

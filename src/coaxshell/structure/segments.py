@@ -70,16 +70,16 @@ class Segments:
 
     def readings(self, orders: FloatArray, parities: int) -> FloatArray:
         """Return what each pattern reads of each order, shape (patterns, parities, orders)."""
-        return np.einsum("qk,khm->qhm", self.amplitudes(parities), self.waves(orders, parities))
+        return np.asarray(np.einsum("qk,khm->qhm", self.amplitudes(parities), self.waves(orders, parities)))
 
     def loads(self, orders: FloatArray, parities: int) -> FloatArray:
         """Return u_m of each pattern of voltages, shape (parities, orders, patterns)."""
         weight = self.covered / self.count * np.where(orders == 0, 1.0, 2.0)
-        return np.einsum("khm,kq->hmq", weight * self.waves(orders, parities), self.patterns(parities))
+        return np.asarray(np.einsum("khm,kq->hmq", weight * self.waves(orders, parities), self.patterns(parities)))
 
     def loop_shares(self, orders: FloatArray, parities: int) -> FloatArray:
         """Return r_m of each order in each pattern, shape (patterns, orders); no pattern moves another one."""
-        return np.einsum("qhm,hmq->qm", self.readings(orders, parities), self.loads(orders, parities))
+        return np.asarray(np.einsum("qhm,hmq->qm", self.readings(orders, parities), self.loads(orders, parities)))
 
     def at(self, theta: FloatArray) -> FloatArray:
         """Return which segment lies over each angle (radians); -1 in between."""
