@@ -72,7 +72,6 @@ if TYPE_CHECKING:
     from coaxshell.solver.settings import Settings
     from coaxshell.studies import (
         Choice,
-        ControlDesign,
         Execution,
         Integer,
         LogNormal,
@@ -102,7 +101,6 @@ __all__ = [
     "Absorber",
     "AbsorberRing",
     "Choice",
-    "ControlDesign",
     "Elastic",
     "Execution",
     "Explosive",
