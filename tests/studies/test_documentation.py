@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import coaxshell as cx
-from coaxshell.studies import OptimisationStudy, SensitivityStudy, SweepStudy, read_study
+from coaxshell.studies import FitStudy, OptimisationStudy, SensitivityStudy, SweepStudy, read_study
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -49,6 +49,15 @@ def test_sensitivity(studies, tmp_path):
     systems = study.plan(tmp_path).systems
     assert len(systems) == 256 * 7
     assert all(isinstance(system, cx.System) for system in systems)
+
+
+def test_fit(studies, tmp_path):
+    (study,) = studies("howto/identify.md", FitStudy)
+    rows = "\n".join(f"{k},{k % 3}" for k in range(100))
+    (tmp_path / "shot7.csv").write_text(f"time (us),SG3\n{rows}\n")
+    plan = study.plan(tmp_path)
+    assert [one.quantity for one in plan.records] == ["strain"]
+    assert [one.name for one in plan.unknowns.all] == ["source.distance", "source.decay_time", "clock of shot7"]
 
 
 def test_optimisations(studies, tmp_path):
