@@ -37,7 +37,7 @@ def fit(
     *,
     request: FitRequest,
 ) -> None:
-    """Identify properties of a system from measured histories.
+    """Identify properties from measured histories.
 
     Interrupted, by Ctrl-C or anything else, it goes on with --resume.
     """
