@@ -64,7 +64,7 @@ def test_no_help_has_what_a_terminal_takes_for_markup(command):
 
 METAVARS = {
     *("FILE", "FOLDER", "SCENARIO", "SOURCE", "NAME", "UNIT", "ADDRESS", "PATH=VALUE"),
-    *("N", "TIME", "ANGLE", "LENGTH", "PRESSURE", "FACTOR", "RATIO", "ERROR", "FREQUENCY"),
+    *("N", "TIME", "ANGLE", "LENGTH", "PRESSURE", "FACTOR", "RATIO", "ERROR", "FREQUENCY", "WAVENUMBER", "VOLTAGE"),
 }
 
 

@@ -86,7 +86,7 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     "elastic sensor": (lambda: cx.Layer(ALUMINIUM, 0.003, "sensor"), ("role:", "'sensor'", "'aluminium'", "'core' or 'passive'")),
     "unknown role": (
         lambda: cx.Layer(ALUMINIUM, 1, "skin"),
-        ("role:", "'skin'", "'core', 'sensor', 'actuator', 'self-sensing' or 'passive'"),
+        ("role:", "'skin'", "'core', 'sensor', 'charge-sensor', 'actuator', 'self-sensing' or 'passive'"),
     ),  # type: ignore[arg-type]
     "no layers": (lambda: wall(), ("layers:", "0 given", "at least 1")),
     "thick shell": (lambda: wall(cx.Layer(ALUMINIUM, 2)), ("layers:", "2 m", "must be less than the radius 1 m")),

@@ -31,7 +31,8 @@ def control(
         str | None, typer.Option("--bandwidth", metavar="FREQUENCY", help='With --design: corner of the amplifier, as in "50 kHz".')
     ] = None,
     voltage: Annotated[
-        float | None, typer.Option("--voltage", metavar="V", help="With --design: largest voltage.", show_default="what actuators stand")
+        float | None,
+        typer.Option("--voltage", metavar="VOLTAGE", help="With --design: largest one.", show_default="what actuators stand"),
     ] = None,
     kind: Annotated[
         list[str] | None, typer.Option("--kind", metavar="NAME", help="With --design: rate, pd, lead-lag, resonant, positive-position.")
@@ -42,7 +43,7 @@ def control(
     as_json: options.JsonOption = False,
     force: options.ForceOption = False,
 ) -> None:
-    """Tell how much delay and gain the feedback stands, or design it.
+    """Tell what margins the feedback has, or design it.
 
     By shell, the loops of the others closed, the least of all orders and where it is; in three dimensions of axial wavenumbers too. A
     system whose loop is unstable is refused with the orders that grow. With --design the system's own law is left out and the best for a

@@ -24,7 +24,8 @@ def modes(
         ),
     ] = None,
     wavenumber: Annotated[
-        str | None, typer.Option("--wavenumber", metavar="K,...", help="Along the axis, rad/m, as in 1,2,5: the same by k = pi/length.")
+        str | None,
+        typer.Option("--wavenumber", metavar="WAVENUMBER,...", help="Along the axis, rad/m, as in 1,2,5; k = pi/length."),
     ] = None,
     up_to: Annotated[
         str | None, typer.Option("--up-to", metavar="FREQUENCY", help='Highest one, as in "2 kHz".', show_default="ten transits' worth")

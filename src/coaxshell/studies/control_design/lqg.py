@@ -22,7 +22,7 @@ from coaxshell.numerics.winding import turning
 from coaxshell.response.summary_text import aligned
 from coaxshell.solver.margins import followed, margins_of
 from coaxshell.solver.plant import Plant, loci
-from coaxshell.studies.control_design.state_space import OrderModel, StateSpaceModel
+from coaxshell.studies.control_design.fitted_orders import FittedOrders, OrderModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,12 +75,12 @@ class LqgDesign:
         return "\n".join(aligned(rows))
 
 
-def lqg(model: StateSpaceModel, effort: float, noise: float) -> LqgDesign:
+def lqg(model: FittedOrders, effort: float, noise: float) -> LqgDesign:
     """Return the controllers of a model, judged on the true loop.
 
     Parameters
     ----------
-    model : StateSpaceModel
+    model : FittedOrders
     effort : float
         Square root of rho, over the largest stress per volt: the smaller, the stronger.
     noise : float
@@ -97,7 +97,7 @@ def lqg(model: StateSpaceModel, effort: float, noise: float) -> LqgDesign:
     return LqgDesign(tuple(_judged(model, one, *_gains(model, one, effort, noise)) for one in model.orders))
 
 
-def _gains(model: StateSpaceModel, order: OrderModel, effort: float, noise: float) -> tuple[FloatArray, FloatArray]:
+def _gains(model: FittedOrders, order: OrderModel, effort: float, noise: float) -> tuple[FloatArray, FloatArray]:
     """Return K and L."""
     from scipy.linalg import solve_continuous_are
 
@@ -116,7 +116,7 @@ def _gains(model: StateSpaceModel, order: OrderModel, effort: float, noise: floa
     return state, np.linalg.solve(loud, read @ spread + direct @ struck.T).T
 
 
-def _judged(model: StateSpaceModel, order: OrderModel, state: FloatArray, estimate: FloatArray) -> LqgController:
+def _judged(model: FittedOrders, order: OrderModel, state: FloatArray, estimate: FloatArray) -> LqgController:
     """Return the controller of one order with what its loops do."""
     count, time = len(model.inputs) - 1, model.problem.scales.time
     push, read, through = order.b[:, :count], order.c[:count], order.d[:count, :count]
@@ -137,7 +137,7 @@ def _judged(model: StateSpaceModel, order: OrderModel, state: FloatArray, estima
     return LqgController(order.order, a, estimate, -state, modelled, 0, gain, float(np.degrees(phase)))
 
 
-def _contour(model: StateSpaceModel, order: int, fastest: float) -> ComplexArray:
+def _contour(model: FittedOrders, order: int, fastest: float) -> ComplexArray:
     """Return Re s = 1/duration, evenly beyond the walls' highest frequency and the controller's, then by a growing step."""
     ends = Modes(np.array([1.0, max(1.0, float(order))]))
     walls = max(float(np.hypot(*wall.highest_frequency(ends))) for wall in model.problem.shells if wall.moves)
