@@ -15,7 +15,7 @@ TAIL = """
 
 ```sh
 python -m coaxshell.apps.paper.thickness map map.json        # the map, a quarter of a minute
-python -m coaxshell.apps.paper.thickness claims claims.json  # the statements on absorbers, three minutes
+python -m coaxshell.apps.paper.thickness claims claims.json  # those on absorbers, three minutes
 coaxshell reproduce --only walls                             # all but map and statements, in one report
 ```
 
