@@ -43,6 +43,8 @@ class FakeResponse:
             return self._array(shell, angle, 1e-2 if quantity.endswith("velocity") else 1e3, 9.0)
         if quantity.endswith("_stress"):
             return self._array(shell, angle, 1e5, 9.0)
+        if quantity in ("actuator_charge", "actuator_current"):
+            return self._array(shell, angle, 1e-3, 7.0)
         return getattr(self, quantity)(shell, angle)
 
     def _array(self, shell, angle, scale, frequency):

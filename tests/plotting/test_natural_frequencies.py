@@ -18,7 +18,7 @@ def test_figures_show_every_mode():
     shape = plotting.plot_mode_shape("bare", found, 2, 1)
     assert shape.get_title().startswith("$m$ = 2: 8.844 Hz")
     along = cx.natural_frequencies("bare", [2, 3], [20.0, 30.0], up_to=100.0)
-    assert plotting.plot_natural_frequencies(along).get_xlabel() == "axial half wavelength (m)"
+    assert plotting.plot_natural_frequencies(along).get_xlabel() == "axial wavenumber (rad/m)"
     with pytest.raises(InputError, match="has several axial half wavelengths"):
         plotting.plot_mode_shape("bare", along, 2)
     with pytest.raises(InputError, match="order: 7 was not asked for"):
