@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
+from coaxshell.studies.metrics import metrics_of
 
 SETTINGS = {"duration": 4.0, "time_step": 0.02, "modes": 6}
 
@@ -22,6 +23,17 @@ def test_light_equipment_feels_the_shock_spectrum(kind, shell):
 def test_heavy_equipment_feels_less_at_its_resonance():
     light, heavy = (cx.mounted_spectrum("bare", "inner", [1000.0], mass, **SETTINGS) for mass in (5.0, 50.0))
     assert float(heavy["ratio"][0]) < 0.7 < float(light["ratio"][0]) < 0.95
+
+
+def test_equipment_inside_the_only_shell():
+    bare = cx.presets.load("bare")
+    alone = bare.replace(shells=[bare.shells[1]], fluids=[cx.VACUUM, bare.exterior])
+    settings = SETTINGS | {"time_step": 0.01}  # 1.3, 0.4, 0.15 % of the light one at 0.02, 0.01, 0.005
+    light, heavy = (cx.mounted_spectrum(alone, 0, [1500.0], mass, 20.0, **settings) for mass in (1e-3, 50.0))
+    np.testing.assert_allclose(light["ratio"], 1.0, atol=6e-3)
+    assert float(heavy["ratio"][0]) < 0.7
+    (metric,) = metrics_of(["shell.mounted_pseudo_velocity_head@2000 Hz, 50 kg/m"], alone)
+    assert metric.units == "m/s"
 
 
 def test_equipment_at_a_point_of_three_dimensions():

@@ -51,7 +51,7 @@ def mounted_spectrum(
     Parameters
     ----------
     system : System, str or Path
-        Of two shells or more; its own absorbers act beside.
+        Its own absorbers act beside.
     shell : int or str
     frequency : array_like
         Natural frequencies on a base at rest, Hz.
@@ -76,7 +76,7 @@ def mounted_spectrum(
     Raises
     ------
     InputError
-        An argument is not allowed, or the system has one shell alone.
+        An argument is not allowed.
     """
     arguments.one_of("kind", kind, get_args(Kind))
     hertz, quality = frequencies_of(frequency), quality_of(quality_factor)
@@ -143,10 +143,8 @@ class _Place:
         asked = Settings.asked(system, {**settings, "stations": (z,)} if settings.get("dimensions", 2) == 3 else settings)
         self.spatial = asked.dimensions == 3
         count = len(system.shells)
-        if count < 2:
-            raise InputError("shells", "equipment is mounted in a gap, and one shell has none", "give the system another shell")
         self.number = system.shell_index(shell)
-        self.side = int(self.number == count - 1)  # of the gap that it is mounted in
+        self.side = int(self.number == count - 1)  # of the gap that it is mounted in, or of the outer shell inside the only one
         if self.spatial:
             self._settings["stations"] = (z,)
         elif z != 0.0:
@@ -159,7 +157,7 @@ class _Place:
             "linear_stiffness": one.mass * one.omega**2,
             "damping": one.mass * one.omega / one.quality,
             "angle": self.angle,
-            "inner_shell": self.number - self.side,
+            "inner_shell": max(self.number - self.side, 0),
             "links": "outer" if self.side else "inner",
         }
         return PointAbsorber(**common, z=self.z) if self.spatial else Absorber(**common)

@@ -327,8 +327,6 @@ def _at_frequency(label: str, item: str | int, quantity: str, text: str, system:
     if shell is None or spectrum is None:
         raise InputError(where, f"{label!r} is not a known metric", _allowed_at_frequencies(system))
     _require_moving(label, shell, system, where)
-    if isinstance(spectrum, MountedMetric) and len(system.shells) < 2:
-        raise InputError(where, f"{label!r}: equipment is mounted in a gap, and one shell has none", "give the system another shell")
     return Metric(label, spectrum.units, f"{spectrum.long_name}, {shell_phrase(shell, len(system.shells))}", shell, spectrum.quantity)
 
 
