@@ -19,23 +19,28 @@ from coaxshell.structure.elastic_depth import shown_by_shapes
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.thin_wall import ThinWall
 
-PRESETS = {"paper": "active", "electrodes": "electrodes"}
+PRESETS = {"paper": "active", "electrodes": "electrodes", "charged": "electrodes"}
 GAINS = {
     "paper": cx.PDControl(proportional=-2e4, derivative=-150),
     "electrodes": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
+    "charged": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
 }
 
 
 def system(kind: str, theory: str = "elastic", scale: float = 1.0, **changes: Any) -> cx.System:
-    """Return a preset with walls of a theory, all layers *scale* times as thick, ceramics without printed slips."""
+    """Return a preset with walls of a theory, all layers *scale* times as thick, ceramics without printed slips.
+
+    "charged": a sensor read by its charge beside a self-sensing layer.
+    """
     base, shells = cx.presets.load(PRESETS[kind]), []
     for shell in base.shells:
         layers = []
-        for layer in shell.layers:
+        for place, layer in enumerate(shell.layers):
             material = layer.material
             if isinstance(material, cx.Piezoelectric):
                 material = material.replace(permittivity_reduction="standard")
-            layers.append(layer.replace(thickness=scale * layer.thickness, material=material))
+            role = {"role": ("charge-sensor", None, "self-sensing")[place]} if kind == "charged" and place != 1 else {}
+            layers.append(layer.replace(thickness=scale * layer.thickness, material=material, **role))
         wetted = {"wetted": "faces"} if theory == "thin" else {}
         shells.append(shell.replace(layers=layers, theory=theory, **wetted))
     return base.replace(**{"shells": shells, "control": GAINS[kind], **changes})
@@ -55,7 +60,7 @@ def walls(kind: str, scale: float = 1.0) -> tuple[ElasticWall, ThinWall, Problem
     return first, second, solid
 
 
-@pytest.mark.parametrize(("kind", "close"), [("paper", 0.05), ("electrodes", 2e-3)])
+@pytest.mark.parametrize(("kind", "close"), [("paper", 0.05), ("electrodes", 2e-3), ("charged", 2e-3)])
 def test_loads_and_readings_of_bending_and_stretching_are_those_of_thin_walls(kind: str, close: float) -> None:
     """Of the paper's sensor bending alone: thin theory takes a half cosine for its potential and leaves out what stretching does to it."""
     solid, thin, _ = walls(kind, 0.25)
@@ -72,7 +77,7 @@ def test_loads_and_readings_of_bending_and_stretching_are_those_of_thin_walls(ki
         assert transducers.acting @ driven.loads[m, :, n] == pytest.approx(load, rel=2e-3)
 
 
-@pytest.mark.parametrize("kind", ["paper", "electrodes"])
+@pytest.mark.parametrize("kind", ["paper", "electrodes", "charged"])
 def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
     """Stiffness, mass, d and p of all points, solved at one order and frequency: what volts do along the wall, and at rest through it.
 
@@ -103,7 +108,7 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
         moved = -(free + np.outer(pushed, volts))[places]
         here = [[found.inner[m, 0], found.across[m, 0]], [found.back[m, 0], found.outer[m, 0]]]
         np.testing.assert_allclose(here, moved, rtol=0, atol=1e-6 * np.abs(moved).max())
-        if kind == "electrodes":
+        if kind != "paper":
             whole = -np.linalg.solve(dynamic - law * np.outer(push, read), loads)[places]
             np.testing.assert_allclose(here, whole, rtol=0, atol=2e-3 * np.abs(whole).max())
         assert np.abs(here + free[places]).max() > 1e-3 * np.abs(moved).max()
@@ -121,13 +126,13 @@ def test_exact_walls_under_electrodes_tend_to_thin_ones() -> None:
     assert np.linalg.norm(bare - controlled) > 10.0 * errors[0] * np.linalg.norm(bare)
 
 
-@pytest.mark.parametrize("kind", ["paper", "electrodes"])
+@pytest.mark.parametrize("kind", ["paper", "electrodes", "charged"])
 def test_the_energy_closes_and_voltages_follow_the_law(kind: str, tmp_path: Any) -> None:
     response = run(kind)
     energy = response.energy()
     assert float(np.abs(energy.closure_relative).max()) < 2e-5
     assert float(energy.actuator_work[-1]) > 0.01 * float(energy.exterior_work.max())
-    if kind == "electrodes":
+    if kind != "paper":
         left = energy.amplifier_work - energy.actuator_field + energy.actuator_work
         assert float(np.abs(left).max()) < 1e-3 * float(energy.actuator_work.max())
     response.save(tmp_path / "run.nc")

@@ -18,10 +18,11 @@ from coaxshell.structure.elastic_basis import strain_rows
 from coaxshell.structure.elastic_wall import ElasticWall
 
 TIME = cx.presets.load("bare").transit_time
-PRESETS = {"paper": "active", "electrodes": "electrodes", "apart": "electrodes"}
+PRESETS = {"paper": "active", "electrodes": "electrodes", "apart": "electrodes", "charged": "electrodes"}
 GAINS: dict[str, Any] = {
     "paper": cx.PDControl(proportional=-2e4, derivative=-150),
     "electrodes": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
+    "charged": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
     "apart": cx.Feedback(numerator=[TIME, 3.0], amplifier_corner="50 kHz", transducers="electrodes"),
 }
 SMALL: dict[str, Any] = {"duration": 0.5, "time_step": 2e-2, "modes": 2, "axial_modes": 1.5, "dimensions": 3}
@@ -30,7 +31,7 @@ FLAT = {name: value for name, value in SMALL.items() if name not in ("axial_mode
 
 
 def system(kind: str, theory: str = "elastic", scale: float = 1.0, **changes: Any) -> cx.System:
-    """Return a preset with walls of a theory, all layers *scale* times as thick; "apart": an open sensor beside a self-sensing layer."""
+    """Return a preset with walls of a theory, layers *scale* times as thick; a sensor beside a self-sensing layer "apart" or "charged"."""
     base, shells = cx.presets.load(PRESETS[kind]), []
     for shell in base.shells:
         layers = []
@@ -38,7 +39,8 @@ def system(kind: str, theory: str = "elastic", scale: float = 1.0, **changes: An
             material = layer.material
             if isinstance(material, cx.Piezoelectric):
                 material = material.replace(permittivity_reduction="standard")
-            role = {"role": ("sensor", None, "self-sensing")[place]} if kind == "apart" and place != 1 else {}
+            sensor = {"apart": "sensor", "charged": "charge-sensor"}.get(kind)
+            role = {"role": (sensor, None, "self-sensing")[place]} if sensor and place != 1 else {}
             layers.append(layer.replace(thickness=scale * layer.thickness, material=material, **role))
         shells.append(shell.replace(layers=layers, theory=theory, **({"wetted": "faces"} if theory == "thin" else {})))
     return base.replace(**{"shells": shells, "control": GAINS[kind], **changes})
@@ -84,7 +86,7 @@ def by_quadrature(one: ElasticWall, number: int, m: float, k: float, displacemen
     return -float(((slope * radial - value * sheared) * r * width).sum()), -float((slope * stretched * r * width).sum())
 
 
-@pytest.mark.parametrize("kind", ["electrodes", "apart"])
+@pytest.mark.parametrize("kind", ["electrodes", "apart", "charged"])
 def test_loads_and_readings_by_quadrature(kind: str) -> None:
     one, k = wall(kind), 20.0
     modes = Modes.up_to(3, k)
@@ -103,8 +105,9 @@ def test_loads_and_readings_by_quadrature(kind: str) -> None:
                     one, number, float(m), k, lambda r, curves=curves: ([c(r) for c in curves], [c.deriv()(r) for c in curves])
                 )
                 assert driven.loads[m, j, n] == pytest.approx(load, rel=1e-5, abs=1e-6 * np.abs(driven.loads[m, j, :6]).max())
-                opened = number not in one.transducers.actuators
-                expected = -load / driven.capacitance[m, j] if opened else -along / free
+                expected = -along / free if number in one.transducers.actuators else -load / driven.capacitance[m, j]
+                if number in one.transducers.shorted:
+                    expected = -load / free
                 size = np.abs(driven.readings[m, j, :6]).max()
                 assert driven.readings[m, j, n] == pytest.approx(expected, rel=1e-5, abs=1e-6 * size)
 
@@ -151,7 +154,7 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
         assert np.abs(here + free[places]).max() > 1e-3 * np.abs(moved).max()
 
 
-@pytest.mark.parametrize("kind", ["paper", "electrodes", "apart"])
+@pytest.mark.parametrize("kind", ["paper", "electrodes", "apart", "charged"])
 def test_a_vanishing_wavenumber_is_the_plane_problem(kind: str) -> None:
     one, s = wall(kind), np.array([0.7 + 2.3j, 3.0 + 20.0j])
     near, plane = (one.receptance(Modes.up_to(3, k), s) for k in (1e-6, 0.0))

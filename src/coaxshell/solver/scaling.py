@@ -280,16 +280,13 @@ def _transducers(system: System, index: int, scales: Scales) -> Transducers:
     assert isinstance(shell, Shell)
     assert law is not None
     electrodes = law.transducers == "electrodes"
-    shorted = next((place for place, layer in enumerate(shell.layers) if layer.role == "charge-sensor"), None)
-    if shorted is not None:
-        told = "'charge-sensor' is known of thin walls alone"
-        raise InputError(f"shells[{index}].layers[{shorted}].role", told, f'use role = "sensor", or shells[{index}].theory = "thin"')
     thin = section(with_plane_stress(shell) if electrodes else shell)
     in_units = thin.in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     sensors, actuators = (tuple(i for i, layer in enumerate(shell.layers) if serves(layer.role, role)) for role in ("sensor", "actuator"))
     acting = [layer for layer in in_units.piezoelectric if serves(layer.role, "actuator")]
     limit = min(layer.field_limit * layer.thickness for layer in acting)
-    return Transducers(electrodes, sensors, actuators, 0.0 if electrodes else -acting[0].actuator_coupling, limit)
+    shorted = tuple(i for i, layer in enumerate(shell.layers) if layer.role == "charge-sensor")
+    return Transducers(electrodes, sensors, actuators, 0.0 if electrodes else -acting[0].actuator_coupling, limit, shorted)
 
 
 def _gains(system: System, index: int, time: float) -> ControlLaw | None:

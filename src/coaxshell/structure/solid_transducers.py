@@ -17,7 +17,8 @@ the enthalpy stationary within. It loads the wall by
 
 and an open circuit reads y = -d'x/C, C = psi'G psi its capacitance per radian, and stiffens its layer by d d'/C. Of a layer that is driven
 and read at once a bridge takes all that its own voltage does, the stretch of the thickness too, and the strain along the wall is left,
-y = int psi' (e32~ eps_theta + e31~ eps_z) r dr/C~, C~ = C (1 + e33^2/(c33 mu33)). In a thin wall d is e32~ B(z_a) R.
+y = int psi' (e32~ eps_theta + e31~ eps_z) r dr/C~, C~ = C (1 + e33^2/(c33 mu33)). In a thin wall d is e32~ B(z_a) R. A charge-sensor, held
+at no voltage by the amplifier that takes its charge, reads y = -d'x/C~ on a condenser of its own capacity, where its thickness is free.
 
 "paper": a sensor is the potential in the middle of its layer, whose faces are grounded; an actuator pushes along the radius alone, as the
 field's hoop stress does through u_r/r, with the paper's pressure per volt, spread evenly over the thickness of its layer.
@@ -61,6 +62,8 @@ class Transducers:
         In the paper: inward force per radian and volt.
     limit : float
         Of the voltage, V.
+    shorted : tuple of int
+        Those of the sensors that are read by their charge, at no voltage.
     """
 
     electrodes: bool
@@ -68,15 +71,22 @@ class Transducers:
     actuators: tuple[int, ...]
     push: float = 0.0
     limit: float = float("inf")
+    shorted: tuple[int, ...] = ()
 
     @property
     def driven(self) -> tuple[int, ...]:
-        """Layers whose voltages load the wall: of electrodes sensors too, which charge themselves."""
+        """Layers between electrodes, whose voltages load the wall: sensors too, of which open circuits charge themselves."""
         return tuple(sorted({*self.sensors, *self.actuators})) if self.electrodes else self.actuators
 
     @property
     def opened(self) -> FloatArray:
         """1 for each driven layer whose circuit is open, else 0."""
+        held = {*self.actuators, *self.shorted}
+        return np.array([float(self.electrodes and one not in held) for one in self.driven])
+
+    @property
+    def listening(self) -> FloatArray:
+        """1 for each driven layer that only reads, and so reads motions through the thickness too, else 0."""
         return np.array([float(self.electrodes and one not in self.actuators) for one in self.driven])
 
     @property
@@ -125,10 +135,9 @@ def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
         shapes = basis.shapes[..., basis.mesh.layers[number].nodes]
         load = np.einsum("mcp,mncp->mn", layer.load, shapes)
         loads.append(load)
-        if number in transducers.actuators:
-            readings.append(-np.einsum("mcp,mncp->mn", layer.along, shapes) / layer.free[:, None])
-        else:
-            readings.append(-load / layer.capacitance[:, None])
+        read = np.einsum("mcp,mncp->mn", layer.along, shapes) if number in transducers.actuators else load
+        opened = number not in transducers.actuators and number not in transducers.shorted
+        readings.append(-read / (layer.capacitance if opened else layer.free)[:, None])
     return Driven(np.stack(loads, axis=1), np.stack(readings, axis=1), np.stack([one.capacitance for one in found], axis=1))
 
 
@@ -266,7 +275,7 @@ def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], tran
     opened, acting, sensing = transducers.opened, transducers.acting, transducers.sensing
     moved = sums[: 2 * count].reshape(2, count, *shape) + np.moveaxis(resting[0], 0, -1)[..., None]
     read = sums[2 * count : 4 * count].reshape(count, 2, *shape)
-    answer = sums[4 * count :].reshape(count, count, *shape) + np.moveaxis(resting[1] * opened[:, None], 0, -1)[..., None]
+    answer = sums[4 * count :].reshape(count, count, *shape) + np.moveaxis(resting[1] * transducers.listening[:, None], 0, -1)[..., None]
     gains = np.broadcast_to(law, shape)
     laws = np.diag(opened)[..., None, None] + np.multiply.outer(np.outer(acting, sensing), gains)
     matrix = np.eye(count)[..., None, None] - np.einsum("ijmk,jlmk->ilmk", laws, answer)
