@@ -134,3 +134,39 @@ def test_absorbers_are_dragged_and_moved_by_keys(opened):
     until(page, f"{SYSTEM}.source.angle === -1")
     until(page, "!document.documentElement.classList.contains('stale')")
     assert violations(page, "#section") == []
+
+
+def test_each_shell_has_a_law_of_its_own_by_keyboard(opened):
+    system = cx.presets.load("electrodes").with_overrides({"control.derivative": [2.0, 1.0]})
+    page = opened(system)
+    gain = page.locator('input[type=text][data-path="control.derivative"]')
+    assert gain.input_value() == "2, 1"  # a list of gains, one a shell
+    page.locator('select[data-path="control"]').select_option(label="One law for each shell")
+    until(page, f"{SYSTEM}.control.length === 2")
+    assert held(page, f"{SYSTEM}.control.map(({{derivative, shells}}) => [derivative, shells])") == [[2, [0]], [1, [1]]]
+    page.locator('input[type=range][data-path="control[1].derivative"]').press("ArrowRight")
+    until(page, f"{SYSTEM}.control[1].derivative > 1 && {SYSTEM}.control[0].derivative === 2")
+    page.locator('[data-group="control"] > .buttons button').first.wait_for()
+    assert page.locator('[data-group="control"] > .buttons button').is_disabled(), "no shell is without"
+    page.locator('input[type=text][data-path="control[1].segments"]').fill("8")
+    page.keyboard.press("Enter")
+    until(page, f"{SYSTEM}.control.every(({{segments}}) => segments === 8)")  # all walls are cut alike
+    page.locator('select[id="kind-control[0]"]').select_option(label="Feedback")
+    until(page, f"{SYSTEM}.control[0].numerator?.length === 2")
+    assert held(page, f"{SYSTEM}.control[0].numerator") == [pytest.approx(2.0 * system.transit_time, rel=1e-7), 0]
+    assert held(page, f"{SYSTEM}.control[0].segments") == 8
+    page.locator('select[id="kind-control[0]"]').select_option(label="PD control")
+    until(page, f"{SYSTEM}.control[0].derivative === 2")
+    page.locator('[data-act="control[0]:out"]').press("Enter")
+    until(page, f"{SYSTEM}.control[1].shells[0] === 0 && document.activeElement.closest('[data-group]').dataset.group === 'control[1]'")
+    page.locator('[data-path="control[0].shells[0]"]').press("Space")
+    page.locator("#field-problem").wait_for()
+    assert "under control[0] already" in page.locator("#field-problem").inner_text()
+    page.locator('[data-path="control[0].shells[0]"]').press("Space")
+    until(page, "!window.coaxshell.state.problems.length")
+    assert violations(page, '[data-group="control"]') == []
+    page.locator('[data-act="control[1]:remove"]').press("Enter")
+    until(page, f"{SYSTEM}.control.shells?.[0] === 1 && document.activeElement.dataset.path === 'control'")
+    page.locator("#undo").click()
+    until(page, f"{SYSTEM}.control.length === 2")
+    cx.System.model_validate(held(page, SYSTEM))

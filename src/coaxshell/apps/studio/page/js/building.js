@@ -44,8 +44,12 @@ function inGaps(absorbers, to) {
   return Array.isArray(absorbers) ? absorbers.flatMap(moved) : absorbers ? moved(absorbers)[0] ?? [] : absorbers;
 }
 
-// Control with the numbers of its shells mapped; names such as "inner", and "all", mean what is there.
+// Control, or each of several laws, with the numbers of its shells mapped; names such as "inner", and "all", mean what is there.
 function onShells(control, to) {
+  if (Array.isArray(control)) {
+    const laws = control.map((law) => onShells(law, to)).filter((law) => law !== null);
+    return laws.length > 1 ? laws : laws[0] ?? null;
+  }
   if (!Array.isArray(control?.shells)) return control;
   const shells = control.shells.map((one) => (typeof one === "number" ? to(one) : one)).filter((one) => one !== null);
   return shells.length ? { ...control, shells } : null;

@@ -1,6 +1,7 @@
 // The form, generated from the description's own schema: one function a kind of entry.
 import * as building from "./building.js";
 import { el, by } from "./dom.js";
+import * as laws from "./laws.js";
 import { join, read } from "./paths.js";
 import { handleAt, rangeOf, steps, valueAt } from "./ranges.js";
 import { editor } from "./record.js";
@@ -21,7 +22,7 @@ let wanted = null; // what has the focus once the form is made anew: an action o
 
 export function setUp(known, onChange, present) {
   world = known;
-  change = onChange;
+  change = (path, value, how) => onChange(...laws.together(path, value, present().control), how);
   now = present;
   use(known.schema);
 }
@@ -41,7 +42,8 @@ export function render(system, problems) {
   if (wanted) {
     const { act, item } = wanted, box = form.querySelector(`[data-group="${CSS.escape(item)}"]`);
     wanted = null;
-    (form.querySelector(`[data-act="${CSS.escape(act)}"]:not(:disabled)`) ?? box?.querySelector(":scope > summary, select"))?.focus();
+    const list = item.replace(/\[\d+\]$/, ""); // of two laws one is left, which is no list
+    (form.querySelector(`[data-act="${CSS.escape(act)}"]:not(:disabled)`) ?? box?.querySelector(":scope > summary, select") ?? form.querySelector(`select[data-path="${CSS.escape(list)}"]`))?.focus();
   } else if (focus) form.querySelector(`[data-path="${focus}"]`)?.focus({ preventScroll: true });
 }
 
@@ -50,7 +52,7 @@ export function refresh(system) {
   const sliders = new Map([...by("form").querySelectorAll('input[type="range"]')].map((one) => [one.dataset.path, one]));
   for (const input of by("form").querySelectorAll("input[data-unit]")) {
     const value = read(system, input.dataset.path);
-    if (input !== document.activeElement) input.value = editable(value, input.dataset.unit);
+    if (input !== document.activeElement) input.value = typedAs(value, input.dataset.unit);
     const slider = sliders.get(input.dataset.path);
     if (slider && typeof value === "number") place(slider, value, input.dataset.unit);
   }
@@ -130,9 +132,8 @@ function summary(path, value) {
   if (/^absorbers\[\d+\]$/.test(path)) return "z" in value ? `${show(value.angle ?? 0, "deg")}, z = ${show(value.z, "m")}, ${show(value.mass, "kg")}` : `${show(value.angle ?? 0, "deg")}, ${show(value.mass, "kg/m")}`;
   if (/^source$/.test(path)) return Array.isArray(value) ? `${value.length} sources` : title(value.type.replace(/-/g, " ").toLowerCase());
   if (path === "resolution") return `${value.modes} orders, step ${value.time_step}`;
-  if (/^control$/.test(path) && "numerator" in value) return `H(s) of degree ${[value.numerator].flat().length - 1} over ${[value.denominator ?? 1].flat().length - 1}`;
   if (/^sea$/.test(path)) return `${show(value.depth, "m", 3)} deep`;
-  if (/^control$/.test(path)) return `${show(value.proportional, "", 3)}, ${show(value.derivative, "", 3)}`;
+  if (/^control/.test(path)) return Array.isArray(value) ? `${value.length} laws` : laws.digest(value, shells);
   return value.name ?? value.type ?? "";
 }
 
@@ -160,11 +161,12 @@ function label(path, name) {
   const index = path.match(/(\w+)\[(\d+)\]$/);
   if (!index) return title(name);
   if (index[1] === "shells") return capital(shellPhrase(Number(index[2]), shells));
+  if (index[1] === "control") return `Law ${Number(index[2]) + 1}`;
   return `${title(index[1].replace(/s$/, ""))} ${Number(index[2]) + 1}`;
 }
 
 function list(schema, path, name, value) {
-  const singular = name.replace(/s$/, "");
+  const singular = name === "control" ? "law" : name.replace(/s$/, "");
   const item = schema.items ?? {};
   const numeric = ["number", "integer"].includes(resolve(item).type);
   if (numeric) return leaf({ type: "string", list: true, description: schema.description }, path, name, Array.isArray(value) ? value.join(", ") : value);
@@ -173,12 +175,12 @@ function list(schema, path, name, value) {
     (body ?? inner)?.append?.(tools(item, path, name, value, i));
     return inner;
   });
-  const full = value.length >= mostOf(name);
+  const most = mostOf(name, value), full = value.length >= most;
   return el("div", { "data-group": path }, ...items, path === "fluids" ? null : el("div", { class: "buttons" },
-    el("button", { type: "button", disabled: full, onclick: () => add(item, path, name, Infinity) }, `Add ${singular}`), full ? el("small", { class: "hint" }, `at most ${mostOf(name)}`) : null));
+    el("button", { type: "button", disabled: full, onclick: () => add(item, path, name, Infinity) }, `Add ${singular}`), full ? el("small", { class: "hint" }, name === "control" ? "every shell that senses has its law" : `at most ${most}`) : null));
 }
 
-const mostOf = (name) => ({ shells: world.limits.shells, layers: world.limits.layers, absorbers: world.limits.absorbers, source: world.limits.sources })[name] ?? Infinity;
+const mostOf = (name, value) => ({ control: name === "control" && value.length + Math.min(1, laws.free(value, now().shells).length), shells: world.limits.shells, layers: world.limits.layers, absorbers: world.limits.absorbers, source: world.limits.sources })[name] ?? Infinity;
 
 // What can be done with an item: exchanged with its neighbours, copied to the next place, taken out. Fluids follow the shells.
 function tools(item, path, name, value, i) {
@@ -187,7 +189,7 @@ function tools(item, path, name, value, i) {
   return el("div", { class: "buttons" },
     i > 0 && button("in", `Move ${of} ${before}`, "↑", () => exchange(path, i, i - 1, "in")),
     i < value.length - 1 && button("out", `Move ${of} ${after}`, "↓", () => exchange(path, i, i + 1, "out")),
-    path !== "fluids" && button("copy", `Add a copy of ${of}`, "Copy", () => add(item, path, name, i), { disabled: value.length >= mostOf(name) }),
+    path !== "fluids" && button("copy", `Add a copy of ${of}`, "Copy", () => add(item, path, name, i), { disabled: value.length >= mostOf(name, value) }),
     path !== "fluids" && (value.length > 1 || name === "absorbers") && button("remove", `Remove ${of}`, "Remove", () => remove(path, i)));
 }
 
@@ -197,7 +199,7 @@ const present = (path) => read(now(), path) ?? [];
 // The new item is open and has the focus. A shell takes its place among fluids, absorbers and control.
 function add(item, path, name, place) {
   const value = present(path), after = Math.min(place, value.length - 1);
-  if (value.length >= mostOf(name)) return null;
+  if (value.length >= mostOf(name, value)) return null;
   const at = join(path, after + 1);
   wanted = { act: "", item: at };
   for (let i = value.length; i > after + 1; i -= 1) opened(join(path, i), join(path, i - 1));
@@ -231,6 +233,7 @@ function opened(to, from) { KEPT_OPEN.set(to, KEPT_OPEN.get(from) ?? false); }
 // A further item starts as the one before it; what there is once in a wall, or at a place, is not there twice.
 function following(item, before, value) {
   const copy = structuredClone(before ?? fresh(itemHere(item), HINTS));
+  if ("shells" in copy) return laws.following(copy, value, now().shells);
   if ("inner_shell" in copy) copy.angle = building.freeAngle(value, copy.inner_shell);
   else if (typeof copy.angle === "number") copy.angle = building.turned(copy.angle + 30);
   if (["sensor", "actuator", "self-sensing"].includes(copy.role)) copy.role = "passive";
@@ -252,30 +255,38 @@ function union(schema, choices, path, name, value, bare) {
   if (chosen < 0) chosen = choices.findIndex((kind) => kind.type !== "null");
   const numeric = !choices.some((kind) => kind.type === "array") && choices.find((kind) => ["number", "integer"].includes(kind.type));
   if (numeric && choices.some((kind) => kind.type === "null")) return leaf({ ...numeric, optional: true, description: schema.description }, path, name, value);
-  if (path.endsWith("control.shells")) return leaf({ type: "string", list: true, description: schema.description }, path, name, Array.isArray(value) ? value.join(", ") : value);
-  if (path.endsWith("control.weights")) return leaf({ type: "string", list: "weights", description: schema.description }, path, name, [value ?? []].flat().join(", "));
+  if (/^control.*\.shells$/.test(path)) return laws.shellBoxes(path, value, now().shells, change);
+  if (/^control.*\.(weights|dead)$/.test(path)) return leaf({ type: "string", list: name, description: schema.description }, path, name, [value ?? []].flat().join(", "));
   const id = `kind-${path}`;
   const none = Array.isArray(value) && !value.length && choices.some((kind) => kind.type === "array");
-  const options = choices.map((kind, i) => el("option", { value: i, selected: i === chosen && !none }, kind.type === "null" ? "None" : kind.type === "array" ? "Several, one by one" : kindTitle(kind)));
+  const lacking = path === "control" && !Array.isArray(value) && laws.controllable(now().shells).length < 2; // one law each takes two shells that sense
+  const options = choices.map((kind, i) => el("option", { value: i, selected: i === chosen && !none, disabled: kind.type === "array" && lacking }, kind.type === "null" ? "None" : kind.type === "array" ? (path === "control" ? "One law for each shell" : "Several, one by one") : kindTitle(kind)));
   if (path === "absorbers") options.unshift(el("option", { value: "none", selected: none }, "None"));
-  const select = el("select", { id, "data-path": path, onchange: () => change(path, start(select.value, choices, value)) }, ...options);
+  const select = el("select", { id, "data-path": path, onchange: () => change(path, start(select.value, choices, read(now(), path), path)) }, ...options);
   const inner = none ? null : entry(choices[chosen], path, name, value, true);
   const choice = el("div", { class: "choice" }, el("label", { for: id }, "Kind"), select);
   return bare ? el("div", { "data-group": path }, choice, inner) : group(path, label(path, name), false, summary(path, value), choice, inner);
 }
 
 // The first value of another kind keeps what the two have in common.
-function start(index, choices, value) {
+function start(index, choices, value, path) {
   if (index === "none") return [];
   const kind = choices[index];
+  if (kind.type === "array" && path === "control") return eachItsLaw(value ?? fresh(choices[0], HINTS));
   if (kind.type === "array") return value && !Array.isArray(value) ? building.singly(value, space ? { z: 0 } : {}) : [fresh(itemHere(kind.items), HINTS)];
   const kept = Array.isArray(value) ? (value[0] ?? {}) : value && typeof value === "object" ? value : {};
   const common = Object.fromEntries(Object.entries(kept).filter(([key]) => key !== "type"));
   const fits = ([key, one]) => kinds(kind.properties?.[key] ?? {}).some((part) => matches(part, one));
-  const made = fresh(kind, { ...HINTS, ...Object.fromEntries(Object.entries(common).filter(fits)), ...(resolve(kind.properties?.type).const === "sampled" ? sampled(kept) : {}) });
+  const made = fresh(kind, { ...HINTS, ...Object.fromEntries(Object.entries(common).filter(fits)), ...laws.turned(kept, now()), ...(resolve(kind.properties?.type).const === "sampled" ? sampled(kept) : {}) });
   if (kind.type === "object" && Array.isArray(value) && "count" in made) made.count = value.length;
   if (resolve(kind.properties?.pulse).anyOf && !made.pulse?.type) made.pulse = { type: "exponential", peak_pressure: kept.peak_pressure ?? HINTS.peak_pressure, decay_time: kept.decay_time ?? HINTS.decay_time };
   return made;
+}
+
+function eachItsLaw(law) {
+  const several = laws.split(law, now().shells);
+  several.forEach((_, i) => KEPT_OPEN.set(join("control", i), true));
+  return several;
 }
 
 // An exponential pulse as a record to begin with.
@@ -339,20 +350,21 @@ function leaf(schema, path, name, value) {
   return quantity(schema, path, text, value ?? (schema.optional ? "" : schema.default), shared);
 }
 
-// One number alone is the highest order of a modal filter, none no filter.
+// One number alone is the highest order of a modal filter, none no filter; no dead segments are none.
 function listed(text, kind) {
+  if (kind === "dead" && text.trim() === "") return null;
   if (kind === "weights" && !text.includes(",")) return text.trim() === "" ? null : numeral(text);
   return text.trim() === "all" ? "all" : text.split(",").map((part) => part.trim()).filter(Boolean).map((part) => (part !== "" && Number.isFinite(Number(part)) ? Number(part) : part));
 }
 
 function quantity(schema, path, text, value, shared) {
   const unit = schema.unit ?? "";
-  const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: editable(value, unit),
+  const input = el("input", { ...shared, type: "text", inputmode: "text", spellcheck: "false", "data-unit": unit, value: typedAs(value, unit),
     placeholder: schema.optional ? ({ field_limit: "material’s own", centre: "6 widths", footprint: "as the walls ask", axial_modes: "as the orders", axial_period: "by causality" }[path.split(".").at(-1)] ?? "none") : null,
-    onchange: () => change(path, schema.optional && !input.value.trim() ? null : numeral(input.value)) });
+    onchange: () => change(path, schema.optional && !input.value.trim() ? null : laws.isGain(path) ? laws.gains(input.value) : numeral(input.value)) });
   const field = el("div", { class: "field" }, text, input, path in MOST ? el("small", { class: "hint" }, MOST[path](world.limits)) : null);
   const range = rangeOf(path);
-  if (range) {
+  if (range && !Array.isArray(value)) {
     const slider = el("input", { type: "range", min: 0, max: steps(range), step: 1, "data-path": path, "aria-label": `${text.textContent}, slider`,
       oninput: () => {
         const next = valueAt(range, Number(slider.value));
@@ -365,6 +377,8 @@ function quantity(schema, path, text, value, shared) {
   }
   return field;
 }
+
+const typedAs = (value, unit) => (Array.isArray(value) ? value.join(", ") : editable(value, unit));
 
 function place(slider, value, unit) {
   const range = rangeOf(slider.dataset.path);

@@ -12,7 +12,7 @@ const GOALS = [{ value: "min", label: "as small as possible" }, { value: "max", 
 const SIGNS = [{ value: "<=", label: "at most (≤)" }, { value: ">=", label: "at least (≥)" }];
 const METHODS = [["auto", "automatic"], ["cma-es", "CMA-ES"], ["differential-evolution", "differential evolution"], ["nsga2", "NSGA-II"], ["gradient", "gradients"]].map(([value, label]) => ({ value, label }));
 const EACH = [{ value: "mirror", label: "mirror images" }, { value: "single", label: "none" }];
-const FIRST = ["absorbers.mass", "absorbers.damping", "control.proportional"];
+const FIRST = ["absorbers.mass", "absorbers.damping", "control.proportional", "control[0].proportional"];
 let described, form;
 const study = { variables: [], objectives: [{ metric: null, goal: "min" }, { metric: "", goal: "min" }], constraints: [], evaluations: "100", method: "auto", population: "", seed: "0" };
 

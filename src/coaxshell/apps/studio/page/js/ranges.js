@@ -8,8 +8,8 @@ const RANGES = [
   [/absorbers(\[\d+\])?\.cubic_stiffness$/, { kind: "log", low: 1e14, high: 1e24, zero: true }],
   [/absorbers\.count$/, { kind: "linear", low: 0, high: 60, steps: 60 }],
   [/absorbers(\[\d+\])?\.(offset|angle)$/, { kind: "linear", low: -180, high: 180, steps: 360 }],
-  [/control\.proportional$/, { kind: "signed", low: 1, high: 1e6 }],
-  [/control\.derivative$/, { kind: "signed", low: 0.1, high: 1e4 }],
+  [/control(\[\d+\])?\.proportional$/, { kind: "signed", low: 1, high: 1e6 }],
+  [/control(\[\d+\])?\.derivative$/, { kind: "signed", low: 0.1, high: 1e4 }],
   [/source(\[\d+\])?\.angle$/, { kind: "linear", low: -180, high: 180, steps: 360 }],
   [/source(\[\d+\])?\.(pulse\.)?peak_pressure$/, { kind: "log", low: 1e3, high: 1e8 }],
 ];

@@ -19,7 +19,7 @@ export function fields(each = false) {
 export function spelt(text) {
   const shells = shellCount();
   return text.replace(/\bshells\[(\d+)\]/g, (_, i) => shellName(Number(i), shells)).replace(/\bfluids\[(\d+)\]/g, (_, i) => regionSide(Number(i), shells))
-    .replace(/\b(layer|absorber)s\[(\d+)\]/g, (_, name, i) => `${name} ${Number(i) + 1}`).replaceAll("_", " ");
+    .replace(/\b(layer|absorber)s\[(\d+)\]/g, (_, name, i) => `${name} ${Number(i) + 1}`).replace(/\bcontrol\[(\d+)\]/g, (_, i) => `law ${Number(i) + 1}`).replaceAll("_", " ");
 }
 
 export const unitOf = (path) => fields(true).find((field) => field.path === path)?.unit ?? "";

@@ -38,10 +38,11 @@ export function placeName(path, shells) {
   parts.forEach((part, i) => {
     const before = parts[i - 1];
     if (typeof part !== "number") {
-      if (typeof parts[i + 1] === "number" && /^(shells|fluids|layers|absorbers|source)$/.test(part)) return;
+      if (typeof parts[i + 1] === "number" && /^(shells|fluids|layers|absorbers|source|control)$/.test(part)) return;
       words.push(title(part).replace(/ \(.*\)$/, "").replace(/^[A-Z](?=[a-z])(?!oung|oisson)/, (c) => c.toLowerCase()));
     } else if (before === "shells") words.push(shellPhrase(part, shells));
     else if (before === "fluids") words.push(`fluid ${regionSide(part, shells)}`);
+    else if (before === "control") words.push(`law ${part + 1}`);
     else words.push(`${String(before ?? "item").replace(/s$/, "")} ${part + 1}`);
   });
   return words.join(", ");
