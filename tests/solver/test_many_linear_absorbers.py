@@ -10,6 +10,7 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface import linear, linear_many
 from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
+from coaxshell.solver.interface.linear_around import Around
 from coaxshell.solver.interface.linear_many import Spread
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -32,6 +33,8 @@ LAYOUTS = {
     "even": unequal(EVEN),
     "uneven": unequal(EVEN + DRAWN.uniform(-3.0, 3.0, EVEN.size)),
     "arcs": unequal(EVEN, footprint=0.1),
+    "arcs that differ": unequal(EVEN[:12], footprint=0.1) + unequal(EVEN[12:], footprint=0.2),
+    "mirror images": (_HALF := unequal(EVEN[:12] + 7.5)) + tuple(one.model_copy(update={"angle": -one.angle}) for one in _HALF),
     "sides that differ": unequal(
         EVEN, law=cx.laws.Sides(inner=cx.laws.Maxwell(stiffness=1e9, relaxation_time=1e-4), outer=cx.laws.Linear(stiffness=1e8))
     ),
@@ -63,11 +66,11 @@ def test_what_does_not_converge_is_solved_by_matrices(structure: StructureSpectr
     points = InterfacePoints(structure.problem, links, MODES)
     dense = linear.solve_linear(structure, links, points)
     monkeypatch.setattr(linear_many, "POINTS", 20)
-    monkeypatch.setattr(linear_many, "_STEPS", 3)
-    spread = Spread.of(structure.problem, links, points)
+    monkeypatch.setattr(linear_many, "STEPS", 3)
+    spread = Around.of(structure.problem, links, MODES)
     assert spread is not None
     nodes, excited = structure.grid.nodes[:3], points.evaluate(structure.surface_motion[..., :3])
-    _, reached = linear_many.iterate(spread, nodes, structure.compliance[..., :3], excited, float(np.abs(excited).max()))
+    _, reached = spread.iterate(nodes, structure.compliance[..., :3], excited, float(np.abs(excited).max()))
     assert not reached.any()
     np.testing.assert_allclose(linear.solve_linear(structure, links, points).force, dense.force, rtol=1e-12)
 

@@ -20,12 +20,15 @@ from coaxshell.numerics.laplace_grid import Nodes
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, SideAdmittance, side_admittance
-from coaxshell.solver.interface.linear_many import NODES, Spread, iterate
+from coaxshell.solver.interface.linear_around import Around
+from coaxshell.solver.interface.linear_many import NODES, Spread
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.spectral import map_node_blocks
 
 BLOCK_BYTES = 8 * 1024 * 1024
 """Of the matrices of a block of nodes."""
+_TOLD = 8
+"""Blocks of which one node tells whether iteration pays."""
 
 
 class LinearStructure(Protocol):
@@ -79,17 +82,21 @@ def solve_linear(
     excited = points.evaluate(structure.surface_motion)
     force = np.empty((2 * count, nodes.size), np.complex128)
     displacement = np.empty((count, nodes.size), np.complex128)
-    spread = Spread.of(structure.problem, absorbers, points)
+    spread: Spread | Around | None = Spread.of(structure.problem, absorbers, points)
+    if spread is not None:
+        spread = Around.of(structure.problem, absorbers, structure.modes) or spread
     width = max(4, BLOCK_BYTES // (16 * (2 * count) ** 2)) if spread is None else NODES
     blocks = [slice(a, min(a + width, nodes.size)) for a in range(0, nodes.size, width)]
     largest = float(np.abs(excited).max(initial=0.0))
+    pays = [False] * len(blocks) if spread is None else _paying(spread, structure, blocks, excited, largest)
+    tried = {block.start for block, one in zip(blocks, pays, strict=True) if one}
 
     def work(block: slice) -> None:
         law, compliance = side_admittance(absorbers, nodes[block]), structure.compliance[..., block]
         if spread is None:
             w = _dense(points, law, compliance, excited[:, block])
         else:
-            w = _iterated(spread, points, nodes[block], compliance, excited[:, block], largest)
+            w = _iterated(spread, points, nodes[block], compliance, excited[:, block], largest, tried=block.start in tried)
         inner, outer = w[:count], w[count:]
         force[:count, block] = -(law.inner.T * inner + law.other.T * outer)
         force[count:, block] = -(law.other.T * inner + law.outer.T * outer)
@@ -113,15 +120,31 @@ def _dense(points: InterfacePoints, law: SideAdmittance, compliance: ComplexArra
 
 
 def _iterated(
-    spread: Spread, points: InterfacePoints, s: ComplexArray, compliance: ComplexArray, excited: ComplexArray, largest: float
+    spread: Spread | Around,
+    points: InterfacePoints,
+    s: ComplexArray,
+    compliance: ComplexArray,
+    excited: ComplexArray,
+    largest: float,
+    *,
+    tried: bool,
 ) -> ComplexArray:
-    """Return the same by iteration; where that does not converge, which one node of the block tells, by matrices."""
-    middle = slice(s.size // 2, s.size // 2 + 1)
-    _, pays = iterate(spread, s[middle], compliance[..., middle], excited[:, middle], largest)
+    """Return the same by iteration if it is tried; at nodes where it is not or does not converge, by the matrices of one after another."""
     w, reached = np.empty_like(excited), np.zeros(s.size, dtype=np.bool_)
-    if pays.all():
-        w, reached = iterate(spread, s, compliance, excited, largest)
+    if tried:
+        w, reached = spread.iterate(s, compliance, excited, largest)
     for k in np.flatnonzero(~reached):
         one = slice(k, k + 1)
         w[:, one] = _dense(points, side_admittance(spread.absorbers, s[one]), compliance[..., one], excited[:, one])
     return w
+
+
+def _paying(spread: Spread | Around, structure: LinearStructure, blocks: list[slice], excited: ComplexArray, largest: float) -> list[bool]:
+    """Return in which blocks of nodes iteration is tried, which one node of several tells."""
+    found: list[bool] = []
+    for first in range(0, len(blocks), _TOLD):
+        middle = blocks[min(first + _TOLD // 2, len(blocks) - 1)].start
+        one = slice(middle, middle + 1)
+        _, reached = spread.iterate(structure.grid.nodes[one], structure.compliance[..., one], excited[:, one], largest)
+        found += [bool(reached.all())] * min(_TOLD, len(blocks) - first)
+    return found

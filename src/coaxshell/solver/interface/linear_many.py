@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.numerics.arrays import ComplexArray, real_product
+from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, SideAdmittance, side_admittance
 from coaxshell.solver.point_forces import point_force_shares
 from coaxshell.solver.scaling import Problem
@@ -27,7 +27,7 @@ POINTS = 160
 """Points from which on iterating is tried: with fewer a dense solve takes less."""
 NODES = 32
 """Nodes solved together."""
-_STEPS = 40
+STEPS = 40
 """Steps after which a dense solve would have taken less."""
 _TOLERANCE = 1e-15
 """Of the walls' displacement that is still missing, relative to the largest of all nodes."""
@@ -68,6 +68,12 @@ class Spread:
         each_side = len(problem.surfaces) == 2 and bool((absorbers.surfaces == [[0], [1]]).all())
         plain = problem.point_force_shares is point_force_shares
         return cls(problem, absorbers, points) if each_side and plain and points.count >= POINTS else None
+
+    def iterate(
+        self, s: ComplexArray, compliance: ComplexArray, excited: ComplexArray, largest: float
+    ) -> tuple[ComplexArray, npt.NDArray[np.bool_]]:
+        """Return the displacements of the points with absorbers, and at which nodes they were reached: see :func:`iterate`."""
+        return iterate(self, s, compliance, excited, largest)
 
     def diagonal(self, law: SideAdmittance) -> ComplexArray:
         """Return the diagonal of D, shape (2, 2, orders, nodes)."""
@@ -129,27 +135,32 @@ def iterate(
     changed[0, 0] += 1.0
     changed[1, 1] += 1.0
     smooth = _inverse(changed)
-    enough = np.maximum(_TOLERANCE * largest, _OWN * np.abs(bare).max(axis=(0, 1)))
+    enough = precision(bare, largest)
     pressure, towards, motion = np.zeros((3, 2, spread.orders, s.size), np.complex128)
     missing = -spread.pressed(law, bare)
     last, done = np.ones(s.size, np.complex128), np.zeros(s.size, dtype=np.bool_)
-    for step in range(_STEPS):
+    for step in range(STEPS):
         there = _times(smooth, missing)
         moves = _times(answer, there)
         done = np.abs(moves).sum(axis=(0, 1)) <= enough
         if done.all():
             break
         product = (missing * moves * spread.weights).sum(axis=(0, 1))
-        ratio = _over(product, last, ~done) if step else np.zeros(s.size)
+        ratio = over(product, last, ~done) if step else np.zeros(s.size)
         towards, motion, last = there + ratio * towards, moves + ratio * motion, product
         image = towards + spread.pressed(law, spread.moved(motion))
-        length = _over(product, (image * motion * spread.weights).sum(axis=(0, 1)), ~done)
+        length = over(product, (image * motion * spread.weights).sum(axis=(0, 1)), ~done)
         pressure += length * towards
         missing -= length * image
     reached = bare + spread.moved(_times(answer, pressure))
     return reached.reshape(excited.shape), done
 
 
-def _over(upper: ComplexArray, lower: ComplexArray, where: npt.NDArray[np.bool_]) -> ComplexArray:
+def precision(bare: ComplexArray, largest: float) -> FloatArray:
+    """Return how small a missing displacement is small enough at each node; ``bare`` is (2, N, nodes)."""
+    return np.asarray(np.maximum(_TOLERANCE * largest, _OWN * np.abs(bare).max(axis=(0, 1))))
+
+
+def over(upper: ComplexArray, lower: ComplexArray, where: npt.NDArray[np.bool_]) -> ComplexArray:
     """Return the quotient at some nodes, 0 at the others."""
     return np.divide(upper, lower, out=np.zeros_like(upper), where=where & (lower != 0.0))

@@ -15,6 +15,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.interface.absorbers import AbsorberSet, admittance
 from coaxshell.solver.interface.linear import LinearAbsorberSpectra, LinearStructure
+from coaxshell.solver.interface.signed_orders import of_parities, signed_orders
 
 _SAME_ANGLE = 1e-9
 
@@ -41,7 +42,7 @@ def solve_ring(structure: LinearStructure, absorbers: AbsorberSet) -> LinearAbso
     orders = np.arange(-structure.modes.max_order, structure.modes.max_order + 1)
     start = float(absorbers.every_angle[0])
     phase = np.exp(1j * np.radians(orders * start))
-    linear = _signed(structure.surface_motion[pair])
+    linear = signed_orders(structure.surface_motion[pair])
     density = count / (2.0 * np.pi * np.array([one.radius for one in surfaces[pair]]))
     means = None if absorbers.footprint is None else absorbers.means(structure.problem, structure.modes)[:, 0]
     own, other, mass = (x[:, 0] for x in admittance(absorbers, nodes))
@@ -67,7 +68,7 @@ def solve_ring(structure: LinearStructure, absorbers: AbsorberSet) -> LinearAbso
         force += around * line_force[:, None, :]
         displacement += around * mass * (amplitude[0] + amplitude[1])
     full = np.zeros((len(surfaces), absorbers.parities, structure.modes.count, nodes.size), np.complex128)
-    full[pair] = _parities(pressure, absorbers.parities)
+    full[pair] = of_parities(pressure, absorbers.parities)
     return LinearAbsorberSpectra(force.reshape(2 * absorbers.count, -1), displacement, full)
 
 
@@ -78,20 +79,3 @@ def _two_by_two(receptance: ComplexArray, own: ComplexArray, other: ComplexArray
     c, d = g10 * own + g11 * other, 1.0 + g10 * other + g11 * own
     determinant = a * d - b * c
     return np.stack([(d * excited[0] - b * excited[1]) / determinant, (a * excited[1] - c * excited[0]) / determinant])
-
-
-def _signed(parities: ComplexArray) -> ComplexArray:
-    """Return amplitudes of e^{i m theta}, m = -M..M, shape (shells, 2M + 1, nodes), from those of cos and sin."""
-    cosine = parities[:, 0]
-    sine = parities[:, 1] if parities.shape[1] == 2 else np.zeros_like(cosine)
-    positive, negative = 0.5 * (cosine - 1j * sine), 0.5 * (cosine + 1j * sine)
-    return np.concatenate([negative[:, :0:-1], cosine[:, :1], positive[:, 1:]], axis=1)
-
-
-def _parities(signed: ComplexArray, count: int) -> ComplexArray:
-    """Return amplitudes of cos, and of sin if ``count`` is 2, from those of e^{i m theta}."""
-    order = signed.shape[1] // 2
-    positive, negative = signed[:, order:], signed[:, order::-1]
-    cosine, sine = positive + negative, 1j * (positive - negative)
-    cosine[:, 0] = signed[:, order]
-    return np.stack([cosine, sine][:count], axis=1)
