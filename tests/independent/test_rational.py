@@ -9,9 +9,9 @@ import coaxshell as cx
 from coaxshell.apps.verification.independent import RadialElements
 from coaxshell.errors import InputError
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.segmented_stability import fastest_growth as fastest_pattern
-from coaxshell.solver.segmented_stability import growing
 from coaxshell.solver.stability import fastest_growth, unstable_poles
+from coaxshell.solver.tied_stability import fastest_growth as fastest_pattern
+from coaxshell.solver.tied_stability import growing
 
 ROLES = {f"shells[{i}].layers[{j}].role": "self-sensing" for i in (0, 1) for j in (0, 2)}
 CORNER = 2.0 * np.pi * 2e4
@@ -23,10 +23,12 @@ def with_law(struck, gain: float, delay: float | str) -> cx.System:
     return struck().with_overrides({**ROLES, "control": cx.Feedback(**law, transducers="electrodes")})
 
 
+@pytest.mark.parametrize("matrix", [None, [[1.0, 0.6], [-0.4, 0.8]]], ids=["each its own", "across shells"])
 @pytest.mark.parametrize("delay", [0.0, "8 us"])
-def test_a_law_of_second_order(struck, distances, delay):
+def test_a_law_of_second_order(struck, distances, delay, matrix):
     # Measured 3.7e-8 or less.
-    assert max(distances(with_law(struck, 1.0, delay), 1e-3, 2e-3, duration=1.2, modes=3).values()) < 2e-7
+    system = with_law(struck, 1.0, delay).with_overrides({"control.matrix": matrix})
+    assert max(distances(system, 1e-3, 2e-3, duration=1.2, modes=3).values()) < 2e-7
 
 
 @pytest.mark.parametrize(

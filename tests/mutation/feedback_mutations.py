@@ -104,4 +104,20 @@ FEEDBACK = (
         "a polynomial in the common factor, from where it was evaluated",
         "solver/test_several_laws.py",
     ),
+    Mutation(
+        "matrix-of-shells",
+        "solver/electrode_loops.py",
+        "sum(shares[a, c] * answered[c, b]",
+        "sum(shares[c, a] * answered[c, b]",
+        "rows of a matrix are what actuators answer",
+        "solver/test_matrix_feedback.py",
+    ),
+    Mutation(
+        "passive-matrix",
+        "solver/tied_stability.py",
+        "factors.append(-factor * wall.radius)",
+        "factors.append(-factor)",
+        "power of a wall is that of its whole circumference",
+        "solver/test_matrix_feedback.py",
+    ),
 )

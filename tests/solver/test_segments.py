@@ -16,8 +16,8 @@ from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.segmented_stability import counted, determinants, fastest_growth, growing, never_gives
 from coaxshell.solver.stability import Contour
+from coaxshell.solver.tied_stability import counted, determinants, fastest_growth, growing, never_gives
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 PAIRS = presets.load("electrodes")
@@ -132,7 +132,7 @@ def test_collocated_segments_are_passive():
     problem = dimensionless(cut(proportional=50.0, derivative=10.0, segments=7, dead=[0]))
     assert growing(problem, 16, 0.5) is None
     contour = Contour.of(problem, Modes.up_to(16), 0.5)
-    assert never_gives(problem, contour)
+    assert never_gives(problem, contour, 12)
     assert counted(problem, Modes.up_to(16), contour) is None  # counted nevertheless: no pole
 
 

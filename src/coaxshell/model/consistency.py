@@ -10,6 +10,7 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Vacuum
+from coaxshell.model.gains import wired
 from coaxshell.model.layers import Shell, serves
 from coaxshell.model.parts import SystemParts, laws_of, shells_under
 from coaxshell.model.sea import require_possible
@@ -161,6 +162,10 @@ def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:
             )
     if len(set(numbers)) < len(numbers):
         raise InputError(f"{where}.shells", f"{list(law.shells)!r} names a shell twice", "must name each shell once")
+    matrix = getattr(law, "matrix", None)
+    if matrix is not None and len(matrix) != len(numbers):
+        found = f"the matrix has {len(matrix)} rows for {len(numbers)} shell(s) under control"
+        raise InputError(f"{where}.matrix", found, f"must have {len(numbers)} rows of {len(numbers)} numbers")
     for number in numbers:
         shell_ = system.shells[number]
         if isinstance(shell_, RigidShell):
@@ -168,7 +173,7 @@ def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:
                 f"{where}.shells", f"shells[{number}] is rigid and cannot be controlled", "name the shells to control, e.g. shells = [1]"
             )
         for role in ("sensor", "actuator"):
-            if getattr(shell_, role) is None:
+            if getattr(shell_, role) is None and wired(system, number, role):
                 raise InputError(
                     f"{where}.shells",
                     f"shells[{number}] has no {role} layer",

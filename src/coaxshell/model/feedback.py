@@ -63,6 +63,27 @@ def _weights(value: Any) -> int | tuple[float, ...] | None:
     return tuple(found)
 
 
+def _matrix(value: Any) -> tuple[tuple[float, ...], ...] | None:
+    """Return the rows of a square matrix, not all 0; None stays."""
+    value = plain(value.tolist() if hasattr(value, "tolist") else value)
+    if value is None:
+        return None
+    remedy = "give a row for each shell under control, with a number for each, as in [[1, 0.5], [0.5, 1]]"
+    if not isinstance(value, list | tuple) or not value or not all(isinstance(row, list | tuple) for row in value):
+        raise InputError("", f"{shown(value)} is not allowed", remedy)
+    rows = []
+    for place, row in enumerate(value):
+        if len(row) != len(value):
+            raise InputError(f"[{place}]", f"has {len(row)} numbers, and there are {len(value)} rows", remedy)
+        try:
+            rows.append(tuple(to_si(plain(one), DIMENSIONS["number"]) for one in row))
+        except InputError as error:
+            raise InputError(f"[{place}]", error.problem, error.remedy) from None
+    if not any(map(any, rows)):
+        raise InputError("", "holds nothing but 0: nothing is fed back", "leave control out, or give an entry that is not 0")
+    return tuple(rows)
+
+
 Coefficients = Annotated[tuple[float, ...], BeforeValidator(_coefficients), WithJsonSchema(_NUMBERS)]
 
 
@@ -85,6 +106,8 @@ class Feedback(Described):
     """The same of the amplifier that drives the actuator (Hz)."""
     weights: Annotated[int | tuple[float, ...] | None, BeforeValidator(_weights)] = None
     """Modal filter: the highest order that is fed back, or a list of weights of the orders 0, 1, 2, ..., 0 beyond; else all alike."""
+    matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(_matrix)] = None
+    """Who reads whom, a row for each shell as "shells" has them: its actuators get H of the sum of the row times all readings."""
     transducers: Transducers = "paper"
     """What reads and drives: "paper" reads curvature and drives by a pressure alone, "electrodes" strain, by traction and moment too."""
     shells: Annotated[tuple[int | End, ...] | Literal["all"], BeforeValidator(_shells)] = "all"
@@ -172,6 +195,8 @@ class Feedback(Described):
         if self.dead and self.weights is not None:
             found = "a modal filter reads all segments, and some are dead"
             raise InputError("weights", found, "leave weights out, which are those of orders, or dead")
+        if self.matrix is not None and self.transducers != "electrodes":
+            raise InputError("matrix", "is not known to the paper's law", 'use transducers = "electrodes", or leave matrix out')
         if self.denominator == (0.0,):
             raise InputError("denominator", "is zero", "give at least one coefficient that is not, such as [1]")
         above = len(self.numerator) - len(self.denominator)

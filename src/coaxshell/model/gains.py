@@ -27,10 +27,38 @@ def segments_of(system: SystemParts) -> int | None:
     return next((law.segments for law in laws_of(system) if law.segments is not None), None)
 
 
+def ties_shells(system: SystemParts) -> bool:
+    """Return whether the sensors of one shell drive another one's actuators."""
+    return any(isinstance(law, Feedback) and law.matrix is not None for law in laws_of(system))
+
+
+def reads_of(system: SystemParts, shell: int) -> dict[int, float] | None:
+    """Return by how much a shell's actuators count the reading of each shell, by number; None if they know their own alone."""
+    law = law_of(system, shell)
+    if not isinstance(law, Feedback) or law.matrix is None:
+        return None
+    named = _in_order(system, law)
+    return dict(zip(named, law.matrix[named.index(shell)], strict=True))
+
+
+def wired(system: SystemParts, shell: int, role: str) -> bool:
+    """Return whether the law of a shell asks for its layers of a role, "sensor" or "actuator": unless its matrix leaves them out."""
+    law = law_of(system, shell)
+    if not isinstance(law, Feedback) or law.matrix is None:
+        return law is not None
+    place = _in_order(system, law).index(shell)
+    return any(law.matrix[place] if role == "actuator" else (row[place] for row in law.matrix))
+
+
+def _in_order(system: SystemParts, law: PDControl | Feedback) -> list[int]:
+    """Return the shells of a law by number, in the order in which they were named."""
+    return list(range(len(system.shells))) if law.shells == "all" else [system.shell_index(one) for one in law.shells]
+
+
 def gains_of(system: SystemParts, shell: int) -> tuple[float, float]:
     """Return k_p and k_d of a shell under control, by its number; lists of gains are in the order in which shells were named."""
     control = law_of(system, shell)
     assert isinstance(control, PDControl)
-    place = shell if control.shells == "all" else [system.shell_index(one) for one in control.shells].index(shell)
+    place = _in_order(system, control).index(shell)
     proportional, derivative = (x[place] if isinstance(x, tuple) else x for x in (control.proportional, control.derivative))
     return proportional, derivative

@@ -10,7 +10,8 @@ from typing import Any
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
 from coaxshell.model.control import PDControl
-from coaxshell.model.gains import gains_of
+from coaxshell.model.feedback import Feedback
+from coaxshell.model.gains import gains_of, reads_of
 from coaxshell.model.materials import Material, as_material, get, names
 from coaxshell.model.naming import slug, suggestion
 from coaxshell.model.parts import SystemParts, laws_of, shells_under
@@ -109,6 +110,9 @@ def canonical(system: SystemParts) -> dict[str, Any]:
                 gains = [gains_of(system, number) for number in numbers]
                 each = zip(("proportional", "derivative"), zip(*gains, strict=True), strict=True)
                 written |= {name: x[0] if len(set(x)) == 1 else list(x) for name, x in each}
+            rows = [reads_of(system, number) for number in numbers]
+            if isinstance(law, Feedback) and law.matrix is not None:
+                written["matrix"] = [[row[number] for number in numbers] for row in rows if row is not None]
             written["shells"] = list(numbers)
     return _nameless(data)  # type: ignore[no-any-return]
 

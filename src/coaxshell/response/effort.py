@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model.gains import law_of
+from coaxshell.model.gains import law_of, wired
 from coaxshell.model.parts import laws_of, shells_under
 from coaxshell.model.places import shell_name
 from coaxshell.model.prefixes import engineering
@@ -130,7 +130,8 @@ def control_effort(motion: WallMotion, segment: Segment = None, **limits: float 
         If nothing is controlled, a limit is unknown or not positive, or the run is one of three dimensions.
     """
     solution = motion.solution
-    controlled = solution.problem.system.controlled_shells
+    system = solution.problem.system
+    controlled = [i for i in system.controlled_shells if wired(system, i, "actuator")]
     if not controlled:
         raise InputError("control", "nothing is fed back", "give the system a PDControl or a Feedback")
     if solution.along is not None:
@@ -191,7 +192,8 @@ def electrical_power(motion: WallMotion) -> xr.Dataset:
 
     solution = motion.solution
     system = solution.problem.system
-    shells = [i for law in laws_of(system) if law.transducers == "electrodes" for i in shells_under(system, law)]
+    electrodes = [law for law in laws_of(system) if law.transducers == "electrodes"]
+    shells = [i for law in electrodes for i in shells_under(system, law) if wired(system, i, "actuator")]
     if not shells or solution.along is not None:
         remedy = 'use transducers = "electrodes", in two dimensions'
         raise InputError("control", "no shell is driven by electrodes whose charge is known", remedy)

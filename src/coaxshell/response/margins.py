@@ -7,6 +7,7 @@ from typing import NamedTuple, Unpack
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.gains import segments_of
 from coaxshell.model.loading import SystemLike, as_system
 from coaxshell.model.places import shell_name
 from coaxshell.model.system import System
@@ -15,11 +16,12 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.stability import require_stable_waves
-from coaxshell.solver.dimensions import require_whole_electrodes
+from coaxshell.solver.dimensions import require_loops_alone
 from coaxshell.solver.margins import Loop, LoopMargins, loops, margins_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.tied_stability import require_stable_ties
 
 _DEGREES, _HERTZ, _SECONDS, _FACTOR = "deg", "Hz", "s", "1"
 _WAVES = 6
@@ -141,14 +143,15 @@ def _worst_waves(system: System, settings: Settings) -> tuple[xr.Dataset, list[L
 
 
 def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
-    require_whole_electrodes(system, "the list of margins by order", "leave segments out")
+    if segments_of(system) is not None:
+        require_loops_alone(system, "the list of margins by order", "leave {} out")
     if not isinstance(settings.modes, int):
         raise InputError("modes", f"{settings.modes!r} is not allowed here", "give the highest order")
     problem = dimensionless(system, settings.dimensions, settings)
     if all(wall.gains is None or wall.gains.zero for wall in problem.shells):
         raise InputError("control", "nothing is fed back", "give the system a PDControl or a Feedback")
     if settings.dimensions == 2:
-        require_stable(problem, settings.modes, settings.duration)
+        (require_stable_ties if problem.tied else require_stable)(problem, settings.modes, settings.duration)
     return problem, Modes.up_to(settings.modes)
 
 

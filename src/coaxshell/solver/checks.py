@@ -13,7 +13,7 @@ from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.bubble import first_pulse
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, saturates
+from coaxshell.model.gains import law_of, saturates, segments_of, wired
 from coaxshell.model.parts import laws_of
 from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
@@ -174,7 +174,7 @@ def actuators(*motions: ModalSolution) -> list[str]:
     warnings, problem = [], motions[0].problem
     for i, shell in enumerate(problem.shells):
         control = law_of(problem.system, i)
-        if control is None or shell.gains is None:
+        if control is None or shell.gains is None or not wired(problem.system, i, "actuator"):
             continue
         limit = voltage_limit(problem, i)
         found = [one for one in (largest_demand(motion, i, limit) for motion in motions) if one is not None]
@@ -202,7 +202,7 @@ def actuators(*motions: ModalSolution) -> list[str]:
 def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
     """Return the warning that feedback by electrodes is computed without any delay, with that which it would stand."""
     laws = [law for law in laws_of(problem.system) if law.transducers == "electrodes"]
-    if not laws or problem.segmented:
+    if not laws or segments_of(problem.system) is not None:
         return []
     assert isinstance(settings.modes, int)
     margin = delay_margin(problem, settings.modes, settings.duration)

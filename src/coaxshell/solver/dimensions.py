@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import limits_voltages, saturates, segments_of
+from coaxshell.model.gains import limits_voltages, saturates, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -33,7 +33,7 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
     _require_linear_electrodes(system)
-    _require_segments(system, dimensions)
+    _require_ties(system, dimensions)
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
         return
@@ -55,24 +55,27 @@ def _require_linear_electrodes(system: System) -> None:
         raise InputError("control.saturation", problem, "leave the absorbers out, or use saturation = false and compare voltage and limit")
 
 
-def require_whole_electrodes(system: System, what: str, remedy: str) -> None:
-    """Raise InputError if electrodes are cut into segments, whose feedback ties orders to each other, which *what* does not know."""
+def require_loops_alone(system: System, what: str, remedy: str) -> None:
+    """Raise InputError if feedback ties orders or shells to each other, which *what* does not know; "{}" in the remedy is left out."""
     cut = segments_of(system)
     if cut is not None:
         problem = f"{cut} segments tie orders to each other, which {what} does not know yet"
-        raise InputError("control.segments", problem, remedy)
+        raise InputError("control.segments", problem, remedy.format("segments"))
+    if ties_shells(system):
+        problem = f"the sensors of one shell drive another, which {what} does not know yet"
+        raise InputError("control.matrix", problem, remedy.format("matrix"))
 
 
-def _require_segments(system: System, dimensions: int) -> None:
-    """Raise InputError if electrodes are cut into segments where that is not solved yet."""
-    whole = "leave segments out"
+def _require_ties(system: System, dimensions: int) -> None:
+    """Raise InputError if feedback ties orders or shells to each other where that is not solved yet."""
+    whole = "leave {} out"
     if dimensions == 3:
-        require_whole_electrodes(system, "the sum over axial wavenumbers", f"use dimensions=2, or {whole}")
+        require_loops_alone(system, "the sum over axial wavenumbers", f"use dimensions=2, or {whole}")
     if system.absorber_list:
-        require_whole_electrodes(system, "the march of absorbers", f"leave the absorbers out, or {whole}")
+        require_loops_alone(system, "the march of absorbers", f"leave the absorbers out, or {whole}")
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is not None:
-        require_whole_electrodes(system, f"shells[{solid}], an elastic wall,", f'use theory = "thin", or {whole}')
+        require_loops_alone(system, f"shells[{solid}], an elastic wall,", f'use theory = "thin", or {whole}')
 
 
 def require_cubic_springs(system: System, what: str, remedy: str) -> None:
@@ -89,7 +92,7 @@ def require_cubic_springs(system: System, what: str, remedy: str) -> None:
 
 def require_mid_surfaces(system: System) -> None:
     """Raise InputError if the fluids wet the true faces of a wall, whose loads the direct engine does not know, or of other feedback."""
-    require_whole_electrodes(system, "the direct engine", 'use engine="spectral"')
+    require_loops_alone(system, "the direct engine", 'use engine="spectral"')
     if any(isinstance(law, Feedback) for law in laws_of(system)):
         raise InputError("control", "Feedback is not known to the direct engine, which steps PDControl", 'use engine="spectral"')
     if any(law.transducers == "electrodes" for law in laws_of(system)):

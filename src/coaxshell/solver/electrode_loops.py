@@ -2,24 +2,27 @@
 
 In each pattern q (:mod:`coaxshell.solver.electrode_patterns`) the walls under control have one loop,
 
-    phi_q = phi0_q + C_q u_q,      u_q = H_q phi_q,      C_q = sum_m R_qm C_m L_mq,
+    phi_q = phi0_q + C_q u_q,      u_q = H_q K phi_q,      C_q = sum_m R_qm C_m L_mq,
 
-C_m what they read in order m per volt of order m without feedback, so that u_q = (1 - H C_q)^-1 H phi0_q, as many equations as walls.
+C_m what they read in order m per volt of order m without feedback, so that u_q = (1 - H K C_q)^-1 H K phi0_q, as many equations as walls.
+K says by how much each wall answers the reading of each, 1 where every wall answers its own.
 Dead segments tie all patterns: they are those on which further voltages e, of which no loop knows, leave nothing,
 
-    u_q = (1 - H C_q)^-1 (H phi0_q + e_q),      u = 0 on every dead segment.
+    u_q = (1 - H K C_q)^-1 (H K phi0_q + e_q),      u = 0 on every dead segment.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.electrode_patterns import Patterns
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.voltage_response import VoltageResponse, gains_of_wall
+from coaxshell.structure.tied_wall import TiedWall
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +35,15 @@ class ElectrodeLoops:
     law : ndarray, shape (walls, patterns, nodes)
         H.
     matrix : ndarray, shape (patterns, nodes, walls, walls)
-        1 - H C_q.
+        1 - H K C_q.
+    shares : ndarray, shape (walls, walls)
+        K.
     """
 
     patterns: Patterns
     law: ComplexArray
     matrix: ComplexArray
+    shares: FloatArray
 
     @classmethod
     def of(cls, problem: Problem, response: VoltageResponse, patterns: Patterns, s: ComplexArray) -> ElectrodeLoops:
@@ -46,24 +52,30 @@ class ElectrodeLoops:
         laws = [gains_of_wall(problem, i).at(s, numbers) for i in response.shells]
         law = np.stack([np.broadcast_to(one, (numbers.count, s.size)) for one in laws])
         matrix = np.empty((numbers.count, s.size, count, count), np.complex128)
-        for a, row in enumerate(patterns.responses(response.read)):
-            for b, own in enumerate(row):
-                matrix[..., a, b] = float(a == b) - law[a] * own
-        return cls(patterns, law, matrix)
+        shares, answered = shares_of(problem, response.shells), patterns.responses(response.read)
+        for a in range(count):
+            for b in range(count):
+                read = sum(shares[a, c] * answered[c, b] for c in range(count) if shares[a, c])
+                matrix[..., a, b] = float(a == b) - law[a] * read
+        return cls(patterns, law, matrix, shares)
 
     @property
     def inverse(self) -> ComplexArray:
-        """(1 - H C_q)^-1, shape (patterns, nodes, walls, walls)."""
+        """(1 - H K C_q)^-1, shape (patterns, nodes, walls, walls)."""
         return np.asarray(np.linalg.inv(self.matrix), dtype=np.complex128)
 
     def asked(self, readings: ComplexArray) -> ComplexArray:
         """Return u_q, (walls, patterns, nodes), from what is read of the motion without voltages; dead segments as if they were alive."""
-        return times(self.inverse, self.law * readings)
+        return times(self.inverse, self._without_answers(readings))
+
+    def _without_answers(self, readings: ComplexArray) -> ComplexArray:
+        """Return H K phi0_q."""
+        return np.asarray(self.law * np.einsum("ij,jqk->iqk", self.shares, readings))
 
     def voltages(self, readings: ComplexArray) -> ComplexArray:
         """Return u_q with dead segments at ground."""
         inverse, dead = self.inverse, list(self.patterns.dead)
-        found = times(inverse, self.law * readings)
+        found = times(inverse, self._without_answers(readings))
         if not dead:
             return found
         left = np.einsum("dq,iqk->kid", self.patterns.evaluate[dead], found)
@@ -79,9 +91,9 @@ class ElectrodeLoops:
         return np.asarray(found.reshape(len(found), size, size))
 
     def factors(self) -> ComplexArray:
-        """Return |1 - H C_q|, (patterns, nodes), and where dead segments tie the patterns one row more, whose product is that of all.
+        """Return |1 - H K C_q|, (patterns, nodes), and where dead segments tie the patterns one row more, whose product is that of all.
 
-        Of the loops of live ones alone it is the product over patterns times |(1 - H C)^-1| on the dead segments, the complementary minor.
+        Of the loops of live ones alone it is the product over patterns times |(1 - H K C)^-1| on dead segments, the complementary minor.
         """
         each = np.linalg.det(self.matrix)
         if not self.patterns.dead:
@@ -89,9 +101,20 @@ class ElectrodeLoops:
         return np.concatenate([each, np.linalg.det(self.between_dead(self.inverse))[None]])
 
     def determinants(self) -> ComplexArray:
-        """Return |1 - H C_q|, (patterns, nodes); where dead segments tie the patterns that of all together, (1, nodes)."""
+        """Return |1 - H K C_q|, (patterns, nodes); where dead segments tie the patterns that of all together, (1, nodes)."""
         each = self.factors()
         return each.prod(axis=0, keepdims=True) if self.patterns.dead else each
+
+
+def shares_of(problem: Problem, shells: Sequence[int]) -> FloatArray:
+    """Return by how much the actuators of each wall under control answer the reading of each, (walls, walls)."""
+    found = np.eye(len(shells))
+    for place, shell in enumerate(shells):
+        wall = problem.shells[shell]
+        shares = wall.shares if isinstance(wall, TiedWall) else None
+        if shares is not None:
+            found[place] = [shares.get(other, 0.0) for other in shells]
+    return found
 
 
 def times(matrix: ComplexArray, vector: ComplexArray) -> ComplexArray:

@@ -1,5 +1,7 @@
 """How far a stable loop is from growing: gain, phase and delay margins of the feedback of each shell, by order.
 
+Where walls answer each other the loop of one is all that its amplifier drives, of the same determinants.
+
 With the loops of all other shells closed, that of one is 1 - L = D_m/D_m', D_m' without its feedback. On Re s = sigma_0, the least growth
 that counts, it would vanish if the gain were 1/L where L is real and positive, if the phase turned by arg L where |L| = 1, and if the
 answer came later by (arg L)/omega there. Between nodes log L is taken as linear.
@@ -7,6 +9,7 @@ answer came later by (arg L)/omega there. Between nodes log L is taken as linear
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import NamedTuple
@@ -16,8 +19,11 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import Contour, along_alone, opened
+from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 512
 _FURTHER = 10.0
@@ -66,6 +72,9 @@ def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     passive = problem.open_loop
     nodes = contour._replace(fades=_FURTHER * contour.fades).nodes
+    if problem.tied:
+        each = zip(controlled(problem), _tied(problem, passive, modes, nodes), strict=True)
+        return {shell: Loop(nodes, one) for shell, one in each if one.any()}
     values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
     without = [_without(problem, shell) for shell in shells]
     for start in range(0, nodes.size, _BLOCK):
@@ -75,6 +84,27 @@ def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
         for loop, others in zip(values, without, strict=True):
             loop[:, start : start + _BLOCK] = 1.0 - closed / open_loop.closed(others, block, modes)
     return {shell: Loop(nodes, loop) for shell, loop in zip(shells, values, strict=True)}
+
+
+def _matrices(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> Iterator[tuple[slice, ComplexArray]]:
+    """Yield 1 - H K C of blocks of nodes, (orders, nodes, walls, walls), where the actuators of walls answer other walls."""
+    for start in range(0, nodes.size, _BLOCK):
+        block = slice(start, start + _BLOCK)
+        answers = VoltageResponse.at(passive, problem, modes, nodes[block])
+        yield block, ElectrodeLoops.of(problem, answers, OrderPatterns(modes.orders, 1), nodes[block]).matrix
+
+
+def _tied(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> ComplexArray:
+    """Return L of what the actuators of each wall answer, cut at their amplifier, (walls, orders, nodes); 0 of walls without actuators."""
+    walls = len(controlled(problem))
+    values = np.empty((walls, modes.count, nodes.size), dtype=np.complex128)
+    for block, matrix in _matrices(problem, passive, modes, nodes):
+        whole = np.linalg.det(matrix)
+        for wall, loop in enumerate(values):
+            others = matrix.copy()
+            others[:, :, wall] = np.eye(walls)[wall]
+            loop[:, block] = 1.0 - whole / np.linalg.det(others)
+    return values
 
 
 def loop_margins(problem: Problem, modes: Modes, least: float) -> dict[int, LoopMargins]:
@@ -89,6 +119,10 @@ def common_loop(problem: Problem, modes: Modes, least: float) -> list[Loop]:
     loops. Eigenvalues are followed from node to node by the permutation that moves them least.
     """
     shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
+    if problem.tied:
+        nodes = Contour.of(problem, modes, least).nodes
+        found = [np.linalg.eigvals(np.eye(one.shape[-1]) - one) for _, one in _matrices(problem, problem.open_loop, modes, nodes)]
+        return [Loop(nodes, one) for one in followed(np.moveaxis(np.concatenate(found, axis=1), -1, 0))]
     places = np.array([(-1.0) ** j * (1.0 - (j // 2) / len(shells)) for j in range(len(shells))])
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     scaled = [_times(problem, float(z)) for z in places]

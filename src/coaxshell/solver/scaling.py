@@ -17,7 +17,7 @@ from coaxshell.acoustics.sources import SourceGeometry
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.gains import gains_of, law_of
+from coaxshell.model.gains import gains_of, law_of, reads_of
 from coaxshell.model.layers import serves
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
@@ -43,6 +43,7 @@ from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid import require_solid, solid_layers
 from coaxshell.structure.solid_transducers import Transducers
 from coaxshell.structure.thin_wall import ThinWall
+from coaxshell.structure.tied_wall import LossyTiedWall, Read, TiedWall
 
 
 @dataclass(frozen=True)
@@ -193,9 +194,9 @@ class Problem:
         return replace(self, shells=shells) if self.two_faced else self
 
     @property
-    def segmented(self) -> bool:
-        """Whether feedback runs from segment to segment, so that it ties orders to each other."""
-        return any(isinstance(wall, SegmentedWall) and wall.gains is not None for wall in self.shells)
+    def tied(self) -> bool:
+        """Whether feedback runs from wall to wall or from segment to segment, so that it ties walls or orders to each other."""
+        return any(isinstance(wall, TiedWall) and wall.gains is not None for wall in self.shells)
 
     @property
     def open_loop(self) -> Problem:
@@ -221,7 +222,7 @@ def dimensionless(system: System, dimensions: int = 2, settings: Settings | None
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
-    shells = tuple(_wall(system, i, scales, band) for i in range(len(system.shells)))
+    shells = _reading_each_other(system, [_wall(system, i, scales, band) for i in range(len(system.shells))])
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
     heard = emitters(system, dimensions, (settings or Settings()).duration)
     sources, images = tuple(one.geometry for one in heard), tuple(one.source for one in heard[len(system.sources) :])
@@ -256,6 +257,26 @@ def _cut(wall: ThinWall, system: System, index: int) -> ThinWall:
     segments = Segments(control.segments, 1.0 - control.segments * (control.segment_gap or 0.0) / circumference, control.dead or ())
     kind = LossySegmentedWall if isinstance(wall, LossyElectrodedWall) else SegmentedWall
     return kind(**vars(wall), segments=segments)
+
+
+def _reading_each_other(system: System, walls: list[ShellModel]) -> tuple[ShellModel, ...]:
+    """Return the walls, those under a matrix with what their actuators answer."""
+    found = list(walls)
+    for index, wall in enumerate(walls):
+        shares = reads_of(system, index)
+        if shares is None:
+            continue
+        assert isinstance(wall, ElectrodedWall)  # nothing else was let through (coaxshell.solver.dimensions)
+        reads = []
+        for shell, factor in sorted(shares.items()):
+            read = walls[shell].with_gains(None)
+            assert isinstance(read, ElectrodedWall)
+            reads.append(Read(shell, factor, read))
+        if isinstance(wall, TiedWall):
+            found[index] = replace(wall, reads=tuple(reads))
+        else:
+            found[index] = (LossyTiedWall if isinstance(wall, LossyElectrodedWall) else TiedWall)(**vars(wall), reads=tuple(reads))
+    return tuple(found)
 
 
 def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ElasticWall:

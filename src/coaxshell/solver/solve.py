@@ -26,13 +26,13 @@ from coaxshell.solver.judgement import judgement
 from coaxshell.solver.mode_choice import resolve_modes
 from coaxshell.solver.reflections import reflected
 from coaxshell.solver.scaling import Problem, dimensionless
-from coaxshell.solver.segmented_stability import require_stable_segments
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.tied_stability import require_stable_ties
 
 
 def solve(system: System, *, settings: Settings | None = None, progress: Progress | None = None) -> ModalSolution:
@@ -103,8 +103,8 @@ def prepare(
         require_room(problem, replace(settings, modes=order), retunable=shared is not None)
     same = like is not None and like.same_structure(problem) and like.modes.max_order == order
     if not same:
-        if problem.segmented:
-            require_stable_segments(problem, order, settings.duration)
+        if problem.tied:
+            require_stable_ties(problem, order, settings.duration)
         else:
             require_stable(problem, order, settings.duration, shared)
         stopwatch.lap("stability of the feedback")
@@ -144,7 +144,7 @@ def _solved(
     system, grid, keep = problem.system, structure.grid, slice(None, None, settings.refinement)
     links = absorber_set(problem, system.absorber_list, source_parities(problem))
     saturate = saturates(system) and not limits_voltages(system)
-    bare = saturates(system) or problem.segmented
+    bare = saturates(system) or problem.tied
     (structure.open_loop if bare else structure).solve(units=links.count > 0 or bare)
     stopwatch.lap("modal system at all Laplace nodes")
     solved = reflected(structure, lambda one: solve_linked(one, links, progress, saturate=saturate), progress)

@@ -26,7 +26,7 @@ from coaxshell.response.frequency import along, fields, remarks, walls
 from coaxshell.response.frequency.request import WIDTHS, Asked, SteadyOptions, asked, frequencies
 from coaxshell.response.frequency.steady import Steady, Tail
 from coaxshell.response.labels import angle_coordinate
-from coaxshell.solver.dimensions import require_two_dimensions, require_whole_electrodes
+from coaxshell.solver.dimensions import require_loops_alone, require_two_dimensions
 from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
@@ -138,7 +138,7 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
         raise InputError("dimensions", f"{shown(dimensions)} is not allowed", "must be one of 2, 3")
     if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
         raise InputError("sea", "an answer at a frequency is that of unbounded water", "leave the sea out, or give it surface = false")
-    require_whole_electrodes(system, "an answer at a frequency", "leave segments out")
+    require_loops_alone(system, "an answer at a frequency", "leave {} out")
     if dimensions == 2:
         if what.z:
             raise InputError("z", f"{what.z:g} m has no meaning in two dimensions", "leave it out, or use dimensions=3")

@@ -19,9 +19,9 @@ from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.orders_left_out import Interface
 from coaxshell.solver.point_forces import point_force_shares
-from coaxshell.solver.segmented import solve_segmented
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
+from coaxshell.solver.tied import solve_tied
 
 
 def solve_linked(
@@ -43,8 +43,8 @@ def solve_linked(
         if limited is not None:
             return limited
         saturate = False
-    if structure.problem.segmented:
-        return solve_segmented(structure, absorbers)
+    if structure.problem.tied:
+        return solve_tied(structure, absorbers)
     if saturate:
         result = march_interface(structure, absorbers, saturate=True, progress=progress)
         if not result.saturated:

@@ -19,7 +19,7 @@ from coaxshell.numerics.keywords import showing
 from coaxshell.numerics.progress import Progress
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import simulate
-from coaxshell.solver.dimensions import require_whole_electrodes
+from coaxshell.solver.dimensions import require_loops_alone
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.studies.gradients.readings import has_gradient
 from coaxshell.studies.gradients.sensitivity import MetricSensitivity
@@ -120,7 +120,7 @@ def require_gradient(system: System, settings: Settings) -> None:
         raise InputError("engine", f"{settings.engine!r} has no gradient", 'use engine="spectral"')
     if settings.dimensions != 2:
         raise InputError("dimensions", "a run in three dimensions has no gradient yet", "use dimensions=2")
-    require_whole_electrodes(system, "the run backwards", "leave segments out")
+    require_loops_alone(system, "the run backwards", "leave {} out")
 
 
 def fields_of(system: System, variables: Sequence[str] | str) -> list[Field]:

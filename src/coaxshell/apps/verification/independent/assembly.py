@@ -19,7 +19,7 @@ from coaxshell.apps.verification.independent.walls import Wall
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.gains import gains_of, law_of, saturates, segments_of
+from coaxshell.model.gains import gains_of, law_of, reads_of, saturates, segments_of
 from coaxshell.model.parts import laws_of
 from coaxshell.model.piezoelectric import Piezoelectric
 from coaxshell.model.shells import Shell
@@ -167,7 +167,7 @@ class Assembly:
         return padded * powers, np.array(denominator) * powers
 
     def _law(self, i: int, m: int, place: int, matrices: tuple[FloatArray, FloatArray, FloatArray], late: FloatArray) -> None:
-        """Write the law of a shell as one more unknown y; a delayed law's load is known from the past, *late*."""
+        """Write the law of a shell as one more unknown y, of what its matrix reads; a delayed law's load is known from the past, *late*."""
         shell, control = self.system.shells[i], self.rational
         assert isinstance(shell, Shell)
         assert control is not None
@@ -179,7 +179,10 @@ class Assembly:
             matrix[place, place] = a
             if not control.delay:
                 matrix[at, place] -= load * b
-        matrices[2][place, at] -= found.reading * self.length
+        for j, factor in (reads_of(self.system, i) or {i: 1.0}).items():
+            read = self.system.shells[j]
+            assert isinstance(read, Shell)
+            matrices[2][place, self.displacements(j)] -= factor * Electrodes.of(read, m).reading * self.length
         late[at] = load
 
     @property

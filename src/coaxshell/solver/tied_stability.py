@@ -1,12 +1,13 @@
-"""Whether feedback from segment to segment is stable: poles counted as :mod:`coaxshell.solver.stability` does, by blocks of orders tied.
+"""Whether feedback that ties walls or orders is stable: poles counted as :mod:`coaxshell.solver.stability` does, of all that is tied.
 
-The determinant of a pattern q over that without feedback is that of 1 - H C_q, of as many rows as walls; of all patterns together, and with
-dead segments of that between these,
+The determinant of a pattern q (an order, where electrodes are whole) over that without feedback is that of 1 - H K C_q, of as many rows as
+walls; of all patterns together, and with dead segments of that between these,
 
-    D/D0 = product over patterns of |1 - H C_q|, times |[(1 - H C)^-1] on the dead segments|,
+    D/D0 = product over patterns of |1 - H K C_q|, times |[(1 - H K C)^-1] on the dead segments|,
 
-the complementary minor: what is left of the loops of the live ones. Where every wall pushes with what it reads, of the same layers, and the
-law never gives energy, Re H/s >= 0 on the contour, any number of segments takes energy alone, dead ones or not: nothing is counted.
+the complementary minor: what is left of the loops of the live ones. Where every wall pushes with what it reads, of the same layers, by -c
+times its reading, A c K with A the circumferences is symmetric without negative eigenvalues and the law never gives energy, Re H/s >= 0 on
+the contour, any number of segments takes energy alone, dead ones or not: nothing is counted.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.winding import turning
-from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_loops import ElectrodeLoops, shares_of
 from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.segmented import require_resolved
 from coaxshell.solver.stability import Contour, remedy
-from coaxshell.solver.voltage_response import VoltageResponse, controlled, electroded
+from coaxshell.solver.tied import require_resolved
+from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 512
 _SPACING = 0.8
@@ -49,26 +50,38 @@ class PatternPoles(NamedTuple):
 
 
 def collocated(problem: Problem, max_order: int) -> bool:
-    """Return whether every wall is pushed by what it reads: its drive is its reading times a negative number, in all orders."""
-    modes = Modes.up_to(max_order)
-    for i in controlled(problem):
-        push, read = (np.stack(gain[:2]) for gain in (electroded(problem, i).drive(modes), electroded(problem, i).sensor_gain(modes)))
-        factor = float((push * read).sum() / (read * read).sum())
+    """Return whether no motion of the walls can take energy from their laws' gains.
+
+    Every wall is pushed by what it reads, its drive is its reading times -c in all orders, and with A its circumference c A K is symmetric
+    without negative eigenvalues.
+    """
+    modes, shells, factors = Modes.up_to(max_order), controlled(problem), []
+    shares = shares_of(problem, shells)
+    for i in shells:
+        wall = problem.shells[i]
+        push, read = (np.stack(gain[:2]) for gain in (wall.drive(modes), wall.sensor_gain(modes)))
+        factor = float((push * read).sum() / max((read * read).sum(), 1e-300))
         if factor >= 0.0 or not np.allclose(push, factor * read, rtol=1e-9, atol=1e-9 * np.abs(push).max()):
             return False
-    return True
+        factors.append(-factor * wall.radius)
+    weighted = np.array(factors)[:, None] * shares
+    if not np.allclose(weighted, weighted.T, rtol=1e-9, atol=0.0):
+        return False
+    lowest = np.linalg.eigvalsh(weighted)[0]
+    return bool(lowest >= -1e-12 * np.abs(weighted).max())
 
 
-def never_gives(problem: Problem, contour: Contour) -> bool:
-    """Return whether Re H/s >= 0 on the contour, for the law of every wall: seen at its nodes and beside the law's own poles."""
+def never_gives(problem: Problem, contour: Contour, max_order: int) -> bool:
+    """Return whether Re H/s >= 0 on the contour, for the law of every wall and order: seen at its nodes and beside its own poles."""
     for i in controlled(problem):
-        law = electroded(problem, i).gains
+        law = problem.shells[i].gains
         assert law is not None
         beside = np.sinh(np.linspace(-12.0, 12.0, 97))
         own = [np.abs(frequency + max(width, contour.shift) * beside) for frequency, width in law.resonances]
         far = np.geomspace(1e-3, 1e3 * contour.fades, 400)
         s = np.concatenate([contour.nodes, *(contour.shift + 1j * x for x in (*own, far))])
-        if law.delay or bool((law.at(s, Modes(np.zeros(1))) / s).real.min() < 0.0):
+        backwards = bool(np.any(np.asarray(law.weight(np.arange(max_order + 1.0))) < 0.0))
+        if law.delay or backwards or bool((law.at(s, Modes(np.zeros(1))) / s).real.min() < 0.0):
             return False
     return True
 
@@ -93,7 +106,7 @@ def growing(problem: Problem, max_order: int, least: float) -> PatternPoles | No
     """Return the patterns with poles that grow by more than a rate per transit; None if there can be none."""
     modes = Modes.up_to(max_order)
     contour = Contour.of(problem, modes, least)
-    if collocated(problem, max_order) and never_gives(problem, contour):
+    if collocated(problem, max_order) and never_gives(problem, contour, max_order):
         return None
     return counted(problem, modes, contour)
 
@@ -165,14 +178,13 @@ def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: 
     return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
 
 
-def require_stable_segments(problem: Problem, max_order: int, duration: float) -> None:
-    """Raise InputError if segments are not resolved, or if their loops would grow by a factor e within the duration."""
+def require_stable_ties(problem: Problem, max_order: int, duration: float) -> None:
+    """Raise InputError if segments are not resolved, or if loops that are tied would grow by a factor e within the duration."""
     require_resolved(problem, max_order)
     found = growing(problem, max_order, 1.0 / duration)
     if found is None:
         return
     cut, laws = segments_of(problem.system), laws_of(problem.system)
-    assert cut is not None
     fastest = fastest_growth(problem, max_order, found, 1.0 / duration)
     hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
     if laws[0].dead:
@@ -180,9 +192,11 @@ def require_stable_segments(problem: Problem, max_order: int, duration: float) -
     else:
         listed = ", ".join(f"{one:.0f}" for one in found.patterns[:5])
         listed += f", ..., {found.patterns[-1]:.0f} ({found.patterns.size} in all)" if found.patterns.size > 5 else ""
-        others = ", ".join(map(str, sorted({cut - fastest.pattern, cut + fastest.pattern} - {fastest.pattern})))
-        where = f"order {listed}, with those that {cut} segments tie to it, grows without bound, fastest order "
-        where += f"{fastest.pattern} with {others}, ..."
+        where = f"order {listed} of all shells together grows without bound, fastest order {fastest.pattern}"
+        if cut is not None:
+            others = ", ".join(map(str, sorted({cut - fastest.pattern, cut + fastest.pattern} - {fastest.pattern})))
+            where = f"order {listed}, with those that {cut} segments tie to it, grows without bound, fastest order "
+            where += f"{fastest.pattern} with {others}, ..."
     entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
     told = f"by e^({fastest.rate:.3g} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
     raise InputError(entries, f"{value} makes the closed loop unstable: {where} {told}", remedy(problem))
@@ -191,7 +205,11 @@ def require_stable_segments(problem: Problem, max_order: int, duration: float) -
 def _guilty(control: PDControl | Feedback) -> tuple[str, str]:
     """Return what of the control is to be changed, and its value."""
     if isinstance(control, Feedback):
-        return ("control.delay", engineering(control.delay, "s")) if control.delay else ("control.numerator", str(list(control.numerator)))
+        if control.delay:
+            return "control.delay", engineering(control.delay, "s")
+        if control.matrix is not None:
+            return "control.matrix", str([list(row) for row in control.matrix])
+        return "control.numerator", str(list(control.numerator))
     gains = {name: getattr(control, name) for name in ("proportional", "derivative")}
     negative = [name for name, gain in gains.items() if np.any(np.asarray(gain) < 0.0)] or list(gains)
     return " and ".join(f"control.{name}" for name in negative), " and ".join(str(gains[name]) for name in negative)

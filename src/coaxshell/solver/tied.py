@@ -1,4 +1,4 @@
-"""Feedback from segment to segment of electrodes, and what its answer is in orders and on the segments."""
+"""Feedback that ties walls or orders to each other: what its answer is in orders and on the segments of electrodes."""
 
 from __future__ import annotations
 
@@ -24,15 +24,18 @@ def require_resolved(problem: Problem, max_order: int) -> None:
         raise InputError("control.segments", found, f"use modes={cut} or more, or at most {max_order} segments")
 
 
-def solve_segmented(structure: StructureSpectra, absorbers: AbsorberSet) -> SolvedSpectra:
-    """Return the answer of a structure whose feedback runs from segment to segment."""
+def solve_tied(structure: StructureSpectra, absorbers: AbsorberSet) -> SolvedSpectra:
+    """Return the answer of a structure whose feedback runs from wall to wall, or from segment to segment."""
     problem, grid = structure.problem, structure.grid
     response, without = response_of(structure), read_without(structure)
     patterns = patterns_of(problem, response.shells, structure.modes.orders, without.shape[1])
     found = ElectrodeLoops.of(problem, response, patterns, grid.nodes).voltages(patterns.readings(without))
-    cut = np.einsum("nq,iqt->int", patterns.evaluate, grid.invert(found))
-    cut[:, list(patterns.dead)] = 0.0
+    segments = None
+    if patterns.cut:
+        volts = np.einsum("nq,iqt->int", patterns.evaluate, grid.invert(found))
+        volts[:, list(patterns.dead)] = 0.0
+        segments = of_all(problem, response, volts)
     voltage: ComplexArray = of_all(problem, response, patterns.in_orders(found))
     force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
     moved = driven(structure, response, voltage)
-    return SolvedSpectra(structure, absorbers, *moved, force, displacement, voltage=voltage, segments=of_all(problem, response, cut))
+    return SolvedSpectra(structure, absorbers, *moved, force, displacement, voltage=voltage, segments=segments)
