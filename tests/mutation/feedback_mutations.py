@@ -120,4 +120,12 @@ FEEDBACK = (
         "power of a wall is that of its whole circumference",
         "solver/test_matrix_feedback.py",
     ),
+    Mutation(
+        "charge-of-a-lack",
+        "solver/limited_currents.py",
+        "inverse - np.eye(inverse.shape[-1]) + strained @ inverse",
+        "inverse - np.eye(inverse.shape[-1])",
+        "a lack of voltage moves charge by the strain that it makes too",
+        "solver/test_limited_currents.py",
+    ),
 )

@@ -139,9 +139,10 @@ def _control(system: SystemParts) -> None:
         if (law.segments, law.dead) != (laws_of(system)[0].segments, laws_of(system)[0].dead):
             found = "other walls are cut otherwise, and segments are known of walls that are cut at the same angles"
             raise InputError(f"{where}.segments", found, "give all laws the same segments and the same dead ones")
-        if several and law.saturation:
-            remedy = "use saturation = false and compare voltage and limit, or one law with a list of gains"
-            raise InputError(f"{where}.saturation", "several laws are not known to saturate", remedy)
+        name = "current_saturation" if law.current_saturation else "saturation"
+        if several and getattr(law, name):
+            remedy = f"use {name} = false and compare what is asked for and its limit, or one law with a list of gains"
+            raise InputError(f"{where}.{name}", "several laws are not known to saturate", remedy)
 
 
 def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:

@@ -19,6 +19,37 @@ Transducers = Literal["paper", "electrodes"]
 ALLOWED = "must be 'all' or a list of shells: numbers from 0 inside, 'inner', 'outer', 'middle' (of three)"
 
 
+def _current(value: Any) -> Any:
+    """Return a current per area; a current alone, in A, lacks its area."""
+    if isinstance(value, str) and value.strip().endswith("A"):
+        told = f"{value!r} is a current without the area that it serves"
+        raise InputError("", told, 'divide it by the area of wall that one amplifier drives, as in "20 A/m^2"')
+    return value
+
+
+CurrentLimit = Annotated[float, quantity("current density", above=0), BeforeValidator(_current)]
+
+
+def require_current(law: Any) -> None:
+    """Raise InputError if what a law says of currents does not go together."""
+    said = next((name for name in ("current_limit", "current_saturation") if getattr(law, name)), None)
+    if said is None:
+        return
+    if law.transducers != "electrodes":
+        raise InputError(said, "is said of currents, which the paper's law has not", 'use transducers = "electrodes", or leave it out')
+    if not law.current_saturation:
+        return
+    if law.current_limit is None:
+        raise InputError(said, "stops at a current_limit, and none is given", 'give one, such as current_limit = "20 A/m^2"')
+    if law.segments is None:
+        told = "is that of an amplifier, which a point of a whole electrode has not"
+        raise InputError("current_saturation", told, "give the number of segments, or leave it out and read control_effort")
+    if law.saturation:
+        raise InputError("current_saturation", "voltage and current are not known to stop together", "leave one of the two out")
+    if law.dead:
+        raise InputError("dead", "segments at ground take what current they like", "leave dead or current_saturation out")
+
+
 def _shells(value: Any) -> Any:
     """Return "all" or a tuple: a single index or name becomes a tuple of one; digits in text become a number."""
     if isinstance(value, str):
@@ -85,6 +116,10 @@ class PDControl(Described):
     """Whether the actuator's voltage stops at the field limit."""
     field_limit: Annotated[float, quantity("electric field", above=0)] | None = None
     """Largest field on the actuator (V/m); the material's own unless given."""
+    current_limit: CurrentLimit | None = None
+    """Largest current of an amplifier over the area of wall that it drives (A/m^2), above which a warning is given."""
+    current_saturation: bool = False
+    """Whether the current stops at the current limit; the voltage then is what that current leaves."""
     segments: Count | None = None
     """Electrodes around each wall, all layers cut at the same places, each with its own loop; one that varies freely unless given."""
     segment_gap: Gap | None = None
@@ -97,4 +132,5 @@ class PDControl(Described):
         if self.shells != "all" and (not self.shells or len(set(self.shells)) < len(self.shells)):
             raise InputError("shells", f"{list(self.shells)!r} is not allowed", "must name at least one shell, and each only once")
         require_segments(self.segments, self.segment_gap, self.dead, self.transducers)
+        require_current(self)
         return self

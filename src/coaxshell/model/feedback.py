@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described, shown
-from coaxshell.model.control import End, PDControl, Transducers, _shells
+from coaxshell.model.control import CurrentLimit, End, PDControl, Transducers, _shells, require_current
 from coaxshell.model.segments import Count, Dead, Gap, require_segments
 from coaxshell.model.units import DIMENSIONS, Delay, Frequency, quantity, to_si
 from coaxshell.numerics.scalars import plain
@@ -116,6 +116,10 @@ class Feedback(Described):
     """Whether the actuator's voltage stops at the field limit."""
     field_limit: Annotated[float, quantity("electric field", above=0)] | None = None
     """Largest field on the actuator (V/m), above which a warning is given; the material's own unless given."""
+    current_limit: CurrentLimit | None = None
+    """Largest current of an amplifier over the area of wall that it drives (A/m^2), above which a warning is given."""
+    current_saturation: bool = False
+    """Whether the current stops at the current limit; the voltage then is what that current leaves."""
     segments: Count | None = None
     """Electrodes around each wall, all layers cut at the same places, each with its own loop; one that varies freely unless given."""
     segment_gap: Gap | None = None
@@ -192,6 +196,7 @@ class Feedback(Described):
         if self.shells != "all" and (not self.shells or len(set(self.shells)) < len(self.shells)):
             raise InputError("shells", f"{list(self.shells)!r} is not allowed", "must name at least one shell, and each only once")
         require_segments(self.segments, self.segment_gap, self.dead, self.transducers)
+        require_current(self)
         if self.dead and self.weights is not None:
             found = "a modal filter reads all segments, and some are dead"
             raise InputError("weights", found, "leave weights out, which are those of orders, or dead")

@@ -13,13 +13,19 @@ def law_of(system: SystemParts, shell: int) -> PDControl | Feedback | None:
 
 
 def saturates(system: SystemParts) -> bool:
-    """Return whether the voltage of any actuator stops at its limit."""
-    return any(law.saturation for law in laws_of(system))
+    """Return whether the voltage or the current of any actuator stops at its limit."""
+    return any(law.saturation or law.current_saturation for law in laws_of(system))
+
+
+def limits_currents(system: SystemParts) -> bool:
+    """Return whether the current of any actuator stops at its limit."""
+    return any(law.current_saturation for law in laws_of(system))
 
 
 def limits_voltages(system: SystemParts) -> bool:
-    """Return whether voltages stop at a limit that are marched beside the linear answer: of electrodes, and of laws other than PD."""
-    return any(law.saturation and (law.transducers == "electrodes" or isinstance(law, Feedback)) for law in laws_of(system))
+    """Return whether a march runs beside the linear answer: voltages of electrodes or of laws but PD, or currents, at their limit."""
+    marched = (law.saturation and (law.transducers == "electrodes" or isinstance(law, Feedback)) for law in laws_of(system))
+    return limits_currents(system) or any(marched)
 
 
 def segments_of(system: SystemParts) -> int | None:

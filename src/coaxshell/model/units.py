@@ -34,6 +34,7 @@ USUAL: dict[str, dict[str, float]] = {
     "Pa": {"Pa": 1.0, "kPa": 1000.0, "MPa": 1e6, "GPa": 1e9, "bar": 1e5},
     "C/m^2": {"C/m^2": 1.0, "C/m2": 1.0},
     "F/m": {"F/m": 1.0, "nF/m": 1e-9},
+    "A/m^2": {"A/m^2": 1.0, "A/m2": 1.0, "mA/cm^2": 10.0},
     "V/m": {"V/m": 1.0, "V/mm": 1000.0, "kV/mm": 1e6},
     "deg": {"deg": 1.0, "°": 1.0},
     "N*s/m^2": {"N*s/m^2": 1.0},
@@ -69,6 +70,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "stress": Dimension("a stress or modulus", "Pa", "70 GPa"),
     "charge density": Dimension("a charge per area", "C/m^2", "14.1 C/m^2"),
     "permittivity": Dimension("a permittivity", "F/m", "5.841 nF/m"),
+    "current density": Dimension("a current per area", "A/m^2", "20 A/m^2"),
     "electric field": Dimension("an electric field", "V/m", "590 V/mm"),
     "angle": Dimension("an angle", "deg", "45 deg"),
     # The problem is plane: a kilogram of absorber is a kilogram per metre of length, and the paper writes the former.

@@ -18,11 +18,13 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.scalars import plain
 from coaxshell.response.summary_text import aligned
-from coaxshell.response.voltages import actuator_limit, largest_demanded_voltage, largest_mean
+from coaxshell.response.synthesis import angle_basis, at_angles
+from coaxshell.response.voltages import actuator_limit, cut_voltage, largest_demanded_voltage, largest_mean
 from coaxshell.response.wall_motion import WallMotion
-from coaxshell.solver.electrodes import Segment, segment_length
+from coaxshell.solver.electrodes import Segment, segment_length, segment_mean
 
 _ROWS = (
     ("voltage", "largest voltage", "V"),
@@ -45,7 +47,8 @@ class ShellEffort:
     ----------
     shell : str
     voltage, charge, current : float
-        Means over a segment of the wall, V, C/m^2 and A/m^2 of all actuators of the wall together.
+        Means over a segment of the wall, V, C/m^2 and A/m^2 of all actuators of the wall together; where electrodes are cut voltage and
+        current (over a step) of their own segments.
     field : float
         V/m, in the thinnest actuator.
     real_power, apparent_power : float
@@ -122,7 +125,8 @@ def control_effort(motion: WallMotion, segment: Segment = None, **limits: float 
     segment : float, str or None
         Length of the wall over which voltages, charges and currents are means, as in the summary; "point" for points.
     **limits : float
-        Of the amplifier: voltage (V), current (A per m^2 of electrode), apparent_power (VA per metre of length).
+        Of the amplifier: voltage (V), current (A per m^2 of electrode; that of the law unless given), apparent_power (VA
+        per metre of length).
 
     Raises
     ------
@@ -164,9 +168,14 @@ def _of_shell(motion: WallMotion, shell: int, segment: Segment, limits: dict[str
     if law is not None and law.transducers == "electrodes":
         for name, modal in (("charge", charge(motion, shell)), ("current", current(motion, shell))):
             found[name] = largest_mean(solution, shell, partial(_window, modal), everything, length, halved=False).value
+        found["current"] = _of_segments(motion, shell) or found["current"]
         used, step = power(motion, shell), solution.settings.time_step * solution.problem.scales.time
         found["real_power"], found["apparent_power"] = float(np.abs(used.real).max()), float(used.apparent.max())
         found["energy"] = float(np.trapezoid(used.real, dx=step))
+    if law is not None and law.current_limit is not None:
+        limits = {"current": law.current_limit, **limits}
+        if law.current_saturation and found["current"] is not None:  # steps in which it begins to be held overshoot
+            found["current"] = min(found["current"], law.current_limit)
     return ShellEffort(
         shell=shell_name(shell, len(system.shells)),
         voltage=volts,
@@ -174,6 +183,27 @@ def _of_shell(motion: WallMotion, shell: int, segment: Segment, limits: dict[str
         limits={"field": field_limit, **limits} if np.isfinite(field_limit) else dict(limits),
         **found,
     )
+
+
+def _of_segments(motion: WallMotion, shell: int) -> float | None:
+    """Return the largest current of a segment, A/m^2: its own voltage on its capacity, and the mean charge of the strain under it.
+
+    A mean over a step. None where electrodes are whole.
+    """
+    from coaxshell.response.electrical import electrical
+
+    solution, problem = motion.solution, motion.solution.problem
+    cut = cut_voltage(solution, shell)
+    if cut is None:
+        return None
+    whole, scales = electrical(motion, shell), problem.scales
+    held = sum(one for _, one in problem.shells[shell].charges(Modes.up_to(0))) * scales.pressure * scales.length
+    share = segment_mean(np.arange(float(whole.charge.shape[1])), 2.0 * np.pi * cut.segments.covered / cut.segments.count)
+    strained = (whole.charge - held * whole.voltage) * share[:, None]
+    basis = angle_basis(np.degrees(cut.segments.centres), strained.shape[1], strained.shape[0])
+    total = at_angles(strained, basis).T + held * cut.voltage
+    total[list(cut.segments.dead)] = 0.0  # at ground, and no amplifier's
+    return float(np.abs(np.diff(total, axis=-1)).max()) / (solution.settings.time_step * scales.time)
 
 
 def _window(modal: FloatArray, block: slice) -> FloatArray:

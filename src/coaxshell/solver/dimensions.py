@@ -32,8 +32,8 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
-    _require_linear_electrodes(system)
     _require_ties(system, dimensions)
+    _require_linear_electrodes(system)
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is None:
         return

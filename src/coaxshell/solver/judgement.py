@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from coaxshell.model.gains import saturates
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.solver import checks, estimates
+from coaxshell.solver import checks, estimates, limited_currents
 from coaxshell.solver.finite import numerical_failures
 from coaxshell.solver.interface.linked import interface_of
 from coaxshell.solver.mode_choice import tolerance_missed
@@ -54,4 +54,5 @@ def _judgement(solution: ModalSolution, solved: SolvedSpectra, asked_for: Settin
         problem, tensions(problem, solved.grid, *solved.face_motion, structure.returned)
     )
     stopwatch.lap("pressure on the walls")
-    return Judgement(errors, (*warnings, *checks.actuators(solution), *checks.ideal_loop(problem, settings)))
+    warnings += [*checks.actuators(solution), *limited_currents.warnings_of(solved)]
+    return Judgement(errors, (*warnings, *checks.ideal_loop(problem, settings)))

@@ -14,6 +14,7 @@ A step itself is a = b + K_0 delta(a), solved in :mod:`coaxshell.solver.limited_
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,7 +35,7 @@ from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
 from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_without, response_of
 
-_BLOCK = 16
+BLOCK = 16
 """Steps whose lack adds to each other directly."""
 _DAMPED = 1e-9
 """What returns after a period of the weights."""
@@ -59,19 +60,13 @@ class LimitedMarch:
     limits: FloatArray
     weights: FloatArray
 
-    @property
-    def returned(self) -> float:
-        """The largest share of a lack that comes back within its own step, -K_0, of any pattern."""
-        present = np.moveaxis(self.weights[..., 0], -1, 0)
-        return float(-np.linalg.eigvals(present).real.min())
-
     def lack(self, asked: FloatArray, progress: Progress | None = None) -> tuple[FloatArray, int]:
         """Return delta, (walls, patterns, T), from what is asked for without limits, and the iterations of all steps."""
         steps = asked.shape[-1]
         found, sums, history = np.zeros_like(asked), HistorySum(KernelTable(self.weights), 1), History()
         step, iterations = LimitedStep(self.patterns, self.limits, self.weights[..., 0]), 0
-        for start in range(0, steps, _BLOCK):
-            block = slice(start, min(start + _BLOCK, steps))
+        for start in range(0, steps, BLOCK):
+            block = slice(start, min(start + BLOCK, steps))
             size = block.stop - start
             known = asked[..., block].copy()
             if history.step:
@@ -107,19 +102,33 @@ def trapezoidal_nodes(grid: LaplaceGrid) -> tuple[ComplexArray, FloatArray]:
 
 def step_weights(structure: StructureSpectra, patterns: Patterns) -> FloatArray:
     """Return the weights of K, shape (walls, walls, patterns, T)."""
-    problem, grid = structure.problem, structure.grid
+    problem = structure.problem
+
+    def kernel(s: ComplexArray) -> ComplexArray:
+        loops = ElectrodeLoops.of(problem, VoltageResponse.at(problem.open_loop, problem, structure.modes, s), patterns, s)
+        found = np.moveaxis(loops.inverse, (2, 3), (0, 1)).copy()
+        for wall in range(found.shape[0]):
+            found[wall, wall] -= 1.0
+        return found
+
+    return inverted_weights(structure, kernel)
+
+
+def inverted_weights(structure: StructureSpectra, kernel: Callable[[ComplexArray], ComplexArray]) -> FloatArray:
+    """Return the weights of a kernel, (walls, walls, patterns, T), from its values at some nodes."""
+    grid = structure.grid
     s, growth = trapezoidal_nodes(grid)
-    found = []
-    for start in range(0, s.size, 128):
-        some = s[start : start + 128]
-        response = VoltageResponse.at(problem.open_loop, problem, structure.modes, some)
-        loops = ElectrodeLoops.of(problem, response, patterns, some)
-        found.append(np.moveaxis(loops.inverse, (2, 3), (0, 1)))
-    whole = np.concatenate(found, axis=-1)
-    for wall in range(whole.shape[0]):
-        whole[wall, wall] -= 1.0
+    whole = np.concatenate([kernel(s[start : start + 128]) for start in range(0, s.size, 128)], axis=-1)
     count = int(fft.next_fast_len(grid.steps + 1, real=True))
     return np.asarray(fft.irfft(whole, count, axis=-1, workers=WORKERS)[..., : growth.size] * growth)
+
+
+def require_fine(grid: LaplaceGrid, weights: FloatArray) -> None:
+    """Raise InputError if all of a lack would come back within its own step."""
+    present = np.moveaxis(weights[..., 0], -1, 0)
+    if float(-np.linalg.eigvals(present).real.min()) > _STRONGEST:
+        found = f"{grid.time_step:g} is too long a step for voltages that stop at their limit: feedback turns over within it"
+        raise InputError("time_step", found, f"use time_step = {grid.time_step / 4:.2g}, or four times the refinement, or lower gains")
 
 
 def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
@@ -141,8 +150,7 @@ def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress:
     if not _beyond(at_points(patterns, grid.invert(loops.voltages(read))), limits).any():
         return None
     march = LimitedMarch(patterns, limits, step_weights(structure, patterns))
-    if march.returned > _STRONGEST:
-        raise _too_coarse(grid)
+    require_fine(grid, march.weights)
     free = loops.asked(read)
     lack, iterations = march.lack(grid.invert(free), progress)
     lacking = grid.transform_linear(lack)
@@ -186,8 +194,3 @@ def driven_alone(
     in_orders = of_all(structure.problem, response, patterns.in_orders(voltage))
     under, whole = driven(structure, response, np.zeros_like(in_orders)), driven(structure, response, in_orders)
     return whole.normal - under.normal, whole.tangential - under.tangential
-
-
-def _too_coarse(grid: LaplaceGrid) -> InputError:
-    found = f"{grid.time_step:g} is too long a step for voltages that stop at their limit: feedback turns over within it"
-    return InputError("time_step", found, f"use time_step = {grid.time_step / 4:.2g}, or four times the refinement, or lower gains")

@@ -7,7 +7,7 @@ With V eliminated a voltage of order m on wall j is a normal load f_j = P_w + P_
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -20,8 +20,14 @@ from coaxshell.solver.scaling import Problem
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 from coaxshell.structure.control_law import ControlLaw
 from coaxshell.structure.electroded_wall import ElectrodedWall
+from coaxshell.structure.shell_model import Gain, ShellModel
 
 Values = TypeVar("Values", ComplexArray, FloatArray)
+
+
+def sensed_of(wall: ShellModel, modes: Modes) -> Gain:
+    """Return what the sensors of a wall read per unit (V, W), volts."""
+    return wall.sensor_gain(modes)
 
 
 @dataclass(frozen=True)
@@ -47,9 +53,18 @@ class VoltageResponse:
 
     @classmethod
     def of(
-        cls, problem: Problem, modes: Modes, s: ComplexArray, compliance: ComplexArray, ratio: Sequence[ComplexArray]
+        cls,
+        problem: Problem,
+        modes: Modes,
+        s: ComplexArray,
+        compliance: ComplexArray,
+        ratio: Sequence[ComplexArray],
+        reading: Callable[[ShellModel, Modes], Gain] = sensed_of,
     ) -> VoltageResponse:
-        """Return it from the compliance C_ij (shells, shells, orders, nodes) and V/W of each wall, without feedback."""
+        """Return it from the compliance C_ij (shells, shells, orders, nodes) and V/W of each wall, without feedback.
+
+        What is read is that of the sensors, or another *reading* of each wall.
+        """
         shells = controlled(problem)
         walls = [problem.shells[i] for i in shells]
         shape = (modes.count, s.size)
@@ -57,21 +72,29 @@ class VoltageResponse:
         load = np.stack(
             [np.broadcast_to(wall.drive(modes).columns.recovered(ratio[i]), shape) for wall, i in zip(walls, shells, strict=True)]
         )
-        sensed = np.stack([wall.sensor_gain(modes).columns.recovered(ratio[i]) for wall, i in zip(walls, shells, strict=True)])
+        gains = [reading(wall, modes).columns for wall in walls]
+        sensed = np.stack([gain.recovered(ratio[i]) for gain, i in zip(gains, shells, strict=True)])
         read = np.empty((len(shells), len(shells), *load.shape[1:]), np.complex128)
         for a, i in enumerate(shells):
             for b, j in enumerate(shells):
                 np.multiply(sensed[a] * load[b], compliance[i, j], out=read[a, b])
-            read[a, a] += walls[a].sensor_gain(modes).columns.v * slid[a]
+            read[a, a] += gains[a].v * slid[a]
         return cls(shells, load, slid, read)
 
     @classmethod
-    def at(cls, passive: Problem, controls: Problem, modes: Modes, s: ComplexArray) -> VoltageResponse:
+    def at(
+        cls,
+        passive: Problem,
+        controls: Problem,
+        modes: Modes,
+        s: ComplexArray,
+        reading: Callable[[ShellModel, Modes], Gain] = sensed_of,
+    ) -> VoltageResponse:
         """Return it at any nodes; ``passive`` is the problem ``controls`` without its feedback."""
         system = ModalSystem(passive, s, modes)
         count = len(passive.shells)
         compliance = np.stack([np.stack(system.solve(j, 1.0)) for j in range(count)], axis=1)
-        return cls.of(controls, modes, s, compliance, [wall.tangential for wall in system.shells])
+        return cls.of(controls, modes, s, compliance, [wall.tangential for wall in system.shells], reading)
 
 
 def controlled(problem: Problem) -> tuple[int, ...]:
@@ -100,16 +123,17 @@ def of_all(problem: Problem, response: VoltageResponse, values: Values) -> Value
     return every
 
 
-def response_of(structure: StructureSpectra) -> VoltageResponse:
+def response_of(structure: StructureSpectra, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> VoltageResponse:
     """Return the answers to voltages at the orders and nodes of a run."""
     bare = structure.open_loop
-    return VoltageResponse.of(structure.problem, structure.modes, structure.grid.nodes, bare.compliance, list(bare.tangential_ratio))
+    known = structure.problem, structure.modes, structure.grid.nodes, bare.compliance, list(bare.tangential_ratio)
+    return VoltageResponse.of(*known, reading)
 
 
-def read_without(structure: StructureSpectra) -> ComplexArray:
+def read_without(structure: StructureSpectra, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> ComplexArray:
     """Return what the sensors read of the motion without voltages, V, (controlled, parities, M + 1, nodes)."""
     bare = structure.open_loop
-    gains = [(i, structure.problem.shells[i].sensor_gain(structure.modes).columns) for i in controlled(structure.problem)]
+    gains = [(i, reading(structure.problem.shells[i], structure.modes).columns) for i in controlled(structure.problem)]
     return np.stack([gain.v * bare.tangential[i] + gain.w * bare.normal[i] for i, gain in gains])
 
 

@@ -105,6 +105,7 @@ def _control(system: SystemParts, control: PDControl | Feedback) -> str:
     """Return what a control law is and which shells it is for."""
     stop = ", by electrodes" if control.transducers == "electrodes" else ""
     stop += ", stops at the field limit" if control.saturation else ""
+    stop += ", stops at the current limit" if control.current_saturation else ""
     numbers = shells_under(system, control)
     if isinstance(control, Feedback):
         return _law(control, [shell_phrase(i, len(system.shells)) for i in numbers]) + stop

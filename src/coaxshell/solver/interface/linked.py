@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.model.gains import limits_voltages
+from coaxshell.model.gains import limits_currents, limits_voltages
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.faced_forces import surface_motion
@@ -14,6 +14,7 @@ from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult
 from coaxshell.solver.interface.seen import as_seen
+from coaxshell.solver.limited_currents import solve_limited_currents
 from coaxshell.solver.limited_voltages import solve_limited
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
@@ -39,7 +40,8 @@ def solve_linked(
     """
     grid = structure.grid
     if limits_voltages(structure.problem.system):
-        limited = solve_limited(structure, absorbers, progress)
+        limit = solve_limited_currents if limits_currents(structure.problem.system) else solve_limited
+        limited = limit(structure, absorbers, progress)
         if limited is not None:
             return limited
         saturate = False

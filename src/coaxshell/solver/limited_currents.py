@@ -1,0 +1,191 @@
+"""Currents of amplifiers that stop at a limit, marched beside the linear answer (theory manual, "Limited currents").
+
+The charge per area of the actuators under a segment is q = m + C u, m that of the strain and C u that of the voltage; the current dq/dt. An
+amplifier gives what its law asks for, a, as far as the current I allows: over a step dt, with alpha = a + m/C the charge asked for and
+beta = u + m/C that given, over C,
+
+    beta_n = beta_(n-1) + clip(alpha_n - beta_(n-1)),      |clip| <= I dt/C.
+
+The lack delta = u - a = beta - alpha acts as that of voltages does (:mod:`coaxshell.solver.limited_voltages`),
+
+    alpha = alpha_0 + K * delta,      K = T - 1 + Q T/C,      T = (1 - H K C)^-1,
+
+Q the charge of strain per volt. Each step is one of limited voltages whose limits move with beta.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from coaxshell.model.gains import law_of
+from coaxshell.model.places import shell_phrase
+from coaxshell.model.prefixes import engineering
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.circle import peak_on_circle
+from coaxshell.numerics.convolution import History, HistorySum, KernelTable
+from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import Progress
+from coaxshell.solver.actuation import voltage_asked
+from coaxshell.solver.electrode_loops import ElectrodeLoops, times
+from coaxshell.solver.electrode_patterns import Patterns, patterns_of
+from coaxshell.solver.electrodes import segment_length, segment_mean
+from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.limited_step import LimitedStep
+from coaxshell.solver.limited_voltages import BLOCK, at_points, driven_alone, inverted_weights, require_fine
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_without, response_of
+from coaxshell.structure.shell_model import Gain, ShellModel
+
+
+def charge_of(wall: ShellModel, modes: Modes) -> Gain:
+    """Return m, the charge per area of all actuators of a wall per unit (V, W)."""
+    moved = [one for one, _ in wall.charges(modes)]
+    zero = np.zeros_like(modes.orders)
+    return Gain(sum((one.v for one in moved), zero), sum((one.w for one in moved), zero))
+
+
+def capacities(problem: Problem) -> FloatArray:
+    """Return C of each wall under control, charge per area and volt; 1 of one without actuators, whose voltage is 0."""
+    found = [sum(held for _, held in problem.shells[i].charges(Modes.up_to(0))) for i in controlled(problem)]
+    return np.array([one or 1.0 for one in found])
+
+
+def largest_steps(problem: Problem, step: float) -> FloatArray:
+    """Return I dt/C of each wall under control, V, for a step in transits."""
+    scales, found = problem.scales, []
+    for i, held in zip(controlled(problem), capacities(problem), strict=True):
+        law = law_of(problem.system, i)
+        assert law is not None
+        assert law.current_limit is not None
+        found.append(law.current_limit * scales.time / (scales.pressure * scales.length) * step / held)
+    return np.array(found)
+
+
+def warnings_of(solved: SolvedSpectra) -> list[str]:
+    """Return the warnings about amplifiers asked for more than their current, means over a segment; of thin walls."""
+    problem, found = solved.problem, []
+    for i in controlled(problem):
+        law, wall = law_of(problem.system, i), problem.shells[i]
+        if law is None or law.current_limit is None or problem.two_faced or not wall.charges(Modes.up_to(0)):
+            continue
+        volts, gain = voltage_asked(solved)[i], charge_of(wall, solved.modes).columns
+        charge = gain.v * solved.tangential[i] + gain.w * solved.normal[i] + sum(held for _, held in wall.charges(solved.modes)) * volts
+        length = segment_length(problem, i)
+        share = segment_mean(solved.modes.orders, length / problem.system.shells[i].radius)[:, None]
+        peak = peak_on_circle(solved.grid.invert(share * charge * solved.grid.nodes))
+        per_area = problem.scales.pressure * problem.scales.length / problem.scales.time
+        asked = 0.0 if peak is None else abs(peak.value) * per_area
+        if solved.iterations and law.current_saturation:
+            told = f"the current was held at {engineering(law.current_limit, 'A/m^2')}; lower the gains to stay within it"
+        elif asked > law.current_limit:
+            told = f"the control law asks for {engineering(asked, 'A/m^2')} (mean over {engineering(length, 'm')} of the wall), "
+            told += f"{asked / law.current_limit:.3g} times the {engineering(law.current_limit, 'A/m^2')} of its amplifier; "
+            told += "set control.current_saturation = true to see what it can really do, or lower the gains"
+        else:
+            continue
+        found.append(f"{shell_phrase(i, len(problem.shells))}: {told}")
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class CurrentMarch:
+    """Constants of a march.
+
+    Attributes
+    ----------
+    patterns : Patterns
+    limits : ndarray, shape (walls, points)
+        I dt/C, V.
+    weights : ndarray, shape (walls, walls, patterns, T)
+        Of K.
+    """
+
+    patterns: Patterns
+    limits: FloatArray
+    weights: FloatArray
+
+    def lack(self, asked: FloatArray, progress: Progress | None = None) -> tuple[FloatArray, int]:
+        """Return delta, (walls, patterns, T), from alpha_0, and the iterations of all steps."""
+        steps = asked.shape[-1]
+        found, sums, history = np.zeros_like(asked), HistorySum(KernelTable(self.weights), 1), History()
+        present, given, iterations = self.weights[..., 0], np.zeros(asked.shape[:2]), 0
+        step = LimitedStep(self.patterns, self.limits, present)
+        for start in range(0, steps, BLOCK):
+            block = slice(start, min(start + BLOCK, steps))
+            size = block.stop - start
+            known = asked[..., block].copy()
+            if history.step:
+                known += sums.forcing(history, size)[:, 0]
+            for n in range(size):
+                delta, taken = step.solve(known[..., n] - given)
+                iterations += taken
+                given = known[..., n] + delta + np.einsum("ijq,jq->iq", present, delta)
+                if taken:
+                    found[..., start + n] = delta
+                    known[..., n + 1 :] += np.einsum("ijqt,jq->iqt", self.weights[..., 1 : size - n], delta)
+            history, _ = sums.push(history, found[:, None, :, block])
+            if progress is not None:
+                progress(block.stop / steps, "currents at their limit")
+        return found, iterations
+
+
+def _kernel(structure: StructureSpectra, patterns: Patterns, s: ComplexArray) -> ComplexArray:
+    """Return K at some nodes, (walls, walls, patterns, nodes)."""
+    problem, modes = structure.problem, structure.modes
+    answers = partial(VoltageResponse.at, problem.open_loop, problem, modes, s)
+    inverse = ElectrodeLoops.of(problem, answers(), patterns, s).inverse
+    strained = np.moveaxis(patterns.responses(answers(charge_of).read), (0, 1), (2, 3)) / capacities(problem)[:, None]
+    return np.asarray(np.moveaxis(inverse - np.eye(inverse.shape[-1]) + strained @ inverse, (2, 3), (0, 1)))
+
+
+def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
+    """Return the answer of a structure whose amplifiers' currents stop at their limit; None where none reaches it.
+
+    Raises
+    ------
+    InputError
+        If feedback is so strong within a step that its limit cannot be found.
+    """
+    problem, grid = structure.problem, structure.grid
+    response, without = response_of(structure), read_without(structure)
+    patterns = patterns_of(problem, response.shells, structure.modes.orders, without.shape[1])
+    loops = ElectrodeLoops.of(problem, response, patterns, grid.nodes)
+    held = capacities(problem)[:, None, None]
+    strained = patterns.responses(response_of(structure, charge_of).read)
+
+    def charged(voltage: ComplexArray, moved: ComplexArray | float = 0.0) -> ComplexArray:
+        """Return u + m/C under voltages, and under sources where their charge is given."""
+        return np.asarray(voltage + (moved + np.einsum("ijqk,jqk->iqk", strained, voltage)) / held)
+
+    free = loops.asked(patterns.readings(without))
+    sources = patterns.readings(read_without(structure, charge_of))
+    linear = grid.invert(charged(free, sources))
+    limits = largest_steps(problem, grid.time_step)[:, None] * np.ones(len(patterns.evaluate))
+    steps = np.abs(np.diff(at_points(patterns, linear), axis=-1, prepend=0.0))
+    if (steps <= limits[..., None] * (1.0 + 1e-9)).all():
+        return None
+    march = CurrentMarch(patterns, limits, inverted_weights(structure, partial(_kernel, structure, patterns)))
+    require_fine(grid, march.weights)
+    lack, iterations = march.lack(linear, progress)
+    given = free + times(loops.inverse, grid.transform_linear(lack))
+    beta = grid.invert(charged(given, sources))
+    asked = at_points(patterns, beta - lack - np.concatenate([np.zeros_like(beta[..., :1]), beta[..., :-1]], axis=-1))
+    off = np.einsum("qn,int->iqt", patterns.project, np.clip(asked, -limits[..., None], limits[..., None]) - asked) - lack
+    force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
+    voltage = of_all(problem, response, patterns.in_orders(given))
+    return SolvedSpectra(
+        structure,
+        absorbers,
+        *driven(structure, response, voltage),
+        force,
+        displacement,
+        iterations=iterations,
+        voltage=voltage,
+        segments=of_all(problem, response, at_points(patterns, grid.invert(given))),
+        defect=driven_alone(structure, response, patterns, times(loops.inverse, grid.transform_linear(off))),
+    )

@@ -1,0 +1,100 @@
+"""Currents that stop at a limit: a condenser by hand, open circuits as the limit of none, energy, order, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import coaxshell as cx
+from coaxshell.errors import InputError
+from coaxshell.model import presets
+from coaxshell.solver.electrode_patterns import CutPatterns
+from coaxshell.solver.limited_currents import CurrentMarch
+from coaxshell.solver.recompute import spectra_of
+from coaxshell.structure.segments import Segments
+
+PLANE = presets.load("electrodes").replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4))
+RUN = {"duration": 0.6, "time_step": 0.01, "modes": 8}
+
+
+def limited(limit="3 A/m^2", stops: bool = True, **control) -> cx.System:
+    given = {"segments": 6, "current_limit": limit, "current_saturation": stops, **control}
+    return PLANE.with_overrides({f"control.{name}": value for name, value in given.items()})
+
+
+@pytest.fixture(scope="module")
+def held():
+    return cx.simulate(limited(), **RUN)
+
+
+def test_a_condenser_by_hand():
+    # Without an answer of the wall the voltage follows what is asked for by at most the limit a step.
+    patterns = CutPatterns((Segments(5, 1.0, ()),), np.arange(4.0), 2)
+    asked = np.cumsum(np.random.default_rng(2).normal(size=(1, patterns.numbers.count, 40)), axis=-1)
+    march = CurrentMarch(patterns, np.full((1, 5), 0.7), np.zeros((1, 1, patterns.numbers.count, 40)))
+    lack, _ = march.lack(asked)
+    wanted, given = patterns.evaluate @ asked[0], patterns.evaluate @ (asked + lack)[0]
+    so_far = np.zeros(5)
+    for n in range(40):
+        so_far = so_far + np.clip(wanted[:, n] - so_far, -0.7, 0.7)
+        assert_allclose(given[:, n], so_far, atol=1e-9)
+
+
+def test_no_current_is_an_open_circuit():
+    # u = -m/C is what pairs of equal layers read, fed back with k_p = 1; the current lets through a thousandth.
+    none = cx.simulate(limited("1 mA/m^2"), **RUN).solution
+    opened = cx.simulate(PLANE.with_overrides({"control.segments": 6, "control.proportional": 1, "control.derivative": 0}), **RUN).solution
+    free = cx.simulate(limited(stops=False), **RUN).solution
+    assert np.linalg.norm(none.normal - opened.normal) < 2e-4 * np.linalg.norm(opened.normal)
+    assert np.linalg.norm(free.normal - opened.normal) > 5e-3 * np.linalg.norm(opened.normal)
+
+
+def test_what_reaches_no_limit_is_the_linear_answer():
+    free, wide = (cx.simulate(limited("1 kA/m^2", stops), **RUN).solution for stops in (False, True))
+    assert_allclose(wide.normal, free.normal, rtol=0, atol=0)
+
+
+def test_energy_closes_where_currents_are_cut(held, tmp_path):
+    energy = held.energy()
+    assert np.abs(energy.closure_relative).max() < 2e-5
+    electrical = energy.amplifier_work - (energy.actuator_field - energy.actuator_work)
+    assert np.abs(electrical).max() < 1e-6 * np.abs(energy.actuator_work).max()
+    assert held.control_effort().within
+    assert held.control_effort()["outer"].current == 3.0
+    assert sum("the current was held at 3.000 A/m^2" in text for text in held.warnings) == 2
+    assert 0.0 < np.abs(held.solution.estimates.march).max() < 0.02
+    kept = cx.load_response(held.save(tmp_path / "run.nc"))
+    assert_allclose(spectra_of(kept.solution).voltage, held.solution.spectra.voltage, rtol=1e-9, atol=1e-12)
+
+
+def test_steps_converge(held):
+    runs = [cx.simulate(limited(), **{**RUN, "time_step": 0.02}).solution.normal, held.solution.normal[..., ::2]]
+    runs.append(cx.simulate(limited(), **{**RUN, "time_step": 0.005}).solution.normal[..., ::4])
+    first, second = (np.linalg.norm(a - b) / np.linalg.norm(b) for a, b in ((runs[0], runs[1]), (runs[1], runs[2])))
+    assert first < 2e-3
+    assert first / second > 2.0
+
+
+def test_a_limit_judges_what_is_asked_for():
+    run = cx.simulate(limited("3 A/m^2", stops=False), **RUN)
+    effort = run.control_effort()
+    assert effort["outer"].limits["current"] == 3.0
+    assert not effort.within
+    assert any("times the 3.000 A/m^2 of its amplifier; set control.current_saturation = true" in text for text in run.warnings)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"current_limit": "3 A"}, r"current_limit: '3 A' is a current without the area that it serves; divide it by the area"),
+        ({"current_limit": None}, r"current_saturation: stops at a current_limit, and none is given"),
+        ({"segments": None}, r"current_saturation: is that of an amplifier, .*; give the number of segments"),
+        ({"saturation": True}, r"current_saturation: voltage and current are not known to stop together"),
+        ({"dead": [1]}, r"dead: segments at ground"),
+        ({"segments": None, "transducers": "paper", "current_saturation": False}, r"current_limit: is said of currents"),
+    ],
+)
+def test_what_cannot_be(change, told):
+    with pytest.raises(InputError, match=told):
+        limited(**{"limit": change.pop("current_limit", "3 A/m^2"), "stops": change.pop("current_saturation", True), **change})
