@@ -121,20 +121,60 @@ def test_a_wall_laid_flat(client, answer, library, quantity):
 @pytest.mark.parametrize(
     ("entries", "where"),
     [
-        ({"kind": "field"}, "run"),
-        ({"kind": "energy"}, "run"),
+        ({"kind": "field", "plane": "aslant"}, "plane"),
+        ({"kind": "field", "station": 2}, "station"),
         ({"kind": "unrolled", "shell": 2}, "shell"),
     ],
 )
-def test_what_is_not_shown_is_refused_in_one_line(client, answer, entries, where):
+def test_what_there_is_not_is_refused_in_one_line(client, answer, entries, where):
     told = client.post("/api/jobs", json={"client": "tab", "run": answer[0]["run"], **entries}).json()
-    assert told["ok"] is False
-    assert told["problem"]["where"] == where
+    assert (told.get("problem") or told["error"])["where"] == where
 
 
-def test_nor_are_films_points_energies_and_figures_of_fields(client, answer):
+@pytest.mark.parametrize("plane", ["along", "across"])
+def test_the_pressure_on_a_cut_is_the_library_s(client, answer, library, plane):
+    asked = {"kind": "field", "run": answer[0]["run"], "plane": plane, "station": 1, "every": 25, "size": 32, "half_width": 1.6}
+    job = finished(client, **asked)
+    told = client.get(f"/api/jobs/{job['id']}/result").json()
+    assert (told["frames"], told["plane"], told["station"]) == (5, plane, 0.5)
+    _, arrays = decoded(client.get(f"/api/jobs/{job['id']}/frames?count=5&format=float16").content)
+    pressure = told["scale"] * arrays["pressure"].astype(float)
+    x = 0.1 * (np.arange(32) - 15.5)
+    cut = {"y": 0.0, "z": x[16:]} if plane == "along" else {"y": x[16:], "z": 0.5}
+    ours = library.pressure(x=x, **cut, time=told["time"], front="matched").to_numpy()
+    np.testing.assert_allclose(pressure[:, 16:], ours, rtol=2**-11, atol=1e-6 * np.abs(ours).max())  # halves of floats
+    np.testing.assert_array_equal(pressure[:, :16], pressure[:, :15:-1])
+    if plane == "across":
+        ours = library.stress("outer", np.arange(360.0), station=0.5).to_numpy()[::25]
+        np.testing.assert_allclose(arrays["stress/1"], ours, rtol=0, atol=SINGLE * np.abs(ours).max())
+        return
+    first, count = told["rows"]
+    assert [side["rigid"] for side in told["sides"]] == [False] * 4
+    assert x[first] >= -0.5 > x[first - 1]
+    assert arrays["stress/3"].shape == (5, count)
+    tail = library.stress("outer", 180).transpose("time", "station").to_numpy()[::25] @ [0.9, 0.1]  # at z = 0.05
+    np.testing.assert_allclose(arrays["stress/3"][:, 16 - first], tail, rtol=0, atol=SINGLE * np.abs(tail).max())
+
+
+def test_energy_over_the_whole_length_and_what_it_costs(client):
+    tiny = {**SPACE, "duration": 1.0, "modes": 4}
+    run = solved(client, described("bare"), resolution=tiny)[0]["run"]
+    costs = client.get(f"/api/runs/{run}/costs?every=25&size=64").json()
+    assert min(costs[name]["seconds"] for name in ("along", "across", "energy")) > 0.0
+    job = finished(client, kind="energy", run=run, every=25)
+    header, arrays = decoded(client.get(f"/api/jobs/{job['id']}/result").content)
+    ours = cx.simulate("bare", **tiny).energy(25)
+    assert header["extent"] == "over the whole length"
+    assert next(one["unit"] for one in header["arrays"] if one["name"] == "exterior_work") == "J"
+    np.testing.assert_allclose(arrays["exterior_work"], ours["exterior_work"], rtol=1e-6)
+    run = solved(client, described("bare"))[0]["run"]
+    assert client.get(f"/api/runs/{run}/costs").json()["error"]["where"] == "run"
+    refused = client.post("/api/jobs", json={"client": "tab", "kind": "field", "run": run, "plane": "along"})
+    assert refused.json()["error"]["where"] == "plane", "of two dimensions"
+
+
+def test_points_energies_at_once_and_figures_of_fields_are_not_there(client, answer):
     run = answer[0]["run"]
-    assert client.post("/api/jobs", json={"client": "tab", "kind": "film", "runs": [run]}).json()["problem"]["where"] == "run"
     for path in ("point?x=1&y=1", "energy", "figure.png?quantity=field"):
         refused = client.get(f"/api/runs/{run}/{path}")
         assert (refused.status_code, refused.json()["error"]["where"]) == (422, "run")

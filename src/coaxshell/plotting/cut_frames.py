@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
@@ -57,8 +57,16 @@ class Shown:
         from coaxshell.response.fields.cut_field import field_cost
 
         spatial, times = _spatial(self), np.linspace(0.0, float(self.response.time[-1]), count)
-        across, along = (field_cost(spatial.spatial, cut, _asked(spatial, None), times, 1) for cut in _cuts(self, view))
-        return Cost(across.memory + along.memory, across.seconds + along.seconds)
+        costs = [field_cost(spatial.spatial, _cut(self, panel, view), _asked(spatial, None), times, 1) for panel in self.panels]
+        return Cost(sum(one.memory for one in costs), sum(one.seconds for one in costs))
+
+    def across(self) -> Shown:
+        """Return the cross-section alone of a run in three dimensions."""
+        return replace(self, panels=self.panels[:1])
+
+    def along(self) -> Shown:
+        """Return the plane along the axis alone of a run in three dimensions."""
+        return replace(self, panels=self.panels[1:])
 
 
 def shown_runs(responses: Sequence[Response], names: Sequence[str], station: Any = None) -> list[Shown]:
@@ -118,7 +126,7 @@ class _Plane:
 
 
 class _Cuts:
-    """Hold the fields of a run in three dimensions: both cuts are solved at once for all instants."""
+    """Hold the fields of a run in three dimensions: its cuts are solved at once for all instants."""
 
     def __init__(self, shown: Shown, times: Sequence[float] | FloatArray, view: FieldView, progress: Report | None) -> None:
         from coaxshell.response.fields.cut_field import CutField
@@ -129,11 +137,12 @@ class _Cuts:
         self._time = np.asarray(spatial.time, dtype=np.float64)[index]
         self._milliseconds = 1e3 * np.asarray(spatial.time_seconds, dtype=np.float64)[index]
         self._pascal = spatial.solution.problem.scales.pressure
-        self._stress = _section_stress(spatial, shown.station, index), _axial_stress(spatial, shown.panels[1], view, index)
-        self._fields = []
-        for number, cut in enumerate(_cuts(shown, view)):
-            asked = _asked(spatial, _half(progress, number))
-            self._fields.append(CutField(spatial.spatial, cut, asked, self._time, ("pressure",)))
+        self._stress, self._fields = [], []
+        for number, panel in enumerate(shown.panels):
+            along = isinstance(panel, AlongAxis)
+            self._stress.append(_axial_stress(spatial, panel, view, index) if along else _section_stress(spatial, shown.station, index))
+            asked = _asked(spatial, _share(progress, number, len(shown.panels)))
+            self._fields.append(CutField(spatial.spatial, _cut(shown, panel, view), asked, self._time, ("pressure",)))
 
     def sample(self) -> list[Frames]:
         return list(self._block(slice(None, None, max(1, self._time.size // _SAMPLES))))
@@ -160,15 +169,16 @@ def _spatial(shown: Shown) -> SpatialResponse:
     return cast("SpatialResponse", shown.response)
 
 
-def _cuts(shown: Shown, view: FieldView) -> tuple[Cut, Cut]:
-    """Return the cross-section and the plane along the axis, of each the upper half where the lower is its mirror image."""
+def _cut(shown: Shown, panel: Panel, view: FieldView) -> Cut:
+    """Return the cross-section or the plane along the axis, its upper half where the lower is its mirror image."""
     from coaxshell.response.fields.cuts import cut_of
 
     assert shown.station is not None
     x, middle, system = view.centres, view.pixels // 2, shown.response.system
+    if isinstance(panel, AlongAxis):
+        return cut_of(x, 0.0, x[middle:] if alike_on_both_sides(system) else x, None, None)
     y = x[middle:] if shown.response.solution.normal.shape[1] == 1 else x
-    z = x[middle:] if alike_on_both_sides(system) else x
-    return cut_of(x, y, shown.station / system.reference_radius, None, None), cut_of(x, 0.0, z, None, None)
+    return cut_of(x, y, shown.station / system.reference_radius, None, None)
 
 
 def _asked(spatial: SpatialResponse, progress: Report | None) -> FieldRequest:
@@ -177,12 +187,12 @@ def _asked(spatial: SpatialResponse, progress: Report | None) -> FieldRequest:
     return spatial_request(spatial.spatial, front="matched", progress=progress)
 
 
-def _half(progress: Report | None, number: int) -> Report | None:
-    """Return a report for one of two cuts."""
+def _share(progress: Report | None, number: int, count: int) -> Report | None:
+    """Return a report for one of some cuts."""
 
     def report(share: float, _: str) -> None:
         if progress is not None:
-            progress(0.5 * (number + share), "waves")
+            progress((number + share) / count, "waves")
 
     return report if progress is not None else None
 

@@ -60,19 +60,33 @@ def test_histories_and_walls_are_the_library_s_at_each_station(page):
     assert_allclose(drawn[1:] * scale, ours, rtol=0, atol=1e-5 * np.abs(ours).max())
 
 
-def test_what_is_not_shown_says_so_and_comes_back(page):
-    page.locator("#tab-wave").click()
-    assert "not shown in three dimensions yet" in page.locator("#wave").inner_text()
-    assert not page.locator("#play").is_visible()
+def test_cuts_and_energy_wait_until_asked_for_and_tell_their_cost(page):
+    page.locator("#tab-wave").press("Enter")
+    until(page, r"/about [\d.]+.(s|min)/.test(document.getElementById('wave-ask').textContent)")
+    page.locator("#wave-ask").press("Enter")
+    assert page.evaluate("document.activeElement.id") == "wave-cut"
+    until(page, "document.getElementById('field-current').getAttribute('aria-label').endsWith('along the axis')")
+    assert not page.locator("#wave-ask").is_visible()
+    page.locator("#field-current").press("ArrowUp")
+    assert "z = 0.05 (radii)" in page.locator("#wave-point").inner_text()
+    page.locator("#wave-cut").select_option(label="across, z = 0.5\u202fm")
+    page.locator("#wave-ask").press("Enter")
+    until(page, "document.getElementById('field-current').getAttribute('aria-label').endsWith('across, z = 0.5\\u202fm')")
+    assert "y = 0.05 (radii)" in page.locator("#wave-point").inner_text()
+    page.locator("#wave-cut").select_option("along")
+    assert page.locator("#wave-ask").is_visible(), "one cut a run is kept"
+    assert violations(page, "#more") == []
     page.locator("#tab-energy").click()
-    assert "not shown in three dimensions yet" in page.locator("#energy").inner_text()
-    page.locator("#download button").first.click()
-    assert page.locator("#download-list button", has_text="Film").is_disabled()
+    until(page, r"/whole length, about [\d.]+.(s|min)/.test(document.getElementById('energy-ask')?.textContent)")
+    page.locator("#energy-ask").press("Enter")
+    until(page, "document.getElementById('energy-plot')?.data")
+    assert violations(page, "#more") == []
     page.locator('[data-path="resolution.dimensions"]').select_option("2")
     until(page, "window.coaxshell.state.runs.current && !window.coaxshell.state.runs.current.stations")
     assert "stations" not in page.evaluate("window.coaxshell.state.resolution")
     page.locator("#tab-wave").click()
-    page.locator("#play").wait_for()
+    until(page, "document.getElementById('field-current').getAttribute('aria-label').endsWith('system')")
+    assert not page.locator("#wave-cut").is_visible()
 
 
 def test_three_dimensions_are_chosen_by_keyboard_with_their_cost_and_can_be_stopped(open_page, server):
@@ -108,7 +122,7 @@ def test_axe_finds_nothing_wrong_and_nothing_is_too_wide(open_page, server, size
     page = open_page(linked(server), width=width, height=height, theme=theme, wait=False)
     until(page, SOLVED)
     page.locator('details[data-group="dimensions"]').evaluate("box => { box.open = true; }")
-    for tab in ("peaks", "wall", "energy"):
+    for tab in ("peaks", "wall", "energy", "wave"):
         page.locator(f"#tab-{tab}").click()
         if tab == "wall":
             until(page, "document.getElementById('wall-plot').data")

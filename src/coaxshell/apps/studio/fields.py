@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from coaxshell.apps.studio import worker
+from coaxshell.apps.studio import limits, worker
 from coaxshell.apps.studio.arrays import Item, Packed, packed
 from coaxshell.model import System
 from coaxshell.model.places import region_name, shell_phrase
@@ -16,6 +16,8 @@ from coaxshell.plotting.energy import group_colours
 from coaxshell.plotting.field import absorber_places, wall_radii
 from coaxshell.plotting.field_scales import field_scales
 from coaxshell.plotting.frames import FieldView, Frames, field_frames, gathered
+from coaxshell.response.energy.whole_length import whole_length_cost
+from coaxshell.response.spatial import SpatialResponse
 from coaxshell.solver.settings import Settings
 
 Stresses = dict[int, npt.NDArray[np.float32]]
@@ -35,34 +37,36 @@ def film(system: System, settings: Settings, every: int, size: int, half_width: 
     view = FieldView(half_width, size)
     with worker.part(1, 2, "field"):
         frames = gathered(field_frames(response, response.time[::every], view, progress=worker.report))
-    scales = field_scales([frames])
-    largest = float(np.max(np.abs(frames.pressure), initial=0.0)) or 1.0
+    return {**told_of(system, frames), "every": every, "size": size, "half_width": half_width}, written(frames, path)
+
+
+def written(frames: Frames, path: Path) -> Stresses:
+    """Write the pressure over its largest magnitude to a file as float16, shape (K, size, size), and return the shells' stress."""
+    largest, size = _largest(frames), frames.field(0).shape[0]
     pressure = np.empty((len(frames), size, size), np.float16)
     for index in range(len(frames)):
         pressure[index] = frames.field(index) / largest
     with path.open("wb") as file:
         np.save(file, pressure, allow_pickle=False)
-    stresses = {i: around.astype(np.float32) for i, around in enumerate(frames.stress) if around is not None}
-    about = {
-        **_told(system, frames, scales.pressure, scales.stress),
-        "every": every,
-        "size": size,
-        "half_width": half_width,
-        "scale": largest,
-    }
-    return about, stresses
+    return {i: around.astype(np.float32) for i, around in enumerate(frames.stress) if around is not None}
 
 
-def _told(system: System, frames: Frames, pressure: float, stress: float) -> dict[str, Any]:
-    milliseconds = frames.milliseconds
+def _largest(frames: Frames) -> float:
+    return float(np.max(np.abs(frames.pressure), initial=0.0)) or 1.0
+
+
+def told_of(system: System, frames: Frames) -> dict[str, Any]:
+    """Return what a page needs to know of frames to play them."""
+    milliseconds, scales = frames.milliseconds, field_scales([frames])
     transit = 1e-3 * float(milliseconds[-1] / frames.time[-1]) if len(frames) > 1 else 0.0
     x, y = absorber_places(system) if system.absorber_list else (np.empty(0), np.empty(0))
     return {
         "frames": len(frames),
         "time": [float(time) for time in frames.time],
         "transit_time_seconds": transit,
-        "pressure_limit": float(pressure),
-        "stress_limit": float(stress),
+        "pressure_limit": float(scales.pressure),
+        "stress_limit": float(scales.stress),
+        "scale": _largest(frames),
         "radii": [float(radius) for radius in wall_radii(system)],
         "absorbers": [[float(a), float(b)] for a, b in zip(x, y, strict=True)],
     }
@@ -109,10 +113,12 @@ def _place(system: System, radius: float) -> str:
 
 
 def energy(system: System, settings: Settings, every: int) -> Packed:
-    """Return the energy balance of a run."""
-    with worker.part(0, 2, "solving"):
+    """Return the energy balance of a run, of one in three dimensions over the whole length of the shells."""
+    with worker.part(0, 10, "solving"):
         response = worker.answer(system, settings)
-    with worker.part(1, 2, "integrating the fluids' energy"):
+    if isinstance(response, SpatialResponse):
+        limits.require_small(whole_length_cost(response.spatial), "the energy over the whole length")
+    with worker.part(1, 10, "integrating the fluids' energy", 9):
         balance = response.energy(every, worker.report)
     entries = [
         {"name": str(name), "label": str(values.attrs["long_name"]), "role": values.attrs["role"], "group": values.attrs["group"]}
@@ -121,8 +127,9 @@ def energy(system: System, settings: Settings, every: int) -> Packed:
     items = {str(name): Item(np.asarray(values), str(values.attrs["units"])) for name, values in balance.data_vars.items()}
     stacked = {entry["group"] for entry in entries if entry["role"] in ("store", "loss")}
     colours = group_colours(sorted(stacked))
-    closure = float(np.max(np.abs(balance["closure_relative"])))
+    closure, extent = np.max(np.abs(balance["closure_relative"])), balance.attrs.get("extent", "per metre of length")
+    told = {"closure": float(closure), "extent": extent}
     return packed(
-        {"entries": entries, "groups": [{"name": name, "colour": tint} for name, tint in colours.items()], "closure": closure},
+        {"entries": entries, "groups": [{"name": name, "colour": tint} for name, tint in colours.items()], **told},
         {"time": Item(np.asarray(balance["time"]), "transits"), **items},
     )

@@ -17,7 +17,7 @@ from coaxshell._version import __version__
 from coaxshell.apps.studio import arrays, bodies, downloads, limits, refusals, study_routes, worker
 from coaxshell.apps.studio.jobs import Job
 from coaxshell.apps.studio.refusals import RefusedError
-from coaxshell.apps.studio.routes import ENERGY_INSTEAD, FIELD_INSTEAD, MOST_REVISION, refuse_space, studio_of, wanted
+from coaxshell.apps.studio.routes import FIELD_INSTEAD, MOST_REVISION, refuse_space, studio_of, wanted
 from coaxshell.apps.studio.state import Run, Studio
 from coaxshell.errors import InputError
 
@@ -60,10 +60,12 @@ async def _solve(studio: Studio, job: Job, data: dict[str, Any]) -> None:
 
 
 async def _field(studio: Studio, job: Job, data: dict[str, Any]) -> None:
-    from coaxshell.apps.studio import fields
+    from coaxshell.apps.studio import cut_films, fields
 
     run = studio.run(bodies.name_of(data, "run"))
-    limits.require_plane(run.settings, "the pressure", FIELD_INSTEAD)
+    stations = run.settings.stations if run.settings.dimensions == 3 else ()
+    plane = bodies.one_of(data, "plane", cut_films.PLANES if stations else ("across",), "across")
+    number = bodies.whole_of(data, "station", 0, max(len(stations) - 1, 0), 0)
     every, size = bodies.whole_of(data, "every", 1, limits.STEPS, 8), bodies.whole_of(data, "size", 32, 320, 200)
     half_width = bodies.number_of(data, "half_width", 0.5, 10.0, 3.0)
     values = (run.settings.steps // every + 1) * size**2
@@ -72,14 +74,17 @@ async def _field(studio: Studio, job: Job, data: dict[str, Any]) -> None:
             422, "limit", "every", f"{values:,} values are too many", f"at most {limits.FIELD_VALUES:,}: fewer frames or pixels"
         )
     job.run, job.file = run.name, studio.file("npy")
-    studio.jobs.start(job, fields.film, *run.pair, every, size, half_width, job.file, place=run.place)
+    if stations:
+        cut = plane, float(stations[number])
+        studio.jobs.start(job, cut_films.cut_film, *run.pair, *cut, every, size, half_width, job.file, place=run.place)
+    else:
+        studio.jobs.start(job, fields.film, *run.pair, every, size, half_width, job.file, place=run.place)
 
 
 async def _energy(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.apps.studio import fields
 
     run = studio.run(bodies.name_of(data, "run"))
-    limits.require_plane(run.settings, "the energy", ENERGY_INSTEAD)
     job.run = run.name
     every = bodies.whole_of(data, "every", 1, limits.STEPS, 10)
     studio.jobs.start(job, fields.energy, *run.pair, every, place=run.place)
@@ -136,8 +141,6 @@ async def _film(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     frames, size = bodies.whole_of(data, "frames", 2, 500, 120), bodies.whole_of(data, "size", 64, 480, 360)
     fps = bodies.number_of(data, "fps", 1.0, 60.0, 25.0)
     job.run, job.file, job.name = runs[0].name, studio.file(kind), runs[0].system.name
-    for run in runs:
-        limits.require_plane(run.settings, "films", FIELD_INSTEAD)
     pairs = [run.pair for run in runs]
     studio.jobs.start(job, downloads.movie, pairs, frames, fps, size, job.file, place=runs[0].place)
 

@@ -150,6 +150,13 @@ def require_plane(settings: Settings, what: str, remedy: str) -> None:
         raise InputError("run", f"is of three dimensions, of which the studio does not show {what}", remedy)
 
 
+def require_small(cost: Cost, what: str) -> None:
+    """Raise InputError for what is made of a run and takes more memory or time than one request may."""
+    if cost.memory > FULL_COST.memory or cost.seconds > FULL_COST.seconds:
+        remedy = f"at most {words_of(FULL_COST.memory)} and {FULL_COST.duration} here: fewer orders, or a coarser time step"
+        raise InputError("run", f"{what} takes about {words_of(cost.memory)} and {cost.duration}", remedy)
+
+
 def cost_of(system: System, settings: Settings) -> dict[str, Any]:
     """Return what a run is estimated to cost, as plain data: seconds within a factor of 3, bytes of memory."""
     cost = run_cost(system, settings)

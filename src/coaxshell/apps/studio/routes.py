@@ -158,7 +158,7 @@ async def judgement(request: Request) -> Response:
 
 
 FIELD_INSTEAD = "use two dimensions here, or response.pressure(...) of a run in Python"
-ENERGY_INSTEAD = "use two dimensions here, or coaxshell run --dimensions 3 --energy FILE"
+ENERGY_INSTEAD = "start a job of the kind energy, which tells how far it is"
 
 
 def refuse_space(run: Run, what: str, remedy: str) -> None:
@@ -178,6 +178,23 @@ async def energy(request: Request) -> Response:
     every = bodies.whole_of(dict(request.query_params), "every", 1, limits.STEPS, 10)
     refuse_space(found, "the energy", ENERGY_INSTEAD)
     return await of_run(found, studio.workers.submit(fields.energy, *found.pair, every, place=found.place, live=False).future)
+
+
+async def costs(request: Request) -> Response:
+    """Answer with what the wave and the energy of a run in three dimensions cost, before they are begun."""
+    from coaxshell.apps.studio import cut_films
+
+    studio, query = studio_of(request), dict(request.query_params)
+    found = studio.run(request.path_params["run"])
+    every, size = bodies.whole_of(query, "every", 1, limits.STEPS, 8), bodies.whole_of(query, "size", 32, 320, 200)
+    half_width = bodies.number_of(query, "half_width", 0.5, 10.0, 3.0)
+    if found.settings.dimensions != 3:
+        raise RefusedError(422, "input", "run", "is of two dimensions, where they take seconds", "ask for them")
+    work = studio.workers.submit(cut_films.costs, *found.pair, every, size, half_width, place=found.place)
+    try:
+        return JSONResponse({"run": found.name, **await work.future})
+    except InputError as error:
+        raise RefusedError.of(error) from None
 
 
 async def point(request: Request) -> Response:
@@ -255,5 +272,6 @@ def routes() -> list[BaseRoute]:
         Route("/api/runs/{run}", run),
         Route("/api/runs/{run}/judgement", judgement),
         Route("/api/runs/{run}/energy", energy),
+        Route("/api/runs/{run}/costs", costs),
         Route("/api/runs/{run}/point", point),
     ]

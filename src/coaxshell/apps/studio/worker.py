@@ -101,9 +101,9 @@ def report(fraction: float, stage: str) -> None:
 
 
 @contextmanager
-def part(number: int, count: int, stage: str) -> Iterator[None]:
-    """Make the reports inside a ``with`` block those of one of several equal parts of the task."""
-    _Here.part = number / count, 1 / count, stage
+def part(number: int, count: int, stage: str, width: int = 1) -> Iterator[None]:
+    """Make the reports inside a ``with`` block those of one, or of so many, of several equal parts of the task."""
+    _Here.part = number / count, width / count, stage
     try:
         report(0.0, stage)
         yield

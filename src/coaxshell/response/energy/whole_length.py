@@ -17,7 +17,7 @@ import numpy as np
 from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.errors import InputError
 from coaxshell.numerics.cost import Cost
-from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.energy.balance import ARRAYS, labelled, whole_steps
@@ -34,6 +34,8 @@ from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.scaling import Problem
 
+_WAVE, _ENTRY = 0.08, 5e-5
+"""Seconds of a core for a wavenumber, and for an order, a parity and an instant of it."""
 _ALIKE = 10.0
 """What a fluid may lose of its spectrum at a wavenumber, in so many of what it may lose at the usual one."""
 
@@ -105,6 +107,23 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     scales = problem.scales
     found = labelled(solution, every, total, scales.line_energy if uniform else scales.energy, "J/m" if uniform else "J")
     return found.assign_attrs(extent="per metre of length" if uniform else "over the whole length")
+
+
+def whole_length_cost(solution: SpatialSolution) -> Cost:
+    """Return what :func:`whole_length_energy` takes; measured with thin walls, lines of absorbers not counted.
+
+    Raises
+    ------
+    InputError
+        As :func:`require_balanced`.
+    """
+    problem, settings = solution.problem, solution.settings
+    require_balanced(problem)
+    sampling = whole_length_sampling(problem, settings)
+    uniform = not isinstance(problem.sources[0], SphericalFrontGeometry)
+    entries = float(solution.fields["w"][0].shape[0] * (sampling.max_order + 1) * settings.steps * settings.refinement)
+    memory = 2.0 * ARRAYS * solution.fields["w"][0].nbytes * settings.refinement
+    return Cost(memory, (1 if uniform else len(sampling.modes)) * (_WAVE + _ENTRY * entries) / WORKERS)
 
 
 def _lines(solution: SpatialSolution, sampling: AxialSampling, grid: LaplaceGrid, progress: Progress | None) -> LineSolution | None:

@@ -1,5 +1,6 @@
 // Where the energy goes: stores and losses stacked, the work done on the outer shell as a line over them; colours and order are the library's.
 import { request } from "./api.js";
+import * as cuts from "./cuts.js";
 import { by, el } from "./dom.js";
 import { SETTINGS, UNITS, frame } from "./curves.js";
 import { finished } from "./events.js";
@@ -9,9 +10,10 @@ import { told } from "./words.js";
 
 let shown = null, wanted = null, work = null; // what is drawn: { answer, run }; the run asked for; its job
 
-export async function draw(run, unit) {
+export async function draw(run, unit, sure = false) {
   if (shown?.run === run.run) return chart(shown.answer, run, unit);
   if (wanted === run.run) return null;
+  if (run.stations && !sure) return offered(run, unit);
   work?.cancel();
   wanted = run.run;
   const mine = (work = finished({ kind: "energy", run: run.run, every: Math.ceil(run.arrays.time.values.length / 200) }, (job) => work === mine && progress(job)));
@@ -28,6 +30,22 @@ export async function draw(run, unit) {
   return null;
 }
 
+// In three dimensions it takes long, and waits until it is asked for.
+async function offered(run, unit) {
+  work?.cancel();
+  work = wanted = null;
+  const box = by("energy"), ask = el("button", { type: "button", id: "energy-ask", onclick: () => { box.focus(); draw(run, unit, true); } }, "Integrate the energy over the whole length"), line = el("div", { class: "bar status", id: "energy-state" }, ask);
+  by("energy-plot")?.classList.add("old");
+  by("energy-state")?.remove();
+  box.prepend(line);
+  try {
+    const { energy, energy_refused: refused } = await cuts.costsOf(run);
+    if (energy) ask.textContent += `, about ${cuts.inTime(energy.seconds)}`;
+    else line.replaceChildren(el("p", { class: "note" }, told(refused)));
+  } catch (failure) { line.replaceChildren(el("p", { class: "problem" }, told(failure))); }
+  return null;
+}
+
 export function forget(instead = null) {
   shown = wanted = work = null;
   if (instead) by("energy").replaceChildren(instead);
@@ -37,6 +55,7 @@ export function forget(instead = null) {
 function progress({ fraction }) {
   const box = by("energy"), plot = by("energy-plot"), text = `Integrating the fluids’ energy: ${Math.round(100 * (fraction ?? 0))}\u202f%`;
   plot?.classList.add("old");
+  if (by("energy-ask")) by("energy-state").remove();
   if (!by("energy-state")) box.prepend(el("div", { class: "bar status", id: "energy-state" }, el("p", { class: "note", role: "status" }), el("button", { type: "button", class: "quiet", onclick: () => work?.cancel() }, "Cancel")));
   by("energy-state").firstChild.textContent = text;
 }
@@ -52,9 +71,9 @@ function groups(answer) {
 }
 
 function chart(answer, run, unit) {
-  const { name, of } = UNITS[unit], time = answer.arrays.time.values.map((value) => value * of(run)), parts = groups(answer), total = answer.arrays.exterior_work?.values;
+  const { name, of } = UNITS[unit], time = answer.arrays.time.values.map((value) => value * of(run)), parts = groups(answer), done = answer.arrays.exterior_work, total = done?.values;
   const largest = Math.max(...[...parts.map(({ values }) => values), total ?? []].flatMap((values) => Array.from(values, Math.abs)));
-  const scale = prefixed("J/m", largest), y = (values, part) => Float32Array.from(values, (value) => part(value) / scale.factor);
+  const joule = done?.unit ?? "J/m", scale = prefixed(joule, largest), y = (values, part) => Float32Array.from(values, (value) => part(value) / scale.factor);
   // What is given back (actuators that drive) is stacked below zero, or it would hide its neighbours.
   const traces = parts.flatMap(({ values, label, tint, lost }) => [["above", (value) => Math.max(value, 0)], ["below", (value) => Math.min(value, 0)]].filter(([, part]) => values.some((value) => part(value))).map(([stackgroup, part], i) => ({
     x: time, y: y(values, part), name: label, legendgroup: label, showlegend: !i, stackgroup, type: "scatter", mode: "lines", line: { width: 0.5, color: tint },
@@ -63,8 +82,8 @@ function chart(answer, run, unit) {
   if (total) traces.push({ x: time, y: y(total, (value) => value), name: "work of the exterior pressure", type: "scatter", mode: "lines", line: { color: colour("text"), width: 1.6 }, hovertemplate: `%{y:.3g} ${scale.unit}<extra></extra>` });
   const { style, axis, layout } = frame({ showlegend: true, height: 380, hovermode: "x unified" });
   Object.assign(layout, { legend: { orientation: "h", y: -0.2, traceorder: "normal", font: { ...style, size: 11 } }, margin: { l: 68, r: 12, t: 12, b: 40 },
-    xaxis: { ...axis, title: { text: `time (${name})`, font: style } }, yaxis: { ...axis, title: { text: `energy (${scale.unit})`, font: style } } });
-  const plot = el("div", { id: "energy-plot", role: "img", "aria-label": `Energy over time, up to ${show(largest, "J/m", 3)}` });
+    xaxis: { ...axis, title: { text: `time (${name})`, font: style } }, yaxis: { ...axis, title: { text: `energy ${answer.extent === "over the whole length" ? "over the whole length " : ""}(${scale.unit})`, font: style } } });
+  const plot = el("div", { id: "energy-plot", role: "img", "aria-label": `Energy over time, up to ${show(largest, joule, 3)}` });
   by("energy").replaceChildren(plot, el("p", { class: "note" }, `Hatched: lost for good. Stores, losses and the work done agree within ${show(100 * answer.closure, "", 2)}\u202f% of the work.`));
   window.Plotly.newPlot(plot, traces, layout, SETTINGS);
 }

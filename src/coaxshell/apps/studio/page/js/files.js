@@ -44,8 +44,8 @@ function fill(list, runs, close) {
   const act = (what) => () => { close(); what(); };
   list.replaceChildren(...FILES.map(([path, name, kind]) => el("li", {}, el("a", { href: `/api/runs/${run}/${path}${query(path)}`, download: "", onclick: close }, name, el("small", {}, kind)))),
     el("li", {}, making.report ? el("button", { type: "button", onclick: act(() => cancel("report")) }, "Cancel the report") : el("button", { type: "button", id: "report", onclick: act(() => report(runs)) }, "Report", el("small", {}, "one HTML file, about a minute"))),
-    el("li", {}, runs.current.stations ? el("button", { type: "button", disabled: true }, "Film", el("small", {}, "of two dimensions only")) : making.film ? el("button", { type: "button", id: "no-film", onclick: act(() => cancel("film")) }, "Cancel the film")
-      : el("button", { type: "button", id: "film", onclick: act(() => film(runs)) }, "Film", el("small", {}, `${format === "mp4" ? "MP4" : "WebP"}, side by side`))));
+    el("li", {}, making.film ? el("button", { type: "button", id: "no-film", onclick: act(() => cancel("film")) }, "Cancel the film")
+      : el("button", { type: "button", id: "film", onclick: act(() => film(runs)) }, "Film", el("small", {}, `${format === "mp4" ? "MP4" : "WebP"}, side by side${runs.current.stations ? ", across and along; minutes" : ""}`))));
 }
 
 const film = (runs) => make({ kind: "film", runs: together(runs), frames: 120, fps: 24, size: 360, format });

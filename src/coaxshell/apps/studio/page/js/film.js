@@ -1,14 +1,15 @@
 // One run's field, from the server to this page: frames as bytes, the shells' stress beside them.
 import { client, request } from "./api.js";
+import * as cuts from "./cuts.js";
 import { ended, unwatch, watch } from "./events.js";
 
 const FRAMES = 160, SIZE = 200, HALF_WIDTH = 3;
 
 // Fetch the film of a run; tell(fraction) while the server computes it. Aborting the signal stops the server too. The colours end at
-// `limit` (Pa), those of another film beside it, or at what suits this one.
-export async function film(answer, signal, tell, limit = null) {
-  const every = Math.max(1, Math.ceil(answer.arrays.time.values.length / FRAMES));
-  const started = await request("/api/jobs", { body: { client, kind: "field", run: answer.run, every, size: SIZE, half_width: HALF_WIDTH }, signal });
+// `limit` (Pa), those of another film beside it, or at what suits this one. In three dimensions it is that of a cut.
+export async function film(answer, signal, tell, limit = null, cut = "") {
+  const of = cut ? { ...cuts.asked(cut), every: cuts.every(answer, cuts.FRAMES), size: cuts.SIZE, half_width: cuts.HALF_WIDTH } : { every: cuts.every(answer, FRAMES), size: SIZE, half_width: HALF_WIDTH };
+  const started = await request("/api/jobs", { body: { client, kind: "field", run: answer.run, ...of }, signal });
   if (!started.job) throw Object.assign(new Error("not started"), { problem: started.problem });
   await finished(started.job, signal, tell);
   const about = await request(`/api/jobs/${started.job.id}/result`, { signal });
@@ -22,12 +23,12 @@ export async function film(answer, signal, tell, limit = null) {
     scale = part.arrays.pressure.scale;
     for (const [name, array] of Object.entries(part.arrays)) {
       if (!name.startsWith("stress/")) continue;
-      const shell = Number(name.slice(7));
-      if (!rings.has(shell)) rings.set(shell, new Float32Array(about.frames * 360));
-      rings.get(shell).set(array.values, start * 360);
+      const shell = Number(name.slice(7)), places = array.shape[1];
+      if (!rings.has(shell)) rings.set(shell, new Float32Array(about.frames * places));
+      rings.get(shell).set(array.values, start * places);
     }
   }
-  return { ...about, run: answer.run, pressure, rings, scale, limit: ends };
+  return { ...about, run: answer.run, cut, pressure, rings, scale, limit: ends };
 }
 
 function finished(job, signal, tell) {

@@ -311,17 +311,14 @@ function drawTab(name) {
   if (name === "designs") designs.draw();
   guide.look();
   if (!page.runs.current) return;
-  const { current } = page.runs, around = Boolean(current.stations);
-  instead(by("wave"), around && "The wave is not shown in three dimensions yet: in Python, response.pressure and plotting.figure_cuts have it on cuts.");
-  instead(by("energy"), around && "The energy is not shown in three dimensions yet: the command coaxshell run draws it, over the whole length of the shells.");
+  const { current } = page.runs;
   instead(by("wall"), !(current.stations?.length > 1) && "The stress on a wall laid flat, over angle and axial position, is there in three dimensions with several stations: choose them under Dimensions.");
-  if (name === "energy" && !around) tabTimer = setTimeout(() => energy.draw(current, page.unit), 300);
-  if (name === "wave" && !around) tabTimer = setTimeout(() => wave.load(page.runs), 300);
+  if (name === "energy") tabTimer = setTimeout(() => energy.draw(current, page.unit), 300);
+  if (name === "wave") tabTimer = setTimeout(() => wave.load(page.runs), 300);
   if (name === "wall" && current.stations?.length > 1) tabTimer = setTimeout(() => wall.draw(current, page.unit), 300);
   const panel = { stressed: () => stressed.draw(current), spectra: () => spectra.draw(current, space.stationShown(current, page.station)), control: () => loops.draw(current) }[name];
   if (panel) tabTimer = setTimeout(panel, 300);
-  if (around) wave.halt();
-  if (name !== "wave") { wave.pause(); curves.cursor(null); } else if (!around) wave.draw();
+  if (name !== "wave") { wave.pause(); curves.cursor(null); } else wave.draw();
 }
 
 // Velocities and accelerations are asked for once they are shown.
@@ -420,7 +417,12 @@ function wire() {
   wave.setUp(curves.cursor);
   wall.setUp(curves.cursor);
   for (const panel of PANELS) panel.setUp();
-  curves.onTime((time) => { if (page.runs.current?.stations) wall.seek(time); else { wave.pause(); wave.seek(time); } });
+  curves.onTime((time) => {
+    const around = page.runs.current?.stations;
+    wave.pause();
+    if (!around || wave.ready()) wave.seek(time);
+    if (around) wall.seek(time);
+  });
   events.onRestart(() => { wave.forget(); energy.forget(); wall.forget(); for (const panel of [...PANELS, designs]) panel.forget(); again(); });
   events.onConnection((reachable) => { page.reachable = reachable; if (page.world) say(); });
   addEventListener("keydown", (event) => {

@@ -1,5 +1,6 @@
 // The wave: pressure around the shells and the stress on them, bare, pinned and current side by side, played or scrubbed.
 import { request } from "./api.js";
+import * as cuts from "./cuts.js";
 import { by, el } from "./dom.js";
 import { film, frameAt, pressureAt } from "./film.js";
 import { STRESS_BAR, pressureBar, stressColour, words as colourWords } from "./maps.js";
@@ -18,6 +19,7 @@ const films = {}; // by panel
 const exact = {}; // by panel: the history of the pressure at the cross
 const parts = {}; // elements
 let shownAt; // called with the time shown
+let runsNow = {}, cut = "", going = ""; // the runs to be shown; in three dimensions the cut; what is being loaded
 let loading = null, time = 0, last = 0, playing = false, before = 0, probe = null, resting = 0, asking = false;
 
 export function setUp(onTime) {
@@ -27,6 +29,8 @@ export function setUp(onTime) {
   parts.speed = el("select", { id: "speed", "aria-label": "Speed" }, ...SPEEDS.map(([value, text]) => el("option", { value, selected: value === 0.5 }, text)));
   parts.time = el("output", { id: "wave-time", for: "scrub" });
   parts.state = el("p", { class: "note", id: "wave-state", role: "status" });
+  parts.cut = el("select", { id: "wave-cut", "aria-label": "Cut", hidden: true, onchange: () => load(runsNow) });
+  parts.ask = el("button", { type: "button", id: "wave-ask", hidden: true, onclick: () => { parts.cut.focus(); load(runsNow, true); } }, "Compute the wave");
   parts.stop = el("button", { type: "button", class: "quiet", id: "wave-stop", hidden: true, onclick: () => loading?.abort() }, "Cancel");
   parts.point = el("output", { class: "note", id: "wave-point" }, "Point at the field, or move the cross with the arrow keys, to read the pressure.");
   parts.scales = el("div", { class: "scales" });
@@ -35,23 +39,32 @@ export function setUp(onTime) {
     parts[name] = canvas;
     return el("figure", { class: "field-panel", id: `panel-${name}` }, canvas, el("figcaption", {}, label));
   });
-  by("wave").replaceChildren(el("div", { class: "player" }, parts.play, parts.scrub, parts.time, parts.speed), el("div", { class: "bar status" }, parts.state, parts.stop), el("div", { class: "fields" }, ...panels), parts.point, parts.scales);
+  by("wave").replaceChildren(el("div", { class: "player" }, parts.play, parts.scrub, parts.time, parts.speed), el("div", { class: "bar status" }, parts.cut, parts.ask, parts.state, parts.stop), el("div", { class: "fields" }, ...panels), parts.point, parts.scales);
 }
 
-// Load the films of the runs unless they are there; the newest call wins.
-export async function load(runs) {
-  const wanted = PANELS.filter(({ name }) => runs[name]);
+// Load the films of the runs unless they are there; the newest call wins. In three dimensions they wait until it is asked for them,
+// since they take long: how long is told beside the button.
+export async function load(runs, sure = false) {
+  const wanted = PANELS.filter(({ name }) => runs[name]), around = Boolean(runs.current?.stations);
+  runsNow = runs;
+  parts.cut.hidden = !around;
+  cut = around ? cuts.chosen(parts.cut, runs.current.stations) : "";
+  const mineIs = ({ name }) => films[name]?.run === runs[name].run && films[name].cut === cut;
   for (const { name } of PANELS) {
     by(`panel-${name}`).hidden = !runs[name];
     if (!runs[name]) delete films[name];
-    aged(name, Boolean(films[name]) && films[name].run !== runs[name].run);
+    aged(name, Boolean(films[name]) && !mineIs({ name }));
   }
   by("wave").querySelector(".fields").dataset.count = wanted.length;
   // All share the colours of the first one, the bare system, so that they can be compared.
-  const there = ({ name }) => films[name]?.run === runs[name].run && films[name].limit === films[wanted[0].name]?.limit;
+  const there = (one) => mineIs(one) && films[one.name].limit === films[wanted[0].name]?.limit, key = JSON.stringify([cut, ...wanted.map(({ name }) => runs[name].run)]);
+  parts.ask.hidden = true;
   if (wanted.every(there)) return draw();
+  if (around && loading && going === key) return null;
   loading?.abort();
+  if (around && !sure) return offered(runs.current, wanted.filter((one) => !mineIs(one)).length, key);
   const mine = (loading = new AbortController());
+  going = key;
   parts.stop.hidden = false;
   const shares = {};
   const progress = () => { parts.state.textContent = `Computing the field: ${Math.round((100 * Object.values(shares).reduce((a, b) => a + b, 0)) / wanted.length)}\u202f%`; };
@@ -61,7 +74,7 @@ export async function load(runs) {
       shares[name] = 0;
       progress();
       const ends = one === wanted[0] ? null : films[wanted[0].name].limit;
-      if (!there(one)) films[name] = await film(runs[name], mine.signal, (fraction) => { shares[name] = fraction; progress(); }, ends);
+      if (!there(one)) films[name] = await film(runs[name], mine.signal, (fraction) => { shares[name] = fraction; progress(); }, ends, cut);
       aged(name, false);
       shares[name] = 1;
     }
@@ -73,11 +86,26 @@ export async function load(runs) {
   } catch (failure) {
     parts.state.textContent = failure.name === "AbortError" ? (loading === mine ? "Cancelled." : parts.state.textContent) : told(failure);
   }
-  if (loading === mine) { loading = null; parts.stop.hidden = true; }
+  if (loading === mine) { loading = null; parts.stop.hidden = true; if (around && !wanted.every(mineIs)) parts.ask.hidden = false; }
+  return null;
 }
 
-// Nothing is asked for, and nothing plays, where a sentence stands in the place of the wave.
-export function halt() { pause(); loading?.abort(); }
+// What has not been computed yet, and how long it would take.
+async function offered(answer, count, key) {
+  loading = null;
+  going = key;
+  parts.ask.hidden = false;
+  parts.stop.hidden = true;
+  parts.ask.textContent = "Compute the wave";
+  parts.state.textContent = "";
+  try {
+    const costs = await cuts.costsOf(answer);
+    if (going === key) parts.ask.textContent = `Compute the wave, about ${cuts.inTime(count * costs[cuts.asked(cut).plane].seconds)}`;
+  } catch (failure) { if (going === key) parts.state.textContent = told(failure); }
+}
+
+// Whether there is something to be seen at an instant.
+export const ready = () => Boolean(first());
 
 // The film of an earlier state stays until the new one is there, and says so.
 function aged(name, old) {
@@ -140,8 +168,10 @@ function panel(canvas, one, limit) {
   inner.putImageData(image, 0, 0);
   context.imageSmoothingEnabled = true;
   context.drawImage(buffer, 0, 0, PIXELS, PIXELS);
-  rings(context, one, frame, limit);
+  if (one.plane === "along") cuts.walls(context, one, frame, limit, PIXELS); else rings(context, one, frame, limit);
+  dots(context, one);
   cross(context, one);
+  canvas.setAttribute("aria-label", `Pressure field of the ${canvas.id.slice(6)} system${cuts.told(one)}`);
 }
 
 function rings(context, one, frame, limit) {
@@ -164,6 +194,10 @@ function rings(context, one, frame, limit) {
       context.stroke();
     }
   });
+}
+
+function dots(context, one) {
+  const toPixels = PIXELS / (2 * one.half_width), centre = PIXELS / 2;
   context.fillStyle = colour("text");
   for (const [x, y] of one.absorbers) {
     context.beginPath();
@@ -216,7 +250,7 @@ async function ask() {
   const { x, y } = probe;
   for (const { name } of PANELS) {
     const run = films[name]?.run; // asked for late: a film may have gone meanwhile
-    if (!run || (exact[name]?.run === run && exact[name].x === x && exact[name].y === y)) continue;
+    if (!run || films[name].cut || (exact[name]?.run === run && exact[name].x === x && exact[name].y === y)) continue;
     const answer = await request(`/api/runs/${run}/point?x=${x}&y=${y}`).catch(() => null);
     if (answer?.arrays) exact[name] = { run, x, y, time: answer.arrays.time.values, pressure: answer.arrays.pressure.values };
     read();
@@ -234,7 +268,7 @@ function exactly(name) {
 
 function read() {
   if (!probe) return;
-  const at = `x = ${probe.x.toFixed(2)}, y = ${probe.y.toFixed(2)} (radii)`.replaceAll("-", "−");
+  const at = `x = ${probe.x.toFixed(2)}, ${first()?.plane === "along" ? "z" : "y"} = ${probe.y.toFixed(2)} (radii)`.replaceAll("-", "−");
   const values = PANELS.filter(({ name }) => films[name]).map(({ name, label }) => `${label.toLowerCase()} ${reading(name)}`);
   parts.point.textContent = `${at}: ${values.join(", ")}`;
 }
