@@ -5,21 +5,26 @@ mid-surface; all actuators of a wall hang on one amplifier, so that their charge
 
     P = oint u i ds,      S = (oint u^2 ds  oint i^2 ds)^(1/2) >= |P|
 
-are the real and the apparent power per metre of length: what the amplifier gives, and what it must be built for.
+are the real and the apparent power per metre of length: what the amplifier gives, and what it must be built for. Where electrodes are
+cut, segment k of width alpha R has one voltage u_k and holds q_k, the mean of q under it, so that its amplifier gives alpha R u_k dq_k/dt.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.response.energy.electrodes import on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.segmented_wall import SegmentedWall
+from coaxshell.structure.segments import Segments
 
 
 class Electrical(NamedTuple):
@@ -28,6 +33,28 @@ class Electrical(NamedTuple):
     voltage: FloatArray
     charge: FloatArray
     current: FloatArray
+
+
+class OfSegments(NamedTuple):
+    """Histories of the segments of one wall, each (N, T): volts, charge (C/m^2) and current (A/m^2) of all its actuators together.
+
+    Attributes
+    ----------
+    segments : Segments
+    width : float
+        Of a segment along the mid-surface, m.
+    """
+
+    segments: Segments
+    width: float
+    voltage: FloatArray
+    charge: FloatArray
+    current: FloatArray
+
+    @property
+    def power(self) -> FloatArray:
+        """Real power of each segment, W per metre of length, (N, T)."""
+        return np.asarray(self.width * self.voltage * self.current)
 
 
 class Power(NamedTuple):
@@ -42,20 +69,51 @@ def electrical(motion: WallMotion, shell: int) -> Electrical:
     return motion.kept(("electrical", shell), lambda: _electrical(motion, shell))
 
 
+def of_segments(motion: WallMotion, shell: int) -> OfSegments | None:
+    """Return what the segments of a wall hold and take, made once; None where its electrodes are whole."""
+    wall = motion.solution.problem.shells[shell]
+    if not isinstance(wall, SegmentedWall) or wall.gains is None:
+        return None
+    return motion.kept(("segments", shell), lambda: _of_segments(motion, shell, wall))
+
+
+def _of_segments(motion: WallMotion, shell: int, wall: SegmentedWall) -> OfSegments:
+    whole = _whole(motion)
+    charges = wall.charges(whole.modes)
+    assert whole.voltage is not None
+    moved = [gain.columns.v * whole.tangential[shell] + gain.columns.w * whole.normal[shell] for gain, _ in charges]
+    voltage, strained, width = on_segments(wall, whole.voltage[shell], moved)
+    charge = sum((one + capacitance * voltage for one, (_, capacitance) in zip(strained, charges, strict=True)), np.zeros_like(voltage))
+    voltage[0, list(wall.segments.dead)] = 0.0
+    metres = float(width[0]) * motion.solution.problem.scales.length
+    return OfSegments(wall.segments, metres, *_inverted(motion, whole, voltage[0], charge[0]))
+
+
 def _electrical(motion: WallMotion, shell: int) -> Electrical:
-    solution, scales = motion.solution, motion.solution.problem.scales
-    whole = Motion.of(solution, 1, spectra_of(solution, continued=True) if marches(solution) else motion.spectra)
-    voltage, charge = _spectra(whole, shell)
-    per_area = scales.pressure * scales.length
-    kept = slice(None, None, solution.settings.refinement)
+    whole = _whole(motion)
+    return Electrical(*_inverted(motion, whole, *_spectra(whole, shell)))
+
+
+def _whole(motion: WallMotion) -> Motion:
+    solution = motion.solution
+    return Motion.of(solution, 1, spectra_of(solution, continued=True) if marches(solution) else motion.spectra)
+
+
+def _inverted(motion: WallMotion, whole: Motion, voltage: ComplexArray, charge: ComplexArray) -> Iterator[FloatArray]:
+    """Yield histories of voltage (V), charge (C/m^2) and current (A/m^2) from transforms of voltage and of the dimensionless charge."""
+    scales = motion.solution.problem.scales
+    per_area, kept = scales.pressure * scales.length, slice(None, None, motion.solution.settings.refinement)
     current = charge * (whole.grid.nodes * (per_area / scales.time))
-    found = (whole.grid.invert(x)[..., kept] for x in (voltage, charge * per_area, current))
-    return Electrical(*found)
+    return (whole.grid.invert(x)[..., kept] for x in (voltage, charge * per_area, current))
 
 
 def power(motion: WallMotion, shell: int) -> Power:
     """Return the real and the apparent power of a wall's actuators over time."""
-    found, problem = electrical(motion, shell), motion.solution.problem
+    problem = motion.solution.problem
+    if (cut := of_segments(motion, shell)) is not None:
+        rms = np.sqrt((cut.voltage**2).sum(axis=0) * (cut.current**2).sum(axis=0))
+        return Power(cut.power.sum(axis=0), cut.width * rms)
+    found = electrical(motion, shell)
     circle = np.pi * np.where(np.arange(found.voltage.shape[1]) == 0, 2.0, 1.0)
     around = circle * problem.shells[shell].radius * problem.scales.length
 

@@ -14,10 +14,13 @@ are the same pattern and m > 0; it tends to 1 as (pi m/N)^2/3, N growing without
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+
+Values = TypeVar("Values", ComplexArray, FloatArray)
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,19 @@ class Segments:
         """Return u_m of each pattern of voltages, shape (parities, orders, patterns)."""
         weight = self.covered / self.count * np.where(orders == 0, 1.0, 2.0)
         return np.asarray(np.einsum("khm,kq->hmq", weight * self.waves(orders, parities), self.patterns(parities)))
+
+    def means(self, modal: Values) -> Values:
+        """Return the mean under each segment of a quantity in orders 0 to M, (parities, M + 1, ...): shape (N, ...)."""
+        orders = np.arange(float(modal.shape[1]))
+        return np.tensordot(self.waves(orders, modal.shape[0]), modal, 2)
+
+    def values(self, modal: Values) -> Values:
+        """Return u_k, (N, ...), from the u_m that it makes, (parities, M + 1, ...), M >= N/2: each pattern shows in its own order."""
+        parities, even = modal.shape[0], self.count // 2 + 1
+        numbers = self.numbers(parities).astype(int)
+        parity = np.where(np.arange(numbers.size) < even, 0, 1)
+        own = self.loads(np.arange(float(even)), parities)[parity, numbers, np.arange(numbers.size)]
+        return np.tensordot(self.patterns(parities) / own, modal[parity, numbers], 1)
 
     def loop_shares(self, orders: FloatArray, parities: int) -> FloatArray:
         """Return r_m of each order in each pattern, shape (patterns, orders); no pattern moves another one."""

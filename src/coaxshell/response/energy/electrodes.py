@@ -1,7 +1,7 @@
 """What amplifiers give to layers between electrodes, and what the fields of these hold (theory manual, "Electrodes").
 
 The charge of a driven layer, e32~ B(z_a) (V, W, U) + (mu33~/t) u per area, takes the power u dD/dt from its amplifier: what does not move
-the wall, the work of the actuators on it, charges the layer's capacitance, (1/2) (mu33~/t) u^2 per area.
+the wall, the work of the actuators on it, charges the layer's capacitance, (1/2) (mu33~/t) u^2 per area. Segments are taken one by one.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import solid_electrical
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.shell_model import Gain
 
 
@@ -34,12 +35,26 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
             volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w, u)
         else:
             volts = motion.voltage[i]
+        moved = [_combined(charge, v, w, u) for charge, _ in charges]
+        if isinstance(wall, SegmentedWall):
+            volts, moved, area = on_segments(wall, volts, moved)
         history = grid.invert(volts)
-        for charge, capacitance in charges:
-            current = s * (_combined(charge, v, w, u) + capacitance * volts)
+        for strained, (_, capacitance) in zip(moved, charges, strict=True):
+            current = s * (strained + capacitance * volts)
             supplied += SurfaceWork(grid, area, current)(volts)
             held += 0.5 * capacitance * np.einsum("m,hmt,hmt->t", area, history, history)
     return (supplied, held) if driven else None
+
+
+def on_segments(wall: SegmentedWall, volts: ComplexArray, moved: list[ComplexArray]) -> tuple[ComplexArray, list[ComplexArray], FloatArray]:
+    """Return voltages and charges in orders as those of the segments, (1, N, nodes) each, and the width of each over a, (N,).
+
+    Orders end at M, and the voltage of a segment does not: the field under it is that of what its amplifier gives, not of its orders.
+    """
+    cut = wall.segments
+    voltage = cut.values(volts)  # of dead ones too: after a march they are 0 but for its error, which the motion has felt
+    width = np.full(cut.count, 2.0 * np.pi * wall.radius * cut.covered / cut.count)
+    return voltage[None], [cut.means(one)[None] for one in moved], width
 
 
 def _combined(gain: Gain, tangential: ComplexArray, normal: ComplexArray, axial: ComplexArray | None) -> ComplexArray:
