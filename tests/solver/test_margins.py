@@ -12,8 +12,10 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.modes import Modes
 from coaxshell.plotting import figure_margins
 from coaxshell.response.margins import worst_loops
-from coaxshell.solver.margins import loop_margins, margins_of
+from coaxshell.solver.margins import followed, loop_margins, margins_of
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.segmented_margins import segmented_loops
+from coaxshell.solver.tied_stability import growing
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.stability import unstable_poles
 
@@ -105,6 +107,39 @@ def test_labelled_and_drawn():
     assert 1e-6 < float(margins["delay_margin"].min()) < 1e-4
     figure = figure_margins(*worst_loops(system, Settings(duration=0.5, modes=4)))
     assert [ax.get_xlabel() for ax in figure.axes] == ["circumferential order $m$", "Re $L$", "frequency (Hz)", "frequency (Hz)"]
+
+
+@pytest.mark.parametrize("cut", [{"segments": 6}, {"segments": 5, "dead": [2]}], ids=["live", "dead"])
+def test_delay_margins_of_segments_part_stable_from_unstable(cut):
+    # Counted by the argument of the determinant of all tied orders, which knows of no loop.
+    system = pairs(numerator=[2 * TIME, 3.0], amplifier_corner="50 kHz", **cut)
+    problem, modes = dimensionless(system), Modes.up_to(8)
+    for shell, found in segmented_loops(problem, modes, 1.0).items():
+        least = found.margins.delay.min()
+        assert growing(_later(problem, shell, 0.97 * least), 8, 1.0) is None
+        grown = growing(_later(problem, shell, 1.03 * least), 8, 1.0)
+        assert "dead" in cut or found.margins.delay.argmin() in grown.patterns
+
+
+def test_margins_of_segments_are_told_by_pattern():
+    law = {"numerator": [2 * TIME, 3.0], "amplifier_corner": "50 kHz", "segments": 6}
+    live, worst = worst_loops(pairs(**law), Settings(duration=0.5, modes=6))
+    dead, _ = worst_loops(pairs(**law, dead=[1]), Settings(duration=0.5, modes=6))
+    assert live["order"].values.tolist() == dead["order"].values.tolist() == [0, 1, 2, 3]
+    assert "pattern" in live["order"].attrs["long_name"]
+    for place, loop in enumerate(worst):
+        assert live["delay_margin"].values[place].argmin() == loop.order
+    # One dead segment leaves every pattern that vanishes on it as it is: of each pair cos q, sin q a mixture.
+    np.testing.assert_allclose(dead["delay_margin"].sel(order=2), live["delay_margin"].sel(order=2), rtol=1e-9)
+    assert figure_margins(live, worst).axes[0].get_xlabel() == "pattern $q$ of 6 segments"
+
+
+def test_loops_that_cross_are_followed():
+    t = np.linspace(-1.0, 1.0, 401)
+    lines = np.stack([t + 0.3j, -t - 0.1j, 0.2 * t - 0.3j, np.full(401, 0.5 + 0.5j)])
+    order = np.argsort(np.random.default_rng(2).normal(size=lines.shape), axis=0)
+    found = followed(np.take_along_axis(lines, order, 0)[:, None])[:, 0]
+    np.testing.assert_allclose(found, lines[order[:, 0]], rtol=0, atol=0)
 
 
 def test_margins_by_axial_wavenumber():

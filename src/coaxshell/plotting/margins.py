@@ -46,7 +46,8 @@ def plot_delay_margins(margins: xr.Dataset, ax: Axes | None = None) -> Axes:
         ax.plot(each["order"], 1e6 * each, ".-", color=COLOURS[_SHELLS[place % len(_SHELLS)]], label=str(name))
     if np.isfinite(margins["delay_margin"]).any():
         ax.set_yscale("log")
-    ax.set_xlabel("circumferential order $m$")
+    cut = margins.attrs.get("segments")
+    ax.set_xlabel("circumferential order $m$" if cut is None else f"pattern $q$ of {cut} segments")
     ax.set_ylabel("delay margin (µs)")
     ax.legend()
     return ax

@@ -19,6 +19,7 @@ from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.dimensions import require_loops_alone
 from coaxshell.solver.margins import Loop, LoopMargins, loops, margins_of
 from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.segmented_margins import segmented_loops
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.tied_stability import require_stable_ties
@@ -65,7 +66,9 @@ def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) 
     -------
     Dataset, dims (shell, order), in three dimensions (shell, wavenumber, order)
         Infinite margins where no change of that kind makes an order grow, of the gain by about ten times or less. In three dimensions of
-        six axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not.
+        six axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not. Of
+        electrodes in N segments the order is q of a pattern, 0 to N/2, with the orders N - q, N + q, ... that are tied to it; all
+        segments of a wall change together. Dead ones tie all patterns: a loop is told by the one that its segments follow most.
 
     Raises
     ------
@@ -82,10 +85,26 @@ def worst_loops(system: System, settings: Settings) -> tuple[xr.Dataset, list[Lo
     if settings.dimensions == 3:
         return _worst_waves(system, settings)
     problem, modes = _problem(system, settings)
+    if segments_of(system) is not None:
+        return _worst_patterns(problem, modes, _least(settings))
     all_loops = loops(problem, modes, _least(settings))
     margins = {shell: margins_of(modes.orders, *loop) for shell, loop in all_loops.items()}
     worst = [_of_order(problem, shell, int(margins[shell].delay.argmin()), loop) for shell, loop in all_loops.items()]
     return labelled(problem, modes, margins), worst
+
+
+def _worst_patterns(problem: Problem, modes: Modes, least: float) -> tuple[xr.Dataset, list[LoopResponse]]:
+    """Return the margins of segments by their patterns, and L of the loop of each wall that stands the least delay."""
+    found = segmented_loops(problem, modes, least)
+    margins = {shell: cut.margins for shell, cut in found.items()}
+    told = labelled(problem, Modes(next(iter(margins.values())).orders), margins)
+    told["order"].attrs |= {"long_name": "pattern q of the segments, with the orders N - q, N + q, ... tied to it"}
+    told.attrs["segments"] = segments_of(problem.system)
+    worst = []
+    for shell, cut in found.items():
+        row = int(margins_of(cut.patterns, *cut.loop).delay.argmin())
+        worst.append(_of_order(problem, shell, row, cut.loop)._replace(order=int(cut.patterns[row])))
+    return told, worst
 
 
 def labelled(problem: Problem, modes: Modes, margins: dict[int, LoopMargins]) -> xr.Dataset:
@@ -143,8 +162,8 @@ def _worst_waves(system: System, settings: Settings) -> tuple[xr.Dataset, list[L
 
 
 def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
-    if segments_of(system) is not None:
-        require_loops_alone(system, "the list of margins by order", "leave {} out")
+    if settings.dimensions == 3:
+        require_loops_alone(system, "the sum over axial wavenumbers", "use dimensions=2, or leave {} out")
     if not isinstance(settings.modes, int):
         raise InputError("modes", f"{settings.modes!r} is not allowed here", "give the highest order")
     problem = dimensionless(system, settings.dimensions, settings)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ from coaxshell.solver.stability import Contour, along_alone, opened
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 512
-_FURTHER = 10.0
+FURTHER = 10.0
 """How far beyond where feedback fades to half of the inertia a loop is followed: to gain margins of about as much."""
 
 
@@ -71,7 +70,7 @@ def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
     shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     passive = problem.open_loop
-    nodes = contour._replace(fades=_FURTHER * contour.fades).nodes
+    nodes = contour._replace(fades=FURTHER * contour.fades).nodes
     if problem.tied:
         each = zip(controlled(problem), _tied(problem, passive, modes, nodes), strict=True)
         return {shell: Loop(nodes, one) for shell, one in each if one.any()}
@@ -157,11 +156,19 @@ def followed(values: ComplexArray) -> ComplexArray:
         crossed = np.abs(other[::-1] - one).sum(axis=0) < np.abs(other - one).sum(axis=0)
         turned = np.concatenate([np.zeros((len(crossed), 1), np.int64), np.cumsum(crossed, axis=1)], axis=1) % 2
         return np.where(turned == 1, values[::-1], values)
-    orders, turns, found = np.arange(values.shape[1])[:, None], np.array(list(permutations(range(len(values))))), values.copy()
-    for node in range(1, values.shape[2]):
-        before, here = found[:, :, node - 1], values[:, :, node]
-        least = np.abs(here[turns] - before).sum(axis=1).argmin(axis=0)
-        found[:, :, node] = here[turns[least], orders].T
+    from scipy.optimize import linear_sum_assignment
+
+    found = values.copy()
+    for order in range(values.shape[1]):
+        place = np.arange(len(values))
+        way = np.abs(values[:, None, order, 1:] - values[None, :, order, :-1])  # to each from each
+        turns = way.argmin(axis=0)
+        for node in range(way.shape[2]):
+            turn = turns[:, node]
+            if np.unique(turn).size < turn.size:
+                turn = linear_sum_assignment(way[..., node].T)[1]
+            place = turn[place]
+            found[:, order, node + 1] = values[place, order, node + 1]
     return found
 
 

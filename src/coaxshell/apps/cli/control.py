@@ -77,7 +77,7 @@ def control(
     if as_json:
         print_document({"system": system.name, "margins": rows})
     else:
-        _print(system.name, rows)
+        _print(system.name, rows, margins.attrs.get("segments"))
     if target is not None:
         write_figure(figure_margins(margins, worst), target, "--output")
         echo(f"wrote {target}", aside=as_json)
@@ -134,7 +134,7 @@ def _rows(margins: xr.Dataset) -> list[dict[str, Any]]:
     return rows
 
 
-def _print(name: str, rows: list[dict[str, Any]]) -> None:
+def _print(name: str, rows: list[dict[str, Any]], segments: int | None) -> None:
     from coaxshell.model.prefixes import engineering
     from coaxshell.response.summary_text import aligned
 
@@ -155,3 +155,5 @@ def _print(name: str, rows: list[dict[str, Any]]) -> None:
         table.append([row["shell"], kind, shown, str(row["order"]), at, *([f"{row['wavenumber']:.3g}/m"] if along else [])])
     for line in aligned(table):
         echo(line.rstrip())
+    if segments is not None:
+        echo(f"\nOrders with those that {segments} segments tie to them; all segments of a shell change together.")
