@@ -15,9 +15,9 @@ from coaxshell.response.margins import worst_loops
 from coaxshell.solver.margins import followed, loop_margins, margins_of
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.segmented_margins import segmented_loops
-from coaxshell.solver.tied_stability import growing
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.stability import unstable_poles
+from coaxshell.solver.tied_stability import growing
 
 BARE = cx.presets.load("bare")
 TIME = BARE.transit_time

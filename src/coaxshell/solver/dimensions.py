@@ -71,8 +71,6 @@ def _require_ties(system: System, dimensions: int) -> None:
     whole = "leave {} out"
     if dimensions == 3:
         require_loops_alone(system, "the sum over axial wavenumbers", f"use dimensions=2, or {whole}")
-    if system.absorber_list:
-        require_loops_alone(system, "the march of absorbers", f"leave the absorbers out, or {whole}")
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
     if solid is not None:
         require_loops_alone(system, f"shells[{solid}], an elastic wall,", f'use theory = "thin", or {whole}')

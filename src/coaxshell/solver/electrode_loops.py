@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -59,7 +60,7 @@ class ElectrodeLoops:
                 matrix[..., a, b] = float(a == b) - law[a] * read
         return cls(patterns, law, matrix, shares)
 
-    @property
+    @cached_property
     def inverse(self) -> ComplexArray:
         """(1 - H K C_q)^-1, shape (patterns, nodes, walls, walls)."""
         return np.asarray(np.linalg.inv(self.matrix), dtype=np.complex128)

@@ -25,6 +25,7 @@ from coaxshell.solver.reflections import reflected
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.tied import under_forces
 
 
 def marches(solution: ModalSolution) -> bool:
@@ -57,7 +58,7 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
         if links.count or actuation is not None:
             require_room(structure.problem, solution.settings)  # a saved run may come from a larger machine
         kept = reflected(structure, lambda one: solve_linked(one, links, saturate=actuation is not None))
-    if continued and kept.marched and kept.voltage is None:
+    if continued and kept.marched and (kept.voltage is None or links.count):
         return _of_forces(kept.structure, links, kept.force, kept.displacement, kept.actuation, continued, kept.laws)
     return kept
 
@@ -96,6 +97,8 @@ def _of_forces(
         value, slope = _beyond_end(grid)
         rate = 3.0 * pressure[..., -1:] - 4.0 * pressure[..., -2:-1] + pressure[..., -3:-2]
         spectrum += pressure[..., -1:] * value + rate / (2.0 * grid.time_step) * slope
+    if structure.problem.tied:
+        return under_forces(structure, links, spectrum, force, displacement, laws)
     moved = (structure if actuation is None else structure.open_loop).forced_spectra(spectrum)
     return SolvedSpectra(structure, links, *moved, force, displacement, actuation, laws=laws)
 

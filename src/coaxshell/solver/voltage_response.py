@@ -132,16 +132,22 @@ def response_of(structure: StructureSpectra, reading: Callable[[ShellModel, Mode
 
 def read_without(structure: StructureSpectra, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> ComplexArray:
     """Return what the sensors read of the motion without voltages, V, (controlled, parities, M + 1, nodes)."""
-    bare = structure.open_loop
+    return read_of(structure, Moved(structure.open_loop.normal, structure.open_loop.tangential), reading)
+
+
+def read_of(structure: StructureSpectra, moved: Moved, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> ComplexArray:
+    """Return what the sensors read of a motion, V, (controlled, parities, M + 1, nodes)."""
     gains = [(i, reading(structure.problem.shells[i], structure.modes).columns) for i in controlled(structure.problem)]
-    return np.stack([gain.v * bare.tangential[i] + gain.w * bare.normal[i] for i, gain in gains])
+    return np.stack([gain.v * moved.tangential[i] + gain.w * moved.normal[i] for i, gain in gains])
 
 
-def driven(structure: StructureSpectra, response: VoltageResponse, voltage: ComplexArray) -> Moved:
-    """Return the motion under the sources and voltages in orders, V, shape (shells, parities, M + 1, nodes)."""
+def driven(structure: StructureSpectra, response: VoltageResponse, voltage: ComplexArray, beside: ComplexArray | None = None) -> Moved:
+    """Return the motion under the sources, voltages in orders, V, and modal pressures *beside*, shape (shells, parities, M + 1, nodes)."""
     pressure = np.zeros_like(voltage)
     for load, i in zip(response.load, response.shells, strict=True):
         pressure[i] = load * voltage[i]
+    if beside is not None:
+        pressure[:, : beside.shape[1]] += beside
     moved = structure.open_loop.forced_spectra(pressure)
     for slid, i in zip(response.slid, response.shells, strict=True):
         moved.tangential[i, : voltage.shape[1]] += slid * voltage[i]

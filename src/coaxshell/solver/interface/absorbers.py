@@ -27,6 +27,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
 from coaxshell.solver.links.described import LinkElements, LinkScales, link_elements, side_of
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
+from coaxshell.structure.segmented_wall import SegmentedWall
 
 Array = npt.NDArray[Any]
 
@@ -141,6 +142,11 @@ class AbsorberSet:
         radius = np.array([one.radius for one in problem.surfaces])[self.surfaces]
         return patch(np.multiply.outer(self.footprint / (2.0 * radius), modes.orders))
 
+    def of_every(self, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return forces (N, 2, T) and displacements (N, T) of every absorber of the description from those carried, (2N, T) and (N, T)."""
+        sides = force.reshape(2, self.count, force.shape[-1]).swapaxes(0, 1)
+        return sides[self.member], displacement[self.member]
+
     @cached_property
     def _shapes(self) -> dict[Hashable, FloatArray]:
         """Shapes made so far, by what tells their modes apart."""
@@ -149,7 +155,7 @@ class AbsorberSet:
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:
     """Return the dimensionless absorbers; where the sources excite one parity and the layout is symmetric, one of each mirrored pair."""
-    symmetric = excited == 1 and _mirror_symmetric(absorbers)
+    symmetric = excited == 1 and not _dead_segments(problem) and _mirror_symmetric(absorbers)
     carried: list[Absorber] = []
     multiplicity: list[float] = []
     found: dict[tuple[object, ...], int] = {}
@@ -179,6 +185,11 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int
         footprint=_footprints(problem, carried),
         elements=link_elements(carried, [wall.moves for wall in problem.shells], _link_scales(problem.scales)),
     )
+
+
+def _dead_segments(problem: Problem) -> bool:
+    """Return whether segments of electrodes are dead, which excite both parities."""
+    return any(isinstance(wall, SegmentedWall) and wall.gains is not None and wall.segments.dead for wall in problem.shells)
 
 
 def _footprints(problem: Problem, absorbers: Sequence[Absorber]) -> FloatArray | None:

@@ -97,20 +97,34 @@ def solve_linear(
             w = _dense(points, law, compliance, excited[:, block])
         else:
             w = _iterated(spread, points, nodes[block], compliance, excited[:, block], largest, tried=block.start in tried)
-        inner, outer = w[:count], w[count:]
-        force[:count, block] = -(law.inner.T * inner + law.other.T * outer)
-        force[count:, block] = -(law.other.T * inner + law.outer.T * outer)
-        displacement[:, block] = law.mass_displacement(inner.T, outer.T).T
+        force[:, block], displacement[:, block] = _exerted(law, w)
 
     map_node_blocks(blocks, work, progress, "linear absorbers")
     return LinearAbsorberSpectra(force, displacement, points.project(force))
 
 
+def forces_at(
+    absorbers: AbsorberSet, s: ComplexArray, receptance: ComplexArray, excited: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return forces (2N, nodes) and displacements of the masses (N, nodes) where points answer forces by G, (nodes, 2N, 2N)."""
+    law = side_admittance(absorbers, s)
+    return _exerted(law, _held(law, receptance, excited))
+
+
+def _exerted(law: SideAdmittance, w: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    inner, outer = np.split(w, 2)
+    force = np.concatenate([-(law.inner.T * inner + law.other.T * outer), -(law.other.T * inner + law.outer.T * outer)])
+    return force, law.mass_displacement(inner.T, outer.T).T
+
+
 def _dense(points: InterfacePoints, law: SideAdmittance, compliance: ComplexArray, excited: ComplexArray) -> ComplexArray:
     """Return w of (1 + G Y) w = w_linear, (2N, nodes), by matrices of all points."""
-    count = points.count // 2
-    receptance = points.receptance(compliance)
-    system = np.empty_like(receptance)
+    return _held(law, points.receptance(compliance), excited)
+
+
+def _held(law: SideAdmittance, receptance: ComplexArray, excited: ComplexArray) -> ComplexArray:
+    """Return the same from G, (nodes, 2N, 2N)."""
+    count, system = receptance.shape[-1] // 2, np.empty_like(receptance)
     for side in (0, 1):
         here, there = slice(side * count, (side + 1) * count), slice((1 - side) * count, (2 - side) * count)
         own = law[side]

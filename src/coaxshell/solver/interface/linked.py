@@ -46,7 +46,7 @@ def solve_linked(
             return limited
         saturate = False
     if structure.problem.tied:
-        return solve_tied(structure, absorbers)
+        return solve_tied(structure, absorbers, progress, exact=exact)
     if saturate:
         result = march_interface(structure, absorbers, saturate=True, progress=progress)
         if not result.saturated:
@@ -62,7 +62,7 @@ def solve_linked(
         else:
             found = solve_linear(structure, absorbers, InterfacePoints(structure.problem, absorbers, structure.modes), progress)
         moved = structure.forced_spectra(found.modal_pressure)
-        force, displacement = _of_every(absorbers, grid.invert(found.force), grid.invert(found.mass_displacement))
+        force, displacement = absorbers.of_every(grid.invert(found.force), grid.invert(found.mass_displacement))
         transforms = found.force, found.mass_displacement
         return SolvedSpectra(structure, absorbers, *moved, force, displacement, exact=transforms)
     seen = as_seen(structure, absorbers)
@@ -81,15 +81,9 @@ def _marched(structure: StructureSpectra, absorbers: AbsorberSet, result: MarchR
         points = InterfacePoints(structure.problem, absorbers, structure.modes)
         forces = grid.transform_linear(result.force) if result.laws is None else middles_transform(grid, result.laws.force)
         moved = structure.forced_spectra(points.project(forces))
-    force, displacement = _of_every(absorbers, result.force, result.mass_displacement)
+    force, displacement = absorbers.of_every(result.force, result.mass_displacement)
     done = result.actuation, result.iterations
     return SolvedSpectra(structure, absorbers, *moved, force, displacement, *done, laws=result.laws, seen=seen)
-
-
-def _of_every(absorbers: AbsorberSet, force: FloatArray, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return forces (N, 2, T) and displacements (N, T) of every absorber of the description from those carried."""
-    sides = force.reshape(2, absorbers.count, force.shape[-1]).swapaxes(0, 1)
-    return sides[absorbers.member], displacement[absorbers.member]
 
 
 def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: FloatArray | None) -> Interface | None:

@@ -1,0 +1,163 @@
+"""How points of walls move each other where feedback ties walls or orders: what absorbers beside it see.
+
+A unit force at a point moves the walls without feedback; pattern q of wall a then reads A, the loops answer with voltages
+(1 - H K C)^-1 H K A, and a volt of pattern q on wall b moves the points by B,
+
+    A_aq = sum_m R_qm sigma_a C_aj P_jm,      B_bq = sum_m E_im C_ib f_b L_mq,
+
+sigma what the sensors read per W, f the normal load per volt (:mod:`coaxshell.solver.voltage_response`), E and P the maps of the points
+and R and L those of the patterns. Kernels in time are those of the whole receptance, so that its positive real part stays: by product
+integration, or, where the step does not resolve the membrane of some order, which all orders are tied to, by the trapezoidal rule.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
+from coaxshell.numerics.convolution import KernelTable
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_patterns import Patterns
+from coaxshell.solver.faced_forces import step_weights, trapezoidal_nodes
+from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.interface.seen import StructureOfPoints
+from coaxshell.solver.quadrature import unresolved_orders
+from coaxshell.solver.spectral import map_node_blocks
+from coaxshell.solver.structure_spectra import Moved, StructureSpectra
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, electroded
+
+_BLOCK = 64
+"""Nodes at a time."""
+_BYTES = 32 * 1024 * 1024
+"""Of what patterns read and points move, of a wall."""
+
+
+class StructureOfTies(StructureOfPoints):
+    """A structure whose feedback ties walls or orders, as its absorbers see it: one kernel for each pair of their points.
+
+    Parameters
+    ----------
+    structure : StructureSpectra
+        With its feedback.
+    absorbers : AbsorberSet
+    alone : Moved
+        Its motion without absorbers.
+    patterns : Patterns
+        Of the voltages.
+    """
+
+    def __init__(self, structure: StructureSpectra, absorbers: AbsorberSet, alone: Moved, patterns: Patterns) -> None:
+        super().__init__(structure.open_loop, absorbers)
+        self._fed, self._alone, self._patterns = structure, alone, patterns
+
+    @cached_property
+    def _motion(self) -> tuple[FloatArray, FloatArray]:
+        moved = self.of_orders.evaluate(self._alone.normal)
+        return self.grid.invert(moved), self.grid.invert(moved * self.grid.nodes)
+
+    @cached_property
+    def kernels(self) -> KernelTable:
+        """Step weights of the velocities of the points, (points, points, 1, T)."""
+        grid = self.grid
+        if unresolved_orders(self.problem, grid, self.modes).any():
+            fine, s = trapezoidal_nodes(grid)
+            return KernelTable(step_weights(self._receptance(s), fine, s, grid)[:, :, None])
+        back = self._fed_back(grid.nodes, self.whole.compliance, self.whole.tangential_ratio)
+        return KernelTable(super().kernels.kernels + grid.invert(back * (grid.nodes * grid.hat * grid.time_step))[:, :, None])
+
+    def _receptance(self, nodes: ComplexArray) -> ComplexArray:
+        """Return the receptance with feedback at any nodes, (points, points, nodes)."""
+        count, orders = len(self.problem.shells), self.modes.count
+        compliance, ratio = (
+            np.empty((count, count, orders, nodes.size), np.complex128),
+            np.empty((count, orders, nodes.size), np.complex128),
+        )
+
+        def work(block: slice) -> None:
+            modal = ModalSystem(self.problem, np.asarray(nodes[block], dtype=np.complex128), self.modes)
+            for j in range(count):
+                for i, w in enumerate(modal.solve(j, 1.0)):
+                    compliance[i, j, :, block] = w
+            for i, operator in enumerate(modal.shells):
+                ratio[i, :, block] = operator.tangential
+
+        map_node_blocks([slice(a, a + _BLOCK) for a in range(0, nodes.size, _BLOCK)], work, None, "kernels")
+        alone = np.moveaxis(self.of_orders.receptance(compliance), 0, -1)
+        return np.asarray(alone + self._fed_back(nodes, compliance, ratio))
+
+    def _fed_back(self, nodes: ComplexArray, compliance: ComplexArray, ratio: ComplexArray) -> ComplexArray:
+        return fed_back(self._fed, self.of_orders, self._patterns, nodes, compliance, ratio)
+
+
+def fed_back(
+    structure: StructureSpectra,
+    points: InterfacePoints,
+    patterns: Patterns,
+    nodes: ComplexArray,
+    compliance: ComplexArray,
+    ratio: ComplexArray,
+) -> ComplexArray:
+    """Return what feedback adds to the receptance of points, B (1 - H K C)^-1 H K A, shape (points, points, nodes).
+
+    Parameters
+    ----------
+    structure : StructureSpectra
+        With its feedback.
+    points : InterfacePoints
+    patterns : Patterns
+    nodes : ndarray
+    compliance, ratio : ndarray
+        C_ij, (shells, shells, M + 1, nodes), and V/W, (shells, M + 1, nodes), without feedback.
+    """
+    found = np.empty((points.count, points.count, nodes.size), np.complex128)
+    maps = _maps(patterns, len(controlled(structure.problem)), points)
+    width = max(8, _BYTES // (32 * points.count * patterns.numbers.count))
+    for start in range(0, nodes.size, width):
+        some = slice(start, start + width)
+        block = nodes[some], compliance[..., some], ratio[..., some]
+        response = VoltageResponse.of(structure.problem, structure.modes, *block[:2], list(block[2]))
+        loops = ElectrodeLoops.of(structure.problem, response, patterns, block[0])
+        read, moved = _read_and_moved(structure, points, response, maps, *block[1:])
+        for force in range(points.count):
+            found[:, force, some] = np.einsum("paqk,aqk->pk", moved, loops.voltages(read[:, :, force]), optimize=True)
+    return found
+
+
+def _read_and_moved(
+    structure: StructureSpectra,
+    points: InterfacePoints,
+    response: VoltageResponse,
+    maps: tuple[FloatArray, FloatArray],
+    compliance: ComplexArray,
+    ratio: ComplexArray,
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return A, (walls, patterns, points, nodes), and B, (points, walls, patterns, nodes)."""
+    modes, nodes, (reads, pushes) = structure.modes, compliance.shape[-1], maps
+    read = np.zeros((len(reads), reads.shape[1], points.count, nodes), np.complex128)
+    moved = np.zeros((points.count, len(reads), reads.shape[1], nodes), np.complex128)
+    for j in range(len(structure.problem.shells)):
+        here = points.on_surface(j)
+        if not here.size:
+            continue
+        evaluate, project = (one.reshape(here.size, points.parities, modes.count) for one in points.maps_of(j))
+        for a, i in enumerate(response.shells):
+            sensed = electroded(structure.problem, i).sensor_gain(modes).columns.recovered(ratio[i])
+            shares = np.einsum("qhm,phm->qpm", reads[a], project).reshape(-1, modes.count)
+            read[a][:, here] = real_product(shares, sensed * compliance[i, j]).reshape(-1, here.size, nodes)
+            shares = np.einsum("phm,hmq->pqm", evaluate, pushes[a]).reshape(-1, modes.count)
+            moved[here, a] = real_product(shares, compliance[j, i] * response.load[a]).reshape(here.size, -1, nodes)
+    return read, moved
+
+
+def _maps(patterns: Patterns, walls: int, points: InterfacePoints) -> tuple[FloatArray, FloatArray]:
+    """Return R, (walls, patterns, parities, orders), and L, (walls, parities, orders, patterns), of the parities of points."""
+    size, count = points.parities * points.modes, patterns.numbers.count
+    each = np.broadcast_to(
+        np.eye(size, dtype=np.complex128).reshape(points.parities, points.modes, size), (walls, points.parities, points.modes, size)
+    )
+    reads = patterns.readings(each).real.reshape(walls, count, points.parities, points.modes)
+    pushes = patterns.in_orders(np.broadcast_to(np.eye(count, dtype=np.complex128), (walls, count, count))).real
+    return reads, np.ascontiguousarray(pushes[:, : points.parities])
