@@ -30,6 +30,22 @@ LAWS = (
         "solver/test_many_linear_absorbers.py",
     ),
     Mutation(
+        "many-linear-around",
+        "solver/interface/linear_around.py",
+        "other * (roots[1 - i] / root)",
+        "other",
+        "many linear absorbers as functions of the angle: radii of the two walls",
+        "solver/test_many_linear_absorbers.py",
+    ),
+    Mutation(
+        "ring-march-springs",
+        "solver/interface/ring_march.py",
+        "new = known + _by_class(rows, nonlinear)",
+        "new = known - _by_class(rows, nonlinear)",
+        "a ring marched by classes: what the springs' own forces move",
+        "solver/test_ring_march.py",
+    ),
+    Mutation(
         "law-discrete-gradient",
         "solver/links/springs.py",
         "value = value + coefficient / (k + 1) * mixed",

@@ -155,14 +155,16 @@ class AbsorberSet:
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:
     """Return the dimensionless absorbers; where the sources excite one parity and the layout is symmetric, one of each mirrored pair."""
-    symmetric = excited == 1 and not _dead_segments(problem) and _mirror_symmetric(absorbers)
+    places = (
+        [(_place(a, mirrored=False), _place(a, mirrored=True)) for a in absorbers] if excited == 1 and not _dead_segments(problem) else []
+    )
+    symmetric = bool(places) and sorted(repr(place) for place, _ in places) == sorted(repr(mirror) for _, mirror in places)
     carried: list[Absorber] = []
     multiplicity: list[float] = []
     found: dict[tuple[object, ...], int] = {}
     member = []
-    for absorber in absorbers:
-        key = _place(absorber, mirrored=False) if symmetric else (len(carried),)
-        mirror = _place(absorber, mirrored=True) if symmetric else key
+    for number, absorber in enumerate(absorbers):
+        key, mirror = places[number] if symmetric else ((len(carried),),) * 2
         if mirror != key and mirror in found:
             index = found.pop(mirror)  # each one here answers for one mirror image
             multiplicity[index] = 2.0
@@ -221,13 +223,6 @@ def _place(absorber: Absorber, *, mirrored: bool) -> tuple[object, ...]:
     angle = round((-absorber.angle if mirrored else absorber.angle) / _SAME_ANGLE) % round(360.0 / _SAME_ANGLE)
     rest = tuple(repr(value) if isinstance(value, dict) else value for name, value in absorber.model_dump().items() if name != "angle")
     return (angle, *rest)
-
-
-def _mirror_symmetric(absorbers: tuple[Absorber, ...]) -> bool:
-    """Return whether the layout equals its mirror image about theta = 0."""
-    ahead = sorted(map(repr, (_place(a, mirrored=False) for a in absorbers)))
-    mirror = sorted(map(repr, (_place(a, mirrored=True) for a in absorbers)))
-    return ahead == mirror
 
 
 def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:

@@ -73,11 +73,11 @@ class BlockResponse:
 
     Attributes
     ----------
-    stretch : ndarray, shape (lags, 2N, inputs)
+    stretch : ndarray, shape (lags, ..., 2N, inputs)
         D.
-    force : ndarray, shape (lags, 2N, inputs)
+    force : ndarray, shape (lags, ..., 2N, inputs)
         f.
-    mass_velocity : ndarray, shape (lags, N, inputs)
+    mass_velocity : ndarray, shape (lags, ..., N, inputs)
         u.
     """
 
@@ -92,31 +92,34 @@ def block_response(links: LinkConstants, kernels: FloatArray, imposed: FloatArra
     Parameters
     ----------
     links : LinkConstants
-    kernels : ndarray, shape (lags, 2N, 2N)
-        K_l: velocities at the points per force l steps ago.
-    imposed : ndarray, shape (lags, 2N, further)
+    kernels : ndarray, shape (lags, ..., 2N, 2N)
+        K_l: velocities at the points per force l steps ago; of one system or of many whose links are alike.
+    imposed : ndarray, shape (lags, ..., 2N, further)
         Velocities at the points per further input l steps ago.
     """
-    lags, points, further = imposed.shape
-    n, half, columns = links.count, links.half_step, points + imposed.shape[2]
+    lags, *systems, points, further = imposed.shape
+    n, half, columns = links.count, links.half_step, points + further
     pairs = np.tile(np.eye(n), (2, 1))
     stiffness = links.stiffness[:, None]
     tangent = links.damping[:, None] + half * stiffness
-    inverse = np.linalg.inv(np.block([[np.eye(points) + tangent * kernels[0], -tangent * pairs], [pairs.T, np.diag(links.inertia)]]))
-    found = BlockResponse(*(np.empty((lags, rows, columns)) for rows in (points, points, n)))
-    w, v, q, u, f = (np.zeros((rows, columns)) for rows in (points, points, n, n, points))
+    within = np.empty((*systems, points + n, points + n))
+    within[..., :points, :points], within[..., :points, points:] = np.eye(points) + tangent * kernels[0], -tangent * pairs
+    within[..., points:, :points], within[..., points:, points:] = pairs.T, np.diag(links.inertia)
+    inverse = np.linalg.inv(within)
+    found = BlockResponse(*(np.empty((lags, *systems, rows, columns)) for rows in (points, points, n)))
+    w, v, q, u, f = (np.zeros((*systems, rows, columns)) for rows in (points, points, n, n, points))
     unit = np.concatenate([np.eye(points), np.zeros((points, further))], axis=1)
     carry = np.where(links.inertia > 0, 1.0, 0.0)[:, None]
     for lag in range(lags):
-        excited = sum((kernels[k] @ found.force[lag - k] for k in range(1, lag + 1)), np.zeros((points, columns)))
-        excited[:, points:] += imposed[lag]
+        excited = sum((kernels[k] @ found.force[lag - k] for k in range(1, lag + 1)), np.zeros((*systems, points, columns)))
+        excited[..., points:] += imposed[lag]
         known_w, known_q = w + half * v, q + half * u
         law = stiffness * (pairs @ known_q - known_w) - tangent * excited
         if lag == 0:
             law += unit
         balance = links.inertia[:, None] * u - carry * (pairs.T @ f)
-        answer = inverse @ np.concatenate([law, balance])
-        f, u = answer[:points], answer[points:]
+        answer = inverse @ np.concatenate([law, balance], axis=-2)
+        f, u = answer[..., :points, :], answer[..., points:, :]
         v = excited + kernels[0] @ f
         w, q = known_w + half * v, known_q + half * u
         found.stretch[lag], found.force[lag], found.mass_velocity[lag] = pairs @ q - w, f, u

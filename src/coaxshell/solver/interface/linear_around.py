@@ -130,6 +130,6 @@ def _times(matrix: _Pairs, vector: ComplexArray, out: ComplexArray, scratch: Com
 
 def _preconditioner(mean: _Pairs, answer: _Pairs) -> _Pairs:
     """Return (1 + D C)^{-1} of absorbers spread evenly, whose D is given for every node, (nodes, 1)."""
-    a, b, c, d = (sum(mean[i][k] * answer[k][j] for k in (0, 1)) + float(i == j) for i in (0, 1) for j in (0, 1))
+    a, b, c, d = (mean[i][0] * answer[0][j] + mean[i][1] * answer[1][j] + float(i == j) for i in (0, 1) for j in (0, 1))
     determinant = a * d - b * c
     return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]]

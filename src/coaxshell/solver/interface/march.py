@@ -30,6 +30,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.interface.newton import ConvergenceError, NewtonState
 from coaxshell.solver.interface.plan import MarchPlan, MotionWithout, march_plan, motion_without
+from coaxshell.solver.interface.ring_march import RingPlan, TooStiffError, march_ring
 from coaxshell.solver.interface.state import LinkState, MarchState
 from coaxshell.solver.links.histories import LawHistories
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -101,6 +102,8 @@ def march(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate: bool
     InputError
         If a step does not converge.
     """
+    if not saturate and (ring := _as_ring(structure, absorbers, progress)) is not None:
+        return ring
     plan = march_plan(structure, absorbers, saturate=saturate)
     motion = motion_without(structure, absorbers, plan)
     steps, n = motion.steps, plan.count
@@ -115,6 +118,20 @@ def march(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate: bool
             progress(block.stop / steps, "interface march")
     actuation = plan.actuators.pressure(volts.T) if saturate and plan.actuators.controlled else None
     return MarchResult(force.reshape(steps, -1).T, mass.T, pressure, actuation, state.saturated, state.iterations)
+
+
+def _as_ring(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None) -> MarchResult | None:
+    """Return the march of a ring by the classes of its orders, None if the absorbers make none or are too stiff for it."""
+    plan = RingPlan.of(structure, absorbers)
+    if plan is None:
+        return None
+    points = structure.points(absorbers)
+    displacement, velocity = (np.ascontiguousarray(x.T).reshape(-1, 2, absorbers.count) for x in structure.motion_at(points))
+    try:
+        found = march_ring(plan, displacement, velocity, points.surfaces, progress)
+    except TooStiffError:
+        return None
+    return MarchResult(found.force, found.mass_displacement, points.project(found.force), None, False, found.iterations)
 
 
 def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tuple[MarchState, BlockOutput]:

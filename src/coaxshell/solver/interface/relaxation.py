@@ -59,13 +59,13 @@ class Relaxation:
         for iteration in range(1, _MOST_ITERATIONS + 1):
             new = known + (rows @ springs.nonlinear_part(z).ravel()).reshape(known.shape)
             size = springs.relative((new - z).ravel(), new.ravel())
-            z = new
+            z, left = new, size
             if size > springs.tolerance and last > 0.0:
                 rate = size / last
                 if rate > _SLOWEST:
                     return None
-                size *= rate  # what the next one would change
-            if size <= springs.tolerance:
+                left = size * rate  # what the next one would change
+            if left <= springs.tolerance:
                 return Relaxed(z, springs.nonlinear_part(z), iteration * len(z))
             last = size
         return None

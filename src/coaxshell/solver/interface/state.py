@@ -62,7 +62,8 @@ class MarchState:
     def at_rest(cls, plan: MarchPlan) -> MarchState:
         """Return the state before the first block."""
         n = plan.count
-        together = plan.relaxation.steps > 1 and not plan.actuators.controlled
+        loose = bool(plan.links.auxiliary_stiffness.any())  # what a singular tangent leaves open, an iteration does not show
+        together = plan.relaxation.steps > 1 and not plan.actuators.controlled and not loose
         relaxed = np.empty((0, plan.unknowns)) if together else None
         return cls(1, LinkState(*np.zeros((3, 2, n)), *np.zeros((2, n))), History(), plan.newton.at_rest(), relaxed, 0, False)
 
