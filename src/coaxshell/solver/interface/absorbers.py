@@ -155,10 +155,9 @@ class AbsorberSet:
 
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:
     """Return the dimensionless absorbers; where the sources excite one parity and the layout is symmetric, one of each mirrored pair."""
-    places = (
-        [(_place(a, mirrored=False), _place(a, mirrored=True)) for a in absorbers] if excited == 1 and not _dead_segments(problem) else []
-    )
-    symmetric = bool(places) and sorted(repr(place) for place, _ in places) == sorted(repr(mirror) for _, mirror in places)
+    one_parity = excited == 1 and not _dead_segments(problem)
+    places = [(_place(a, mirrored=False), _place(a, mirrored=True)) for a in absorbers] if one_parity else []
+    symmetric = one_parity and sorted(repr(place) for place, _ in places) == sorted(repr(mirror) for _, mirror in places)
     carried: list[Absorber] = []
     multiplicity: list[float] = []
     found: dict[tuple[object, ...], int] = {}
