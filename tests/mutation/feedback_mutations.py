@@ -128,4 +128,12 @@ FEEDBACK = (
         "a lack of voltage moves charge by the strain that it makes too",
         "solver/test_limited_currents.py",
     ),
+    Mutation(
+        "sign-of-a-bridge",
+        "model/feedback.py",
+        "tuple(b - through * a for",
+        "tuple(b + through * a for",
+        "more capacitance than the layer's lets its voltage through with its own sign",
+        "solver/test_bridge.py",
+    ),
 )

@@ -182,6 +182,9 @@ def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:
                 )
             if law.transducers == "paper":
                 _one_of_each(shell_, number, role)
+        if getattr(law, "bridge_imbalance", 0.0) and not any(layer.role == "self-sensing" for layer in shell_.layers):
+            told = f"shells[{number}] has no self-sensing layer, and so no bridge"
+            raise InputError(f"{where}.bridge_imbalance", told, "make a layer 'self-sensing', or leave bridge_imbalance out")
         if law.segments is not None:
             _segments(law, shell_, number, where)
 

@@ -108,6 +108,8 @@ class Feedback(Described):
     """Modal filter: the highest order that is fed back, or a list of weights of the orders 0, 1, 2, ..., 0 beyond; else all alike."""
     matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(_matrix)] = None
     """Who reads whom, a row for each shell as "shells" has them: its actuators get H of the sum of the row times all readings."""
+    bridge_imbalance: Annotated[float, quantity("number", above=-1)] = 0.0
+    """By how much the bridge of self-sensing layers takes more off their charge than their capacitance holds, over it (-0.02: 2 % less)."""
     transducers: Transducers = "paper"
     """What reads and drives: "paper" reads curvature and drives by a pressure alone, "electrodes" strain, by traction and moment too."""
     shells: Annotated[tuple[int | End, ...] | Literal["all"], BeforeValidator(_shells)] = "all"
@@ -183,6 +185,19 @@ class Feedback(Described):
                 denominator = [a * time + b for a, b in zip([*denominator, 0.0], [0.0, *denominator], strict=True)]
         return self.numerator, tuple(denominator)
 
+    def bridged(self, share: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return numerator and denominator of u per phi_s, H/(1 - x H), x the *share* of layers with a bridge times its imbalance.
+
+        The bridge reads phi_s + x u of a layer that is driven. Without the delay, which is no ratio.
+        """
+        numerator, denominator = self.polynomials
+        through = share * self.bridge_imbalance
+        if not through:
+            return numerator, denominator
+        size = max(len(numerator), len(denominator))
+        top, bottom = ((0.0,) * (size - len(x)) + x for x in (numerator, denominator))
+        return numerator, tuple(b - through * a for a, b in zip(top, bottom, strict=True))
+
     def response(self, frequency: npt.ArrayLike) -> ComplexArray:
         """Return u per phi_s at frequencies (Hz), with corners and delay: H(2 pi i f) e^{-2 pi i f delay}."""
         import numpy as np
@@ -212,22 +227,59 @@ class Feedback(Described):
                 f"has degree {len(self.numerator) - 1} over a denominator of degree {len(self.denominator) - 1}: no device answers so",
                 "give as many poles as zeros, or sensor_corner or amplifier_corner; only [k_d, k_p] over [1] may stand as it is",
             )
-        self._require_stable_poles()
+        growing = _fastest(self.denominator)
+        if growing is not None:
+            found = f"has a pole at {growing.real:.4g} ± {abs(growing.imag):.4g}i 1/s, which grows by itself"
+            raise InputError("denominator", found, "give a denominator whose roots have no positive real part")
+        self._require_bridge()
         return self
 
-    def _require_stable_poles(self) -> None:
-        if len(self.denominator) == 1:
+    def _require_bridge(self) -> None:
+        """Check that what a bridge lets through does not grow by itself, whatever the wall does."""
+        if not self.bridge_imbalance:
             return
+        where = "bridge_imbalance"
+        if self.transducers != "electrodes":
+            raise InputError(where, "is of self-sensing layers, which the paper's law does not know", 'use transducers = "electrodes"')
+        if self.matrix is not None:
+            raise InputError(where, "is not known beside a matrix of shells", "leave one of the two out")
+        if isinstance(self.weights, tuple) and not set(self.weights) <= {0.0, 1.0}:
+            raise InputError(where, "is not known beside weights other than 0 and 1", "give weights as the highest order, or of 0 and 1")
+        growing = _fastest(self.bridged(1.0)[1])
+        remedy = "balance the bridge with less capacitance, or give the law less gain or lower corners: H times the imbalance below 1"
+        if growing is not None:
+            told = f"{self.bridge_imbalance:g} feeds the amplifier its own voltage, which grows by e^({growing.real:.3g} 1/s t) by itself"
+            raise InputError(where, told, remedy)
+        if self.delay and self.through >= 1.0:
+            told = f"{self.bridge_imbalance:g} times the largest |H|, {self.through:.3g} at some frequency, is fed back late"
+            raise InputError(where, told, remedy)
+
+    @property
+    def through(self) -> float:
+        """Largest magnitude of the imbalance times H at any frequency."""
         import numpy as np
 
-        poles = np.roots(self.denominator)
-        worst = poles[poles.real.argmax()]
-        if worst.real > _ROUNDING * np.abs(poles).max():
-            raise InputError(
-                "denominator",
-                f"has a pole at {worst.real:.4g} ± {abs(worst.imag):.4g}i 1/s, which grows by itself",
-                "give a denominator whose roots have no positive real part",
-            )
+        numerator, denominator = self.polynomials
+        if len(numerator) > len(denominator):
+            return float("inf")
+        roots = [np.abs(np.roots(x)) for x in (numerator, denominator) if len(x) > 1]
+        special = np.concatenate([np.ones(1), *roots])
+        special = special[special > 0.0]
+        omega = np.concatenate([np.zeros(1), np.geomspace(1e-3 * special.min(), 1e3 * special.max(), 4000), special])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            size = np.abs(np.polyval(numerator, 1j * omega) / np.polyval(denominator, 1j * omega))
+        return float(abs(self.bridge_imbalance) * np.nanmax(size))
+
+
+def _fastest(polynomial: Sequence[float]) -> complex | None:
+    """Return the root of a polynomial with the largest real part if that is above 0, beyond rounding; None otherwise."""
+    import numpy as np
+
+    roots = np.roots(polynomial)
+    if not roots.size:
+        return None
+    worst = complex(roots[roots.real.argmax()])
+    return worst if worst.real > _ROUNDING * np.abs(roots).max() else None
 
 
 def _single(entry: Any, name: str) -> list[float]:

@@ -28,7 +28,7 @@ from coaxshell.solver.emitters import emitters, planes_of
 from coaxshell.solver.point_forces import PointForceShares, point_force_shares
 from coaxshell.solver.settings import Settings
 from coaxshell.structure.constituents import constituents, loses
-from coaxshell.structure.control_law import ControlGains, ControlLaw, RationalLaw
+from coaxshell.structure.control_law import BridgedLaw, ControlGains, ControlLaw, RationalLaw
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
 from coaxshell.structure.electrodes import with_plane_stress
@@ -310,10 +310,22 @@ def _transducers(system: System, index: int, scales: Scales) -> Transducers:
     return Transducers(electrodes, sensors, actuators, 0.0 if electrodes else -acting[0].actuator_coupling, limit, shorted)
 
 
+def _bridged_share(system: System, index: int) -> float:
+    """Return how many of a shell's sensors are self-sensing, read by a bridge, over all."""
+    shell = system.shells[index]
+    assert isinstance(shell, Shell)
+    sensors = shell.serving("sensor")
+    return sum(layer.role == "self-sensing" for layer in sensors) / max(1, len(sensors))
+
+
 def _gains(system: System, index: int, time: float) -> ControlLaw | None:
     control = law_of(system, index)
     if control is None:
         return None
     if isinstance(control, Feedback):
-        return RationalLaw.of(*control.polynomials, control.delay, control.weights, time)
+        share = _bridged_share(system, index)
+        if control.bridge_imbalance and control.delay:
+            law = RationalLaw.of(*control.polynomials, control.delay, control.weights, time)
+            return BridgedLaw(law.numerator, law.denominator, law.delay, law.weights, share * control.bridge_imbalance)
+        return RationalLaw.of(*control.bridged(share), control.delay, control.weights, time)
     return ControlGains(*gains_of(system, index))

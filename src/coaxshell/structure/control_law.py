@@ -217,3 +217,30 @@ class RationalLaw(ControlLaw):
         frequency = np.union1d(np.geomspace(1e-3, 1e7, 1200), special[(special > 1e-3) & (special < 1e7)])
         size = np.abs(self._rational(1j * frequency + 1e-3)) / frequency**2  # beside poles on the axis
         return frequency, np.maximum.accumulate(size[::-1])[::-1]
+
+
+@dataclass(frozen=True)
+class BridgedLaw(RationalLaw):
+    """Late feedback by a bridge that lets a part x of the actuator's own voltage through: u = H e^{-s delay} (phi_s + x u).
+
+    Attributes
+    ----------
+    through : float
+        x; |x H| < 1 at all frequencies, so that the loop of the amplifier by itself has no pole that grows.
+    """
+
+    through: float = 0.0
+
+    def at(self, s: ComplexArray, modes: Modes) -> ComplexArray:
+        """Return H e^{-s delay}/(1 - x H e^{-s delay}), 0 for orders that are not fed back."""
+        law = RationalLaw(self.numerator, self.denominator, self.delay, self.weights).at(s, modes)
+        return np.asarray(law / (1.0 - self.through * law))
+
+    def _rational(self, s: ComplexArray) -> ComplexArray:
+        """Return H over 1 - |x H|: the most that it comes to at any phase."""
+        law = super()._rational(s)
+        return np.asarray(law / np.maximum(1.0 - np.abs(self.through * law), 1e-2))
+
+    def times(self, factor: float) -> BridgedLaw:
+        """Return the law with a factor on u per phi_s, x being that of the bridge at the gain given."""
+        return replace(self, numerator=tuple(factor * x for x in self.numerator), through=self.through / factor if factor else 0.0)
