@@ -10,13 +10,16 @@ STAMP_DOCS := $(VENV)/.installed-docs
 DEMO   := demo
 DOCS_CHECKS ?= not slow
 
+# Many processes are started below, and each would compile the package anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Types are checked while the pages are built, which keeps one core busy.
 ifeq ($(filter types,$(MAKECMDGOALS))$(filter docs,$(MAKECMDGOALS)),typesdocs)
 MAKEFLAGS += -j2 --output-sync=target
 endif
 
 .DELETE_ON_ERROR:
-.PHONY: help demo chromium test test-all mutation lint types bench docs clean
+.PHONY: help demo chromium test test-all mutation lint types bench docs pictures clean
 
 help:
 	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
@@ -27,6 +30,7 @@ help:
 	@echo "make types     static types"
 	@echo "make bench     time, memory and cost curves of the solver"
 	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
+	@echo "make pictures  the pictures of the pages anew, docs/figures: half an hour"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
 define ENVIRONMENT
@@ -119,6 +123,11 @@ docs: $(STAMP_DOCS) chromium
 	@echo "checking what came out, in a browser too: about a minute"
 	@$(BIN)/python -m pytest -q -n 2 --dist loadfile -m "$(DOCS_CHECKS)" docs/checks
 	@echo "open docs/built/index.html"
+
+# What the pages show that is not made at every build: `make docs` runs the examples and writes reports and tables itself.
+pictures: export OPENBLAS_NUM_THREADS = 1
+pictures: $(STAMP) chromium
+	@$(BIN)/python docs/pictures
 
 clean:
 	@rm -rf $(VENV) $(DEMO) docs/built docs/generated docs/tutorials build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

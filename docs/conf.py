@@ -32,6 +32,7 @@ exclude_patterns = [
     "built",
     "checks",
     "extensions",
+    "pictures",
     "generated/doctrees",
     "generated/report",
     "tutorials/**/*.py",
