@@ -6,6 +6,22 @@ from mutation import Mutation
 
 GRADIENTS = (
     Mutation(
+        "gradient-gap-of-faces",
+        "solver/adjoint/faces.py",
+        "back[i - 1][1] = back[i - 1][1] - fluid.ba * inner[i]",
+        "back[i - 1][1] = back[i - 1][1] + fluid.ba * inner[i]",
+        "what a face changes through the far side of its gap",
+        "solver/test_adjoint_on_solids.py",
+    ),
+    Mutation(
+        "gradient-kernels-of-faces",
+        "solver/adjoint/faced.py",
+        "per_compliance = _of_step_weights(weights_of(self._back.felt), grid, fine) * s",
+        "per_compliance = 0.0 * _of_step_weights(weights_of(self._back.felt), grid, fine) * s",
+        "what walls change through the step weights of the march",
+        "solver/test_adjoint_on_solids.py",
+    ),
+    Mutation(
         "gradient-history",
         "solver/adjoint/backward.py",
         "known = loads[block] - points.project_transposed(ahead).T",

@@ -111,9 +111,3 @@ def test_voltages_of_a_law_that_remembers_have_no_gradient():
 def test_the_end_of_a_range_has_no_gradient():
     with pytest.raises(cx.InputError, match="end of what is allowed"):
         cx.gradient(BARE, metric="inner.rms_stress", variables="source.delay", **SETTINGS)
-
-
-def test_stresses_of_elastic_walls_have_no_gradient():
-    solid = BARE.replace(shells=[shell.replace(theory="elastic") for shell in BARE.shells])
-    with pytest.raises(cx.InputError, match="has no gradient"):
-        cx.gradient(solid, metric="inner.rms_stress", variables="source.distance", **SETTINGS)

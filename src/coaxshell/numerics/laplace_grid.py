@@ -147,15 +147,15 @@ class LaplaceGrid:
         spectrum: ComplexArray = fft.rfft(damped, self.samples, axis=-1, workers=WORKERS)
         return spectrum
 
-    def invert_transposed(self, histories: FloatArray) -> ComplexArray:
+    def invert_transposed(self, histories: FloatArray, window: FloatArray | None = None) -> ComplexArray:
         """Return the transpose of :meth:`invert`: X with Re sum_k X_k S_k = sum_n x_n invert(S)_n for every S (last axis).
 
         No complex conjugate is taken of S: X_k = taper_k c_k/(P dt) sum_n x_n e^{(sigma + i omega_k) t_n}, P the samples of a period and
-        c_k the times that a node counts in a real transform.
+        c_k the times that a node counts in a real transform; ``window`` is that of the inverse.
         """
         grown = histories * np.exp(self.shift * self.time)
         spectrum: ComplexArray = fft.rfft(grown, self.samples, axis=-1, workers=WORKERS)
-        spectrum *= self.taper() * self._counts / self.period
+        spectrum *= (self.taper() if window is None else window) * self._counts / self.period
         return spectrum.conj()
 
     def transform_linear_transposed(self, spectrum: ComplexArray) -> FloatArray:

@@ -27,7 +27,7 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes, RadialBasis
 from coaxshell.acoustics.operators import annulus
 from coaxshell.numerics.arrays import ComplexArray
-from coaxshell.solver.scaling import Problem
+from coaxshell.solver.scaling import FluidRegion, Problem
 from coaxshell.structure.shell_model import FaceReceptance
 
 Entry = ComplexArray | float
@@ -50,13 +50,37 @@ class FaceMotion(NamedTuple):
     load_outer: ComplexArray
 
 
-class _Fluid(NamedTuple):
+class FluidOperator(NamedTuple):
     """Pressures of one fluid per displacement of its faces, g aa and so on; 0 where there is none, or no such face."""
 
     aa: Entry = 0.0
     ab: Entry = 0.0
     ba: Entry = 0.0
     bb: Entry = 0.0
+
+
+def fluid_operators(problem: Problem, radial: RadialBasis, s: ComplexArray) -> list[FluidOperator]:
+    """Return the operators of all fluids on their faces, from the inside out."""
+    wetted = [wall.wetted for wall in problem.shells]
+    return [fluid_operator(fluid, region, wetted, radial, s) for region, fluid in enumerate(problem.fluids)]
+
+
+def fluid_operator(
+    fluid: FluidRegion | None, region: int, wetted: Sequence[tuple[float, float]], radial: RadialBasis, s: ComplexArray
+) -> FluidOperator:
+    """Return the operator of one fluid on its faces; ``wetted`` are the radii of the inner and the outer faces of all walls."""
+    count = len(wetted)
+    if fluid is None:
+        return FluidOperator()
+    sides = [j for j in (region - 1, region) if 0 <= j < count]
+    faces = [radial(fluid.slowness, wetted[j][int(j < region)]) for j in sides]
+    per = [fluid.density * fluid.wall_motion_factor(j, radial) * (s * s) for j in sides]
+    if region == 0:
+        return FluidOperator(bb=per[0] * faces[0].disc)
+    if region == count:
+        return FluidOperator(aa=per[0] * faces[0].exterior)
+    gap = annulus(*faces)
+    return FluidOperator(per[0] * gap.aa, per[1] * gap.ab, per[0] * gap.ba, per[1] * gap.bb)
 
 
 class CascadeSystem:
@@ -77,6 +101,7 @@ class CascadeSystem:
     radial : RadialBasis
         Bessel ratios of the fluids, reused by the incident wave.
     walls : list of FaceReceptance
+    fluids : list of FluidOperator
     """
 
     def __init__(
@@ -91,32 +116,17 @@ class CascadeSystem:
         self.radial = RadialBasis(modes, s) if radial is None else radial
         self.walls = [wall.receptance(modes, s) for wall in problem.shells] if walls is None else list(walls)
         self._radii = [wall.wetted for wall in problem.shells]
-        self._fluids = [self._fluid(i) for i in range(len(problem.fluids))]
+        self.fluids = fluid_operators(problem, self.radial, s)
         self._factor()
-
-    def _fluid(self, region: int) -> _Fluid:
-        """Return the operator of one fluid on its faces."""
-        fluid, count = self.problem.fluids[region], len(self.problem.shells)
-        if fluid is None:
-            return _Fluid()
-        sides = [j for j in (region - 1, region) if 0 <= j < count]
-        faces = [self.radial(fluid.slowness, self.problem.shells[j].wetted[int(j < region)]) for j in sides]
-        per = [fluid.density * fluid.wall_motion_factor(j, self.radial) * (self.s * self.s) for j in sides]
-        if region == 0:
-            return _Fluid(bb=per[0] * faces[0].disc)
-        if region == count:
-            return _Fluid(aa=per[0] * faces[0].exterior)
-        gap = annulus(*faces)
-        return _Fluid(per[0] * gap.aa, per[1] * gap.ab, per[0] * gap.ba, per[1] * gap.bb)
 
     def _factor(self) -> None:
         """Keep zeta within each wall, y outside it, and the divisors of both."""
-        self._within: list[Entry] = [self._fluids[0].bb]
+        self._within: list[Entry] = [self.fluids[0].bb]
         self._wall_divisor: list[Entry] = []
         self._seen: list[ComplexArray] = []
         self._gap_divisor: list[ComplexArray] = []
         for i, (h, (inner, outer)) in enumerate(zip(self.walls, self._radii, strict=True)):
-            zeta, fluid = self._within[i], self._fluids[i + 1]
+            zeta, fluid = self._within[i], self.fluids[i + 1]
             divisor = 1.0 + h.inner * (inner * zeta)
             y = (h.outer - h.back * h.across * (inner * zeta) / divisor) * outer
             gap = 1.0 - fluid.aa * y
@@ -163,11 +173,11 @@ class CascadeSystem:
             free_inner[i] = d_inner - h.inner * (radius * pressures[i])
             within = pressures[i] + zeta * free_inner[i] / self._wall_divisor[i]
             driven[i] = d_outer - h.back * (radius * within)
-            pressures[i + 1] = self._fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
+            pressures[i + 1] = self.fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
         found: list[FaceMotion] = []
         beyond = still  # the next wall's inner face
         for i in reversed(range(count)):
-            h, fluid = self.walls[i], self._fluids[i + 1]
+            h, fluid = self.walls[i], self.fluids[i + 1]
             load = (fluid.aa * driven[i] + fluid.ab * beyond) / self._gap_divisor[i]
             w_outer = driven[i] + self._seen[i] * load
             w_inner = (h.across * (self._radii[i][1] * load) + free_inner[i]) / self._wall_divisor[i]

@@ -65,6 +65,10 @@ class FacedSystem:
         faces = self.cascade.solve(surface.shell, load, surface.side)
         return [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
 
+    def ratio(self, shell: int) -> ComplexArray:
+        """Return V/W of a wall whose faces move alike."""
+        return self._reading[shell]
+
     def _answer(self, reading: ComplexArray, faces: FaceMotion) -> WallAnswer:
         if reading.ndim == 2:
             return WallAnswer(faces.outer, reading * faces.outer, 0.0, [], faces)

@@ -98,7 +98,9 @@ def rigid_motions(order: float, wavenumber: float) -> int:
     return int(wavenumber == 0.0 and order in (0.0, 1.0))
 
 
-def elastic_basis(layers: Sequence[SolidLayer], modes: Modes, frequency: float) -> tuple[OrdersBasis, ...]:
+def elastic_basis(
+    layers: Sequence[SolidLayer], modes: Modes, frequency: float, meshed_as: Sequence[SolidLayer] | None = None
+) -> tuple[OrdersBasis, ...]:
     """Return the shapes of all orders of some modes.
 
     Parameters
@@ -109,10 +111,12 @@ def elastic_basis(layers: Sequence[SolidLayer], modes: Modes, frequency: float) 
         Of a real wavenumber.
     frequency : float
         Up to which waves are resolved, radians per transit.
+    meshed_as : sequence of SolidLayer, optional
+        Layers nearby whose number of points these take: it jumps as layers change.
     """
     assert isinstance(modes.wavenumber, (int, float))
     wavenumber = float(modes.wavenumber)
-    needed = np.stack([degrees(layer, modes.orders, wavenumber, frequency) for layer in layers], axis=1)
+    needed = np.stack([degrees(layer, modes.orders, wavenumber, frequency) for layer in meshed_as or layers], axis=1)
     steps = np.ceil(needed / STEP).astype(int)
     edges = [0, *(1 + np.flatnonzero(np.any(np.diff(steps, axis=0), axis=1))), modes.count]
     found = []

@@ -115,6 +115,8 @@ class ElasticWall(ShellModel):
         Whether stations keep its shapes as long as the modes are in use, which are three times what they read of them.
     silent : float
         Frequency above which shapes do not answer, where only slower ones are looked at.
+    meshed_as : tuple of SolidLayer or None
+        Layers beside its own that decide on its mesh.
     """
 
     layers: tuple[SolidLayer, ...]
@@ -124,6 +126,7 @@ class ElasticWall(ShellModel):
     depth_read: float | None = field(default=None, compare=False)
     keeps_shapes: bool = field(default=False, compare=False)
     silent: float = field(default=math.inf, compare=False)
+    meshed_as: tuple[SolidLayer, ...] | None = field(default=None, compare=False)
 
     @classmethod
     def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
@@ -205,7 +208,7 @@ class ElasticWall(ShellModel):
                 "a wave along the axis meets an elastic wall at complex wavenumbers, which its shapes do not have",
                 'use inclination = 0, or theory = "thin"',
             )
-        return elastic_basis(self.layers, modes, self.frequency)
+        return elastic_basis(self.layers, modes, self.frequency, self.meshed_as)
 
     def prepare(self, modes: Modes) -> None:
         """Make what all blocks of nodes share, before all threads ask for it."""

@@ -51,7 +51,7 @@ class LossySolidWall(ElasticWall):
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """Consecutive layers that answer together, from the inside out."""
-        return pieces(self.layers, self.frequency)
+        return pieces(self.layers, self.frequency, self.meshed_as)
 
     @cached_property
     def stiffest(self) -> ElasticWall:

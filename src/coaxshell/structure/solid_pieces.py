@@ -80,11 +80,14 @@ class Piece:
     layers : tuple of SolidLayer
     frequency : float
         Up to which waves are resolved, radians per transit.
+    meshed_as : tuple of SolidLayer or None
+        Layers beside its own that decide on its mesh.
     """
 
     first: int
     layers: tuple[SolidLayer, ...]
     frequency: float
+    meshed_as: tuple[SolidLayer, ...] | None = None
 
     @property
     def factor(self) -> Relaxation | None:
@@ -94,12 +97,12 @@ class Piece:
     @property
     def by_potentials(self) -> bool:
         """Whether it is one layer that answers by its potentials."""
-        return by_potentials(self.layers[0], self.frequency)
+        return by_potentials((self.meshed_as or self.layers)[0], self.frequency)
 
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes where its factor is 1."""
-        return elastic_basis(self.layers, modes, self.frequency)
+        return elastic_basis(self.layers, modes, self.frequency, self.meshed_as)
 
 
 def by_potentials(layer: SolidLayer, frequency: float) -> bool:
@@ -107,13 +110,15 @@ def by_potentials(layer: SolidLayer, frequency: float) -> bool:
     return layer.isotropic and (layer.shear_alone or degree(layer, 0.0, 0.0, frequency) > MOST_DEGREE)
 
 
-def pieces(layers: Sequence[SolidLayer], frequency: float) -> tuple[Piece, ...]:
-    """Return the pieces of a wall, from the inside out."""
-    keys = [(number if by_potentials(layer, frequency) else -1, layer.factor) for number, layer in enumerate(layers)]
+def pieces(layers: Sequence[SolidLayer], frequency: float, meshed_as: Sequence[SolidLayer] | None = None) -> tuple[Piece, ...]:
+    """Return the pieces of a wall, from the inside out; divided and meshed as those of other layers nearby, if given."""
+    divided = meshed_as or layers
+    keys = [(number if by_potentials(layer, frequency) else -1, layer.factor) for number, layer in enumerate(divided)]
     found: list[Piece] = []
     for _, members in groupby(range(len(layers)), key=lambda number: keys[number]):
         numbers = list(members)
-        found.append(Piece(numbers[0], tuple(layers[i] for i in numbers), frequency))
+        held = None if meshed_as is None else tuple(meshed_as[i] for i in numbers)
+        found.append(Piece(numbers[0], tuple(layers[i] for i in numbers), frequency, held))
     return tuple(found)
 
 

@@ -16,19 +16,27 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.adjoint.backward import CubicBackwards, march_backwards
+from coaxshell.solver.adjoint.faces import Rows, per_surface_load
 from coaxshell.solver.adjoint.histories import marched_by_laws, marched_links
 from coaxshell.solver.adjoint.laws import AnyBackwards, ElementSensitivity
 from coaxshell.solver.adjoint.nodes import elements_at_nodes, solve_transposed
+from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
+from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.solved_spectra import SolvedSpectra
+from coaxshell.solver.spectral import node_blocks
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 class Reading(NamedTuple):
-    """What a number changes by, Re sum(normal dW + tangential dV), both of the shape of W: (shells, parities, M + 1, nodes)."""
+    """What a number changes by, Re sum(normal dW + tangential dV), both of the shape of W: (shells, parities, M + 1, nodes).
+
+    Where walls have two faces it is in ``rows`` instead (:data:`coaxshell.solver.adjoint.faces.Rows`).
+    """
 
     normal: ComplexArray
     tangential: ComplexArray
+    rows: Rows = {}  # noqa: RUF012 - nobody changes it
 
 
 class Around(NamedTuple):
@@ -99,18 +107,24 @@ class Backwards:
     Attributes
     ----------
     reading : Reading
-        Of the motion; of links that were solved at each node what they feel is in it already.
+        Of the motion; of links that were solved at each node what they feel is in it already, but where walls have two faces.
     links : LinkSensitivity
     felt : Felt or None
         Of links that were marched.
-    tighter : ndarray, shape (shells,)
-        What the number changes by if the forces of the links on a shell grow by a factor 1 + x, per x.
+    tighter : ndarray, shape (surfaces,)
+        What the number changes by if the forces of the links on a surface grow by a factor 1 + x, per x.
+    moved : ndarray, shape (surfaces, parities, M + 1, nodes), or None
+        What links that were solved at each node feel of the surfaces, where walls have two faces.
+    pressure : ndarray, same shape, or None
+        Transforms of the modal pressures of the links, there.
     """
 
     reading: Reading
     links: LinkSensitivity
     felt: Felt | None
     tighter: FloatArray
+    moved: ComplexArray | None = None
+    pressure: ComplexArray | None = None
 
 
 def backwards(solved: SolvedSpectra, reading: Reading) -> Backwards:
@@ -127,12 +141,16 @@ def backwards(solved: SolvedSpectra, reading: Reading) -> Backwards:
         )
     absorbers = solved.absorbers
     if not absorbers.count:
-        return Backwards(reading, LinkSensitivity.none(), None, np.zeros(len(solved.problem.shells)))
+        return Backwards(reading, LinkSensitivity.none(), None, np.zeros(len(solved.problem.surfaces)))
     structure = solved.structure
     points = InterfacePoints(solved.problem, absorbers, solved.modes)
     h = points.parities
-    on_wall = reading.normal[:, :h] + structure.tangential_ratio[:, None] * reading.tangential[:, :h]
-    per_pressure = np.einsum("ijmk,ihmk->jhmk", structure.compliance, on_wall)
+    if solved.solid is not None:
+        blocks = node_blocks(solved.grid, solved.modes.max_order)
+        per_pressure = per_surface_load(structure.problem, blocks, solved.grid.nodes, solved.modes, reading.rows)[:, :h]
+    else:
+        on_wall = reading.normal[:, :h] + structure.tangential_ratio[:, None] * reading.tangential[:, :h]
+        per_pressure = np.einsum("ijmk,ihmk->jhmk", structure.compliance, on_wall)
     if solved.exact is not None:
         return _exact(solved, points, per_pressure, reading)
     return (_marched if solved.laws is None else _marched_by_laws)(solved, points, per_pressure, reading)
@@ -164,7 +182,9 @@ def _marched(solved: SolvedSpectra, points: InterfacePoints, per_pressure: Compl
     )
     displacement, velocity, forced = (points.evaluate_transposed(walls[k][0]) for k in (2, 1, 0))
     tighter = np.einsum("ihmt,ihmt->i", pressure, forward.modal_force)
-    return Backwards(reading, links, Felt(displacement, velocity, forced, forward.modal_force), tighter)
+    felt = Felt(displacement, velocity, forced, forward.modal_force)
+    given = None if solved.solid is None else solved.grid.transform_linear(forward.modal_force)
+    return Backwards(reading, links, felt, tighter, pressure=given)
 
 
 def _marched_by_laws(solved: SolvedSpectra, points: InterfacePoints, per_pressure: ComplexArray, reading: Reading) -> Backwards:
@@ -191,7 +211,9 @@ def _marched_by_laws(solved: SolvedSpectra, points: InterfacePoints, per_pressur
     )
     displacement, forced = points.evaluate_transposed(-of_stretch), points.evaluate_transposed(-back.force)
     tighter = np.einsum("ihmt,ihmt->i", pressure, forward.modal_force)
-    return Backwards(reading, links, Felt(displacement, np.zeros_like(displacement), forced, forward.modal_force), tighter)
+    felt = Felt(displacement, np.zeros_like(displacement), forced, forward.modal_force)
+    given = None if solved.solid is None else middles_transform(grid, forward.modal_force)
+    return Backwards(reading, links, felt, tighter, pressure=given)
 
 
 def _of_the_first_instant(
@@ -223,7 +245,8 @@ def _exact(solved: SolvedSpectra, points: InterfacePoints, per_pressure: Complex
     assert solved.exact is not None
     force, displacement = solved.exact
     back = solve_transposed(structure, absorbers, points, points.project_transposed(per_pressure))
-    stretch = np.tile(displacement, (2, 1)) - points.evaluate(solved.normal)
+    moving = solved.normal if solved.solid is None else surface_motion(solved.problem, solved.normal, solved.solid.faces)
+    stretch = np.tile(displacement, (2, 1)) - points.evaluate(moving)
     felt = points.evaluate_transposed(back.force)
     pressure = per_pressure - np.einsum("ijmk,ihmk->jhmk", structure.compliance, felt)
     there = np.ones(2 * absorbers.count) if absorbers.elements is None else absorbers.elements.present.astype(np.float64)
@@ -232,12 +255,15 @@ def _exact(solved: SolvedSpectra, points: InterfacePoints, per_pressure: Complex
         damping=_of_both(back.law * there[:, None], s * stretch),
         linear=_of_both(back.law * there[:, None], stretch),
         cubic=np.full(absorbers.count, np.nan),
-        around=_around(solved, points, (force, pressure), [(-back.force, solved.normal)]),
+        around=_around(solved, points, (force, pressure), [(-back.force, moving)]),
         elements=None if absorbers.elements is None else elements_at_nodes(absorbers, s, back.law * stretch),
     )
+    given = points.project(force)
+    tighter = np.einsum("ihmk,ihmk->i", pressure, given).real
+    if solved.solid is not None:
+        return Backwards(reading, links, None, tighter, moved=-felt, pressure=given)
     normal = reading.normal.copy()
     normal[:, : points.parities] -= felt
-    tighter = np.einsum("ihmk,ihmk->i", pressure, points.project(force)).real
     return Backwards(Reading(normal, reading.tangential), links, None, tighter)
 
 

@@ -19,7 +19,6 @@ import numpy.typing as npt
 from scipy import fft
 
 from coaxshell.acoustics.basis import RadialBasis
-from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
@@ -44,22 +43,15 @@ class _Bars:
 
 
 class StructureSensitivity:
-    """What a number changes by with the structure of a run.
+    """What a number changes by with the structure of a run whose walls have one W.
 
     Parameters
     ----------
     solved : SolvedSpectra
     back : Backwards
-
-    Raises
-    ------
-    InputError
-        If walls of elastic solids are among the shells.
     """
 
     def __init__(self, solved: SolvedSpectra, back: Backwards) -> None:
-        if solved.problem.two_faced:
-            raise InputError("variables", "a gradient by properties of the structure knows thin walls alone", 'use theory="thin"')
         self._solved, self._back = solved, back
         self._structure, self._grid, self._modes = solved.structure, solved.grid, solved.modes
 
@@ -70,15 +62,15 @@ class StructureSensitivity:
         for i, (old, new) in enumerate(pairs):
             if old != new and new.moves:
                 first, second = old.operator(self._modes, s), new.operator(self._modes, s)
-                total += _sum(bars.diagonal[i], second.impedance - first.impedance)
-                total += _sum(bars.tangential[i], second.tangential - first.tangential)
+                total += summed(bars.diagonal[i], second.impedance - first.impedance)
+                total += summed(bars.tangential[i], second.tangential - first.tangential)
                 total += self._back.tighter[i] * float(np.log(old.radius / new.radius))
         wetted = any((old.radius, old.wetted) != (new.radius, new.wetted) for old, new in pairs)
         if wetted or before.fluids != after.fluids:
             total += self._of_fluids(before, after)
         if wetted or before.sources != after.sources or before.scales != after.scales or before.system.sources != after.system.sources:
             first_load, second_load = (self._load(problem) for problem in (before, after))
-            total += _sum(bars.load, second_load - first_load)
+            total += summed(bars.load, second_load - first_load)
         if self._weights is not None:
             closed = [_closed_weights(problem, self._grid, self._modes) for problem in (before, after)]
             total += float(np.einsum("imt,imt->", np.einsum("iimt->imt", self._resolved), closed[1] - closed[0]))
@@ -93,11 +85,11 @@ class StructureSensitivity:
         for i, moves in enumerate(free):
             if not moves:
                 continue
-            total += _sum(bars.diagonal[i], s2 * (second.diagonal[i] - first.diagonal[i]))
+            total += summed(bars.diagonal[i], s2 * (second.diagonal[i] - first.diagonal[i]))
             if i + 1 < len(free) and free[i + 1]:
-                total += _sum(bars.upper[i], s2 * (second.upper[i] - first.upper[i]))
+                total += summed(bars.upper[i], s2 * (second.upper[i] - first.upper[i]))
             if i > 0 and free[i - 1]:
-                total += _sum(bars.lower[i], s2 * (second.lower[i] - first.lower[i]))
+                total += summed(bars.lower[i], s2 * (second.lower[i] - first.lower[i]))
         return total
 
     def _load(self, problem: Problem) -> ComplexArray:
@@ -120,7 +112,7 @@ class StructureSensitivity:
     @cached_property
     def _weights(self) -> FloatArray | None:
         """What the number changes by per unit of every step weight, shape (shells, shells, M + 1, T); None where nothing was marched."""
-        return None if self._back.felt is None else _of_weights(self._back.felt)
+        return None if self._back.felt is None else weights_of(self._back.felt)
 
     @cached_property
     def _resolved(self) -> FloatArray:
@@ -164,11 +156,12 @@ def _through(compliance: ComplexArray, per_motion: ComplexArray) -> ComplexArray
     return np.asarray(np.einsum("ijmk,ihmk->jhmk", compliance, per_motion))
 
 
-def _sum(bar: ComplexArray, change: ComplexArray | float) -> float:
+def summed(bar: ComplexArray, change: ComplexArray | float) -> float:
+    """Return the real part of the sum of products."""
     return float(np.vdot(np.conjugate(bar), np.broadcast_to(change, bar.shape)).real)
 
 
-def _of_weights(felt: Felt) -> FloatArray:
+def weights_of(felt: Felt) -> FloatArray:
     """Return sum over steps n of what velocities at n change times pressures k steps before, shape (shells, shells, M + 1, T)."""
     steps = felt.pressure.shape[-1]
     length = fft.next_fast_len(2 * steps - 1, real=True)

@@ -12,7 +12,6 @@ from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.loading import SystemLike, as_system
-from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
 from coaxshell.numerics.identity import numerics
 from coaxshell.numerics.keywords import showing
@@ -112,10 +111,6 @@ def require_gradient(system: System, settings: Settings) -> None:
     """Refuse runs that have no gradient: InputError."""
     if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
         raise InputError("sea", "what surface and bottom reflect is not run backwards yet", "leave the sea out")
-    solid = any(isinstance(shell, Shell) and shell.theory == "elastic" for shell in system.shells)
-    if solid and system.absorber_list:
-        remedy = 'hold them on shells with theory = "thin"'
-        raise InputError("absorbers", "forces on the faces of elastic walls are not run backwards yet", remedy)
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} has no gradient", 'use engine="spectral"')
     if settings.dimensions != 2:

@@ -11,26 +11,27 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.response.modal import scaled, voltage_gain
+from coaxshell.response.modal import amplitudes, scaled, voltage_gain
 from coaxshell.response.quantities import Where, shell_metrics
 from coaxshell.response.relaxing import Relaxing, relaxed, relaxed_transposed
 from coaxshell.response.voltages import actuator_limit, mean_shares
 from coaxshell.solver.adjoint.answer import Reading
+from coaxshell.solver.adjoint.faces import Rows
 from coaxshell.solver.electrodes import segment_length
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.losses import Relaxation
-from coaxshell.structure.shell_model import Gain
+from coaxshell.structure.shell_model import FieldGain, Gain
 from coaxshell.studies.gradients.norms import Norm, power_mean, root_mean_square
 from coaxshell.studies.metrics import Metric
 
 
 class Parts(NamedTuple):
-    """Gains on W and V, each under a factor g(s) of losses or None for 1, and on their rates, by which a quantity is made of them."""
+    """Gains on what a wall shows, each under a factor g(s) of losses or None for 1, and on rates of W and V, that make a quantity."""
 
-    at_once: tuple[tuple[Relaxation | None, Gain], ...]
+    at_once: tuple[tuple[Relaxation | None, Gain | FieldGain], ...]
     rate: Gain | None = None
 
 
@@ -63,10 +64,9 @@ class SmoothMetric:
     def amplitudes(self, solution: ModalSolution, problem: Problem | None = None) -> FloatArray:
         """Return the modal amplitudes (parities, M + 1, T) of the quantity; with the gains of another problem if given."""
         at_once, rate = self.parts(problem or solution.problem)
-        normal, tangential = solution.normal[self.shell], solution.tangential[self.shell]
-        modal = np.zeros_like(normal)
+        modal = np.zeros_like(solution.normal[self.shell])
         for factor, gain in at_once:
-            modal += relaxed(solution, factor, gain.w[:, None] * normal + gain.v[:, None] * tangential)
+            modal += relaxed(solution, factor, amplitudes(solution, self.shell, gain))
         if rate is not None:
             assert solution.normal_rate is not None
             assert solution.tangential_rate is not None
@@ -84,6 +84,7 @@ class SmoothMetric:
         """Return what a unit of W and V at every node changes, from what a unit of each amplitude does."""
         grid, (at_once, rate) = solved.grid, self.parts(solution.problem)
         normal, tangential = np.zeros((2, *solved.normal.shape), np.complex128)
+        rows: Rows = {}
 
         def at_nodes(histories: FloatArray) -> ComplexArray:
             every = np.zeros((*slope.shape[:2], grid.time.size))
@@ -92,13 +93,24 @@ class SmoothMetric:
 
         for factor, gain in at_once:
             spectrum = at_nodes(relaxed_transposed(solution, factor, slope))
-            normal[self.shell] += gain.w[:, None] * spectrum
-            tangential[self.shell] += gain.v[:, None] * spectrum
+            if solved.solid is not None:
+                rows |= {(self.shell, row): each[:, None] * spectrum for row, each in _rows(gain).items()}
+            elif isinstance(gain, Gain):
+                normal[self.shell] += gain.w[:, None] * spectrum
+                tangential[self.shell] += gain.v[:, None] * spectrum
         if rate is not None:
             spectrum = at_nodes(slope)
             normal[self.shell] += rate.w[:, None] * (spectrum * grid.nodes)
             tangential[self.shell] += rate.v[:, None] * (spectrum * grid.nodes)
-        return Reading(normal, tangential)
+        return Reading(normal, tangential, rows)
+
+
+def _rows(gain: Gain | FieldGain) -> dict[int, FloatArray]:
+    """Return the factors by row of what a wall shows: 0 W, 1 V, 2 hoop stress, then potentials."""
+    if isinstance(gain, Gain):
+        return {0: gain.w, 1: gain.v}
+    found = {{"w": 0, "v": 1, "hoop": 2}[name]: factor for name, factor in gain.fields.items()}
+    return found if gain.layer is None else {**found, 3 + gain.layer: np.asarray(gain.potential)}
 
 
 def has_gradient(metric: Metric) -> bool:
@@ -124,7 +136,7 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
     Raises
     ------
     InputError
-        If it is none, or its wall is an elastic solid, whose stress is no sum of V and W.
+        If it is none, or in its wall no sum of what that shows at the same instant.
     """
     if not has_gradient(metric):
         remedy = "use the RMS or the peak of stress, displacement or voltage of a shell, such as inner.rms_stress, or a mass"
@@ -136,11 +148,16 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
     def seen(problem: Problem) -> Any:
         return SimpleNamespace(problem=problem, normal=np.empty((0, 1, orders)), along=None)
 
+    def of_driven(problem: Problem, share: FloatArray) -> Parts:
+        """Return the voltage that the law gives, which a wall with two faces shows as its last potential."""
+        wall = problem.shells[shell]
+        return Parts(((None, FieldGain(potential=share, layer=wall.shown_potentials - 1)),))
+
     def of_table(problem: Problem) -> Parts:
         assert entry is not None
         assert entry[0].gain is not None
         gain = entry[0].gain(seen(problem), shell)
-        return Parts(gain.parts if isinstance(gain, Relaxing) else ((None, gain),))  # type: ignore[arg-type]
+        return Parts(gain.parts if isinstance(gain, Relaxing) else ((None, gain),))
 
     def of_voltage(problem: Problem) -> Parts:
         run, gains = seen(problem), problem.shells[shell].gains
@@ -154,7 +171,9 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
         elif quantity.endswith("ratio"):
             share = share / actuator_limit(run, shell).volts
         if gains is None:
-            return Parts(((None, scaled(sensor, 0.0 * share)),))  # type: ignore[arg-type]
+            return Parts(((None, scaled(sensor, 0.0 * share)),))
+        if not problem.shells[shell].faces_move_alike:
+            return of_driven(problem, share)
         if not isinstance(gains, ControlGains):
             remedy = "use its sensor's voltage, or a PDControl"
             raise InputError("metric", f"{metric.name!r} has no gradient: a law H(s) remembers earlier instants", remedy)
@@ -163,7 +182,9 @@ def smooth_metric(metric: Metric, problem: Problem, orders: int, power: float | 
 
     parts, where = (of_voltage, "anywhere") if entry is None else (of_table, entry[1])
     made = parts(problem)
-    if not all(isinstance(part, Gain) for part in (*(gain for _, gain in made.at_once), made.rate) if part is not None):
+    solid = not problem.shells[shell].faces_move_alike
+    shown = all(isinstance(part, Gain) or (solid and isinstance(part, FieldGain)) for _, part in made.at_once)
+    if not shown or (made.rate is not None and not isinstance(made.rate, Gain)):
         remedy = "use its displacement, or a wall of the theory of thin walls"
         raise InputError("metric", f"{metric.name!r} has no gradient: in this wall it is no sum of V and W of the same instant", remedy)
     return SmoothMetric(metric, shell, where, power, parts)  # type: ignore[arg-type]

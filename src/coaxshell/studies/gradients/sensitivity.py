@@ -14,6 +14,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
 from coaxshell.solver.adjoint.answer import Backwards, backwards
+from coaxshell.solver.adjoint.faced import FacedSensitivity
 from coaxshell.solver.adjoint.laws import ElementSensitivity
 from coaxshell.solver.adjoint.structure import StructureSensitivity
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set, properties
@@ -28,6 +29,8 @@ from coaxshell.studies.varied_fields import Field, field_of, varied
 
 _STEP = 1e-3
 """Relative step at which the ingredients of a run, never the run itself, are differenced."""
+_STEP_OF_SOLIDS = 3e-5
+"""The same where walls answer by their resonances, which stand beside the contour of the transform."""
 _ABSORBER = re.compile(r"absorbers(?:\[(\d{1,9})\])?\.(\w+)")
 _FIELDS = ("mass", "damping", "linear_stiffness", "cubic_stiffness")
 
@@ -76,8 +79,9 @@ class MetricSensitivity:
         return backwards(self._solved, self._smooth.reading(self._solution, self._solved, self._norm.slope))
 
     @cached_property
-    def _structure(self) -> StructureSensitivity:
-        return StructureSensitivity(self._solved, self._back)
+    def _structure(self) -> StructureSensitivity | FacedSensitivity:
+        kind = StructureSensitivity if self._solved.solid is None else FacedSensitivity
+        return kind(self._solved, self._back)
 
     @cached_property
     def _of_absorbers(self) -> dict[str, FloatArray]:
@@ -129,7 +133,8 @@ class MetricSensitivity:
     def _differenced(self, path: str) -> float:
         """Return the derivative by a field from what it changes in the ingredients of the run, by central differences of fourth order."""
         field = field_of(self.system, path)
-        step = _STEP * (abs(float(field.present)) or 1.0) if field.quantity is not None else math.nan
+        relative = _STEP if self.metric.of_design or not self._problem.two_faced else _STEP_OF_SOLIDS
+        step = relative * (abs(float(field.present)) or 1.0) if field.quantity is not None else math.nan
         if not math.isfinite(step):
             raise InputError(path, "is not a number that varies continuously", "give a property such as absorbers[0].mass")
         coarse, fine = (self._slope(field, part * step) for part in (1.0, 0.5))
@@ -202,7 +207,8 @@ def _equal(first: Parts, second: Parts) -> bool:
     pairs = [*zip(first.at_once, second.at_once, strict=True), ((None, first.rate), (None, second.rate))]
     same_factors = all(one[0] == other[0] for one, other in pairs)
     gains = [(one[1], other[1]) for one, other in pairs if one[1] is not None and other[1] is not None]
-    return same_factors and all(np.array_equal(one.v, other.v) and np.array_equal(one.w, other.w) for one, other in gains)
+    parts = [(a, b) for one, other in gains for a, b in zip(one, other, strict=True)]
+    return same_factors and all(np.array_equal(a, b) for a, b in parts)  # type: ignore[arg-type]
 
 
 def _of_design(metric: Metric, system: System) -> dict[str, FloatArray]:
