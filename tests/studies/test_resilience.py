@@ -61,7 +61,7 @@ def finished(folder):
     return [path for path in folder.glob("*.json") if path.name != "study.json"]
 
 
-def until(condition, seconds=60):
+def until(condition, seconds=300):
     end = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end, "nothing happened in time"
