@@ -6,8 +6,9 @@ import re
 
 import numpy as np
 import pytest
+from asking import SMALL
 from numpy.testing import assert_allclose
-from page_reading import rest, run_of, shown_curves, solved, system_of, until
+from page_reading import open_preset, rest, run_of, shown_curves, solved, system_of, until
 
 import coaxshell as cx
 
@@ -42,7 +43,14 @@ def test_the_first_page_shows_the_library_s_hybrid_case(page):
     assert page.locator("#peaks table").is_visible()
 
 
-def test_a_slider_changes_the_curves_to_the_library_s_numbers(page):
+@pytest.fixture
+def small_page(open_page, server):
+    """The same system at a resolution that takes hundredths of a second."""
+    return open_preset(open_page, server, SMALL, preset="hybrid")
+
+
+def test_a_slider_changes_the_curves_to_the_library_s_numbers(small_page):
+    page = small_page
     slider = page.locator('input[type="range"][data-path="absorbers.count"]')
     slider.focus()
     for _ in range(3):
@@ -55,7 +63,8 @@ def test_a_slider_changes_the_curves_to_the_library_s_numbers(page):
     assert len(times) >= 2
 
 
-def test_a_typed_quantity_is_read_with_its_unit_and_can_be_undone(page):
+def test_a_typed_quantity_is_read_with_its_unit_and_can_be_undone(small_page):
+    page = small_page
     field = page.locator('input[type="text"][data-path="source.peak_pressure"]')
     page.locator('details[data-group="source"] > summary').click()
     field.fill("50 kPa")
@@ -67,7 +76,8 @@ def test_a_typed_quantity_is_read_with_its_unit_and_can_be_undone(page):
     until(page, "window.coaxshell.state.system.source.peak_pressure === 2.5e4")
 
 
-def test_bad_input_is_told_beside_its_field_in_the_library_s_words(page):
+def test_bad_input_is_told_beside_its_field_in_the_library_s_words(small_page):
+    page = small_page
     page.locator('details[data-group="absorbers"]').evaluate("box => { box.open = true; }")
     field = page.locator('input[type="text"][data-path="absorbers.mass"]')
     field.fill("-3 kg")

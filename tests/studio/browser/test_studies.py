@@ -9,6 +9,9 @@ from page_reading import open_preset, until
 
 import coaxshell as cx
 
+SECONDS = {"duration": 4.0, "time_step": 0.01, "modes": 20}
+"""A resolution at which a sweep of some tens of runs takes seconds."""
+
 ENTRIES = (
     "entries => { const f = document.getElementById('sweep').elements; for (const [k, v] of Object.entries(entries)) f[k].value = v; }"
 )
@@ -34,7 +37,8 @@ def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(server, open_page)
     assert saved.value.failure() is None
 
 
-def test_a_sweep_can_be_cancelled(page):
+def test_a_sweep_can_be_cancelled(server, open_page):
+    page = open_preset(open_page, server, SECONDS, preset="hybrid")
     start(page, path="absorbers.mass", from_=1, to=100, count=200, scale="linear", metric="inner.peak_stress")
     page.locator("#study-jobs").get_by_role("button", name="Cancel").first.click()
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
@@ -48,7 +52,7 @@ def again(page):
 
 
 def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page):
-    page = open_preset(open_page, server, {"duration": 4.0, "time_step": 0.01, "modes": 20}, preset="hybrid")  # it takes seconds
+    page = open_preset(open_page, server, SECONDS, preset="hybrid")
     start(page, path="absorbers.mass", from_=2, to=90, count=30, scale="linear", metric="outer.peak_stress")
     mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
     mine.wait_for()
@@ -71,7 +75,8 @@ def test_a_plot_drawn_while_another_tab_is_shown_fits(server, open_page):
     until(page, f"Math.abs({box} - {drawn}) <= 1")
 
 
-def test_an_impossible_sweep_is_told_in_words(page):
+def test_an_impossible_sweep_is_told_in_words(server, open_page):
+    page = open_preset(open_page, server, SMALL)
     start(page, path="absorbers.mass", from_=-5, to=10, count=3, scale="log", metric="inner.peak_stress")
     page.locator("#sweep-problem").wait_for()
     assert page.locator("#sweep-problem").inner_text()
