@@ -105,7 +105,10 @@ def test_labelled_and_drawn():
     assert margins["shell"].values.tolist() == ["inner", "outer"]
     assert np.isinf(margins["delay_margin"].sel(order=[3, 4])).all()  # nothing is fed back there
     assert 1e-6 < float(margins["delay_margin"].min()) < 1e-4
-    figure = figure_margins(*worst_loops(system, Settings(duration=0.5, modes=4)))
+    shares: list[float] = []
+    figure = figure_margins(*worst_loops(system, Settings(duration=0.5, modes=4), lambda share, _: shares.append(share)))
+    assert shares == sorted(shares)
+    assert 0.0 < shares[0] < shares[-1] < 1.0, "it tells how far it is"
     assert [ax.get_xlabel() for ax in figure.axes] == ["circumferential order $m$", "Re $L$", "frequency (Hz)", "frequency (Hz)"]
 
 

@@ -124,6 +124,15 @@ SPACE = {
 POINT = {"mass": 5.0, "linear_stiffness": 1e8, "z": "20 cm", "footprint": 0.02}
 """A run in three dimensions and an absorber at a point, to be spoilt."""
 
+CUT = {"transducers": "electrodes", "segments": 8, "dead": [3]}
+LAWS = [
+    {"proportional": 0.0, "derivative": 2.0, "shells": [0], "segment_gap": "2 mm", **CUT},
+    {"numerator": [1e-4, 1], "denominator": [1], "delay": "5 us", "shells": ["outer"], **CUT},
+]
+"""A law for each shell, to be spoilt."""
+
+CROSSED = {"numerator": [1.0], "matrix": [[1, 0.3], [0.6, 1]], "weights": [0, 1, 1], "transducers": "electrodes"}
+
 STUDY = {
     "over": {"absorbers.mass": {"from": 1, "to": 2, "count": 2}},
     "metrics": ["inner.peak_stress"],
@@ -202,6 +211,7 @@ def requests(seed=1, count=1100):
     schema = System.model_json_schema()
     systems = [described(name) for name in presets.names()]
     systems += [{**described("bare"), "absorbers": [POINT]}, {**described("bare"), "source": {**described("bare")["source"], "z": 0.3}}]
+    systems += [{**described("electrodes"), "control": law} for law in (LAWS, LAWS, CROSSED)]
     for raw in RAW:
         for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open", "/api/project"):
             yield "POST", path, raw
@@ -215,7 +225,9 @@ def requests(seed=1, count=1100):
             body = {"system": base, **({"resolution": SPACE, "preview": SPACE} if number % 2 else {})}
             yield "POST", "/api/validate", encoded(mutated(random_, body, random_.randrange(1, 5)))
         else:
-            kind = random_.choice(["solve", "field", "film", "unrolled", "sweep", "optimise", "optimise"])
+            kind = random_.choice(
+                ["solve", "field", "film", "unrolled", "energy", "loops", "spectra", "stressed", "report", "sweep", "optimise", "optimise"]
+            )
             path = random_.choice(
                 ["/api/solve", "/api/jobs", "/api/jobs", "/api/study", "/api/studies", "/api/link", "/api/link/open", "/api/project"]
             )
@@ -226,6 +238,11 @@ def requests(seed=1, count=1100):
                 "system": base,
                 "resolution": SPACE if number % 2 else {**SMALL, "modes": 4},
                 "shell": 0,
+                "plane": "along",
+                "station": number % 3,
+                "every": 5,
+                "size": 32,
+                "half_width": 3.0,
                 "quantity": "stress",
                 "frames": 3,
                 "kind": kind,

@@ -25,6 +25,8 @@ PATHS = [
     "/api/jobs?client=",
     "/api/runs/x/point?x=1&y=1",
     "/api/runs/x/energy?every=0",
+    "/api/runs/x/costs?every=-1&size=nan",
+    "/api/runs/..%2f/costs?half_width=1e999",
     "/page/%2e%2e%2fapp.py",
     "/api",
     "/api/",

@@ -14,6 +14,7 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.dimensions import require_loops_alone
@@ -25,6 +26,8 @@ from coaxshell.solver.stability import require_stable
 from coaxshell.solver.tied_stability import require_stable_ties
 
 _DEGREES, _HERTZ, _SECONDS, _FACTOR = "deg", "Hz", "s", "1"
+_STAGE, _FOLLOWED = "margins", 0.7
+"""The share of the work that loops take; the rest is where they cross the axis and the circle."""
 _WAVES = 6
 """Axial wavenumbers in three dimensions."""
 _VARIABLES = {
@@ -48,7 +51,7 @@ class LoopResponse(NamedTuple):
     wavenumber: float = 0.0
 
 
-def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) -> xr.Dataset:
+def stability_margins(system: SystemLike, *, progress: Progress | None = None, **keywords: Unpack[SettingsKeywords]) -> xr.Dataset:
     """Return gain, phase and delay margins of the feedback of each shell, the loops of the others closed, by order.
 
     The loop of one shell is 1 - L = D/D', the determinant of all with its feedback over that without. It is read on Re s = 1/duration,
@@ -59,6 +62,8 @@ def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) 
     ----------
     system : System, str or Path
         A description, the name of a preset or the path of a scenario file, with control.
+    progress : callable, optional
+        Called with the fraction done and the name of the stage; an exception from it ends the search.
     **keywords
         As to :func:`simulate`: ``duration`` and ``modes`` count.
 
@@ -77,18 +82,21 @@ def stability_margins(system: SystemLike, **keywords: Unpack[SettingsKeywords]) 
     """
     found = as_system(system)
     settings = Settings.asked(found, keywords)
-    return worst_loops(found, settings)[0]
+    return worst_loops(found, settings, progress)[0]
 
 
-def worst_loops(system: System, settings: Settings) -> tuple[xr.Dataset, list[LoopResponse]]:
+def worst_loops(system: System, settings: Settings, progress: Progress | None = None) -> tuple[xr.Dataset, list[LoopResponse]]:
     """Return the margins of a system, and L of the order of each loop that stands the least delay."""
     if settings.dimensions == 3:
-        return _worst_waves(system, settings)
+        return _worst_waves(system, settings, progress)
     problem, modes = _problem(system, settings)
     if segments_of(system) is not None:
         return _worst_patterns(problem, modes, _least(settings))
-    all_loops = loops(problem, modes, _least(settings))
-    margins = {shell: margins_of(modes.orders, *loop) for shell, loop in all_loops.items()}
+    all_loops = loops(problem, modes, _least(settings), _part(progress, 0.0, _FOLLOWED))
+    margins = {}
+    for number, (shell, loop) in enumerate(all_loops.items()):
+        _part(progress, _FOLLOWED, 1.0)(number / len(all_loops))
+        margins[shell] = margins_of(modes.orders, *loop)
     worst = [_of_order(problem, shell, int(margins[shell].delay.argmin()), loop) for shell, loop in all_loops.items()]
     return labelled(problem, modes, margins), worst
 
@@ -137,7 +145,17 @@ def _dataset(
     return xr.Dataset(variables, coordinates)
 
 
-def _worst_waves(system: System, settings: Settings) -> tuple[xr.Dataset, list[LoopResponse]]:
+def _part(progress: Progress | None, begin: float, end: float) -> ShareDone:
+    """Return what tells the share of a part of the work that lies between two shares of the whole."""
+
+    def told(share: float) -> None:
+        if progress is not None:
+            progress(begin + (end - begin) * share, _STAGE)
+
+    return told
+
+
+def _worst_waves(system: System, settings: Settings, progress: Progress | None) -> tuple[xr.Dataset, list[LoopResponse]]:
     """Return the margins of the waves of a run in three dimensions, and L of the wave of each loop that stands the least delay."""
     problem, orders = _problem(system, settings)
     highest = settings.axial_modes or float(orders.max_order)
@@ -146,7 +164,7 @@ def _worst_waves(system: System, settings: Settings) -> tuple[xr.Dataset, list[L
     found: dict[str, FloatArray] = {}
     worst: dict[int, LoopResponse] = {}
     for place, modes in enumerate(sampling.modes):
-        each = loops(problem, modes, _least(settings))
+        each = loops(problem, modes, _least(settings), _part(progress, place / len(sampling.modes), (place + 1) / len(sampling.modes)))
         for row, (shell, loop) in enumerate(each.items()):
             margins = margins_of(modes.orders, *loop)
             for name in _VARIABLES:

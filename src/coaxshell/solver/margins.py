@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import ShareDone
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.scaling import Problem
@@ -65,14 +66,17 @@ class Loop(NamedTuple):
     values: ComplexArray
 
 
-def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
-    """Return L of the loop of each shell that feeds anything back, by its number, on Re s = *least* or a little more."""
+def loops(problem: Problem, modes: Modes, least: float, told: ShareDone = lambda _: None) -> dict[int, Loop]:
+    """Return L of the loop of each shell that feeds anything back, by its number, on Re s = *least* or a little more.
+
+    *told* hears the share of the nodes that are done, and may end it by an exception.
+    """
     shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     passive = problem.open_loop
     nodes = contour._replace(fades=FURTHER * contour.fades).nodes
     if problem.tied:
-        each = zip(controlled(problem), _tied(problem, passive, modes, nodes), strict=True)
+        each = zip(controlled(problem), _tied(problem, passive, modes, nodes, told), strict=True)
         return {shell: Loop(nodes, one) for shell, one in each if one.any()}
     values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
     without = [_without(problem, shell) for shell in shells]
@@ -82,6 +86,7 @@ def loops(problem: Problem, modes: Modes, least: float) -> dict[int, Loop]:
         closed = open_loop.closed(problem, block, modes)
         for loop, others in zip(values, without, strict=True):
             loop[:, start : start + _BLOCK] = 1.0 - closed / open_loop.closed(others, block, modes)
+        told(min(1.0, (start + _BLOCK) / nodes.size))
     return {shell: Loop(nodes, loop) for shell, loop in zip(shells, values, strict=True)}
 
 
@@ -93,7 +98,7 @@ def _matrices(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexAr
         yield block, ElectrodeLoops.of(problem, answers, OrderPatterns(modes.orders, 1), nodes[block]).matrix
 
 
-def _tied(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> ComplexArray:
+def _tied(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) -> ComplexArray:
     """Return L of what the actuators of each wall answer, cut at their amplifier, (walls, orders, nodes); 0 of walls without actuators."""
     walls = len(controlled(problem))
     values = np.empty((walls, modes.count, nodes.size), dtype=np.complex128)
@@ -103,6 +108,7 @@ def _tied(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray)
             others = matrix.copy()
             others[:, :, wall] = np.eye(walls)[wall]
             loop[:, block] = 1.0 - whole / np.linalg.det(others)
+        told(min(1.0, block.stop / nodes.size))
     return values
 
 

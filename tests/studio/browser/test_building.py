@@ -34,6 +34,7 @@ def held(page, expression):
 
 MADE = """async () => {
   const {withShellAfter, withoutShell, withWallsExchanged, freeAngle, singly} = await import('/page/js/building.js');
+  const {split} = await import('/page/js/laws.js');
   const system = {
     shells: [1, 2, 4].map(radius => ({radius, layers: [{thickness: radius / 100, role: radius === 4 ? 'sensor' : 'core'}]})),
     fluids: ['a', 'b', 'c', 'd'],
@@ -47,6 +48,8 @@ MADE = """async () => {
     walls: withWallsExchanged(system, 1).shells.map(({radius, layers}) => [radius, layers[0].thickness]),
     alone: withShellAfter({...system, shells: system.shells.slice(0, 1), fluids: ['vacuum', 'water']}, 0).fluids,
     free: [[], [{angle: 90}, {angle: 270}, {angle: 10, inner_shell: 1}], [{angle: 0}, {angle: 90}]].map(some => freeAngle(some, 0)),
+    laws: split({numerator: [2, 4], matrix: [[1, 0.3], [0.6, 0.5]], shells: 'all'}, [1, 2].map(radius => ({radius, layers: []}))),
+    two: withoutShell({...system, control: [{shells: [0]}, {shells: [2]}]}, 0).control,
     ring: singly({count: 4, offset: 45, mass: 2, inner_shell: 1}),
   };
 }"""
@@ -61,6 +64,8 @@ def test_what_hangs_on_a_shell_s_place_goes_with_it(open_page):
     assert made["free"][0] == 0
     assert made["free"][1] in (0, 180)
     assert made["free"][2] == -135
+    assert [(law["numerator"], law["matrix"], law["shells"]) for law in made["laws"]] == [([2, 4], None, [0]), ([1, 2], None, [1])]
+    assert made["two"] == {"shells": [1]}, "of two laws one is left"
     assert made["ring"] == [{"mass": 2, "inner_shell": 1, "angle": angle} for angle in (45, 135, -135, -45)]
 
 

@@ -42,7 +42,7 @@ def require_stressed(system: System, shell: int) -> None:
 def loops(system: System, settings: Settings) -> Packed:
     """Return margins by order, and L over frequency of the order of each shell's loop that stands the least delay."""
     worker.report(0.0, "margins")
-    margins, worst = worst_loops(system, settings)
+    margins, worst = worst_loops(system, settings, worker.report)
     shells, items = [], {"order": Item(margins["order"].to_numpy(), "1")}
     for place, loop in enumerate(worst):
         each = margins.isel(shell=place)

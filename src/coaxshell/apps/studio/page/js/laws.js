@@ -24,8 +24,10 @@ export function free(laws, shells) {
 // One law for each shell in the place of one for all: each keeps its shell's own gains, and shells without one are given the same.
 export function split(law, shells) {
   const own = numbers(law, shells.length), all = [...new Set([...own.filter((i) => i < shells.length), ...controllable(shells)])].sort((a, b) => a - b);
-  const gain = (name, shell) => (Array.isArray(law[name]) ? law[name][Math.max(own.indexOf(shell), 0)] : law[name]);
-  return all.map((shell) => ({ ...structuredClone(law), ...Object.fromEntries(GAINS.filter((name) => name in law).map((name) => [name, gain(name, shell)])), shells: [shell] }));
+  const place = (shell) => Math.max(own.indexOf(shell), 0), itself = ({ matrix }, shell) => matrix[place(shell)]?.[place(shell)] ?? 1;
+  const gain = (name, shell) => (Array.isArray(law[name]) ? law[name][place(shell)] : law[name]);
+  const alone = (shell) => (law.matrix ? { matrix: null, numerator: [law.numerator].flat().map((one) => one * itself(law, shell)) } : {}); // each reads itself alone
+  return all.map((shell) => ({ ...structuredClone(law), ...Object.fromEntries(GAINS.filter((name) => name in law).map((name) => [name, gain(name, shell)])), ...alone(shell), shells: [shell] }));
 }
 
 // What a law of one kind begins with that another kind was before: the same gains, numerator [k_d a/c, k_p] with s in 1/s.
@@ -40,7 +42,7 @@ export function turned(law, { shells, fluids }) {
 // A further law is like another one, for the first shell that has none.
 export function following(law, all, shells) {
   const own = Object.fromEntries(GAINS.filter((name) => Array.isArray(law[name])).map((name) => [name, law[name][0]]));
-  return { ...law, ...own, shells: free(all, shells).slice(0, 1) };
+  return { ...law, ...own, ...(law.matrix ? { matrix: null } : {}), shells: free(all, shells).slice(0, 1) };
 }
 
 // All walls are cut alike: what one law says of its segments goes for all. Gives path and value of the change.
