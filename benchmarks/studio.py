@@ -138,10 +138,18 @@ def _processor(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def _and_children(pid: int) -> list[int]:
+    return [pid, *map(int, Path(f"/proc/{pid}/task/{pid}/children").read_text().split())]
+
+
+def processor_of_all(pid: int) -> float:
+    """Return the processor time of a process and its children, s."""
+    return sum(map(_processor, _and_children(pid)))
+
+
 def _memory(pid: int) -> float:
     """Return the resident memory of a process and its children, MB."""
-    pids = [pid, *map(int, Path(f"/proc/{pid}/task/{pid}/children").read_text().split())]
-    texts = [Path(f"/proc/{one}/status").read_text() for one in pids]
+    texts = [Path(f"/proc/{one}/status").read_text() for one in _and_children(pid)]
     found = [re.search(r"VmRSS:\s+(\d+)", text) for text in texts]
     return sum(int(match.group(1)) for match in found if match) / 1e3
 

@@ -1,7 +1,8 @@
-"""Changes in the studio's page itself, in Chromium at 1280 x 720: from an event to the curves drawn.
+"""Changes in the studio's page itself, in Chromium at 1280 x 720: from an event to the curves drawn, and whose processor time that takes.
 
 ``python -m benchmarks.studio_page``. Needs Chromium, which ``make test`` installs. The page is asked nothing while it works: each question
-would take processor time from what is measured.
+would take processor time from what is measured. Errors and warnings, which curves do not wait for, are left out. Its resolution is that of
+the preview, so that no full resolution follows; processor times, of the server with its workers and of the page's main thread, are means.
 """
 
 from __future__ import annotations
@@ -15,7 +16,10 @@ from typing import Any
 
 from playwright.sync_api import sync_playwright
 
-from benchmarks.studio import served
+from benchmarks.studio import processor_of_all, served
+from coaxshell.apps.studio import limits
+from coaxshell.apps.studio.links import fragment
+from coaxshell.model import System, presets
 
 UNDISTURBED, BETWEEN = 0.4, 0.3
 """Seconds after a change in which the page is left alone, and from its answer to the next change."""
@@ -25,6 +29,7 @@ SLIDERS = (
     ("hybrid", "absorbers.mass", range(180, 210, 3)),
     ("hybrid", "absorbers.damping", range(180, 210, 3)),
     ("hybrid", "control.derivative", range(70, 80)),
+    ("laws", "control[1].derivative", range(286, 296)),
 )
 """Preset, entry and places of its slider."""
 ENTRIES = (
@@ -40,31 +45,82 @@ MOVE = """([path, place]) => {
 }"""
 
 
+SPATIAL = (("bare", "0"), ("hybrid", "0"), ("bare", "0, 0.5"))
+"""Preset and stations of previews in three dimensions."""
+SIZE = "performance.getEntriesByType('resource').filter(one => one.name.endsWith('/api/solve')).at(-1)?.transferSize ?? 0"
+
+
 def main() -> None:
     """Start a server and a browser and print the medians."""
-    with served() as (address, _), sync_playwright() as playwright:
+    with served() as (address, pid), sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1280, "height": 720})
+        page.route("**/judgement", lambda route: route.fulfill(json={"estimates": None, "warnings": []}))
+        watch = Watch(page, pid)
         page.goto(address)
         for preset, path, places in SLIDERS:
-            _choose(page, preset)
-            _told(f"{preset}, {path}", [_timed(page, partial(page.evaluate, MOVE, [path, str(place)])) for place in places])
+            _open(page, address, _system(preset), limits.table_of(limits.PREVIEW))
+            watch.told(f"{preset}, {path}", [partial(page.evaluate, MOVE, [path, str(place)]) for place in places])
+        _open(page, address, _system("hybrid"), limits.table_of(limits.PREVIEW))
         page.evaluate("for (const part of document.querySelectorAll('#form details')) part.open = true")
         for path, texts in ENTRIES:
             box = page.locator(f'input[type=text][data-path="{path}"]').first
-            _told(f"{preset}, {path}", [_timed(page, partial(_type, box, text)) for text in texts])
+            watch.told(f"hybrid, {path}", [partial(_type, box, text) for text in texts])
+        for preset, stations in SPATIAL:
+            table = limits.table_of(limits.PREVIEW_SPATIAL) | {"stations": [float(one) for one in stations.split(",")]}
+            begun, before = processor_of_all(pid), time.perf_counter()
+            _open(page, address, _system(preset), table)
+            told = f"{time.perf_counter() - before:.1f} s, server {processor_of_all(pid) - begun:.2f} s of processor time"
+            print(f"{preset} in three dimensions, stations {stations}, opened with the bare system: {told}", flush=True)
         browser.close()
 
 
-def _choose(page: Any, preset: str) -> None:
-    _wait(page, "Boolean(window.coaxshell?.state?.runs?.current)")
-    page.locator("#preset").select_option(label=preset)
-    time.sleep(4)  # its full resolution comes by itself
+def _system(name: str) -> System:
+    """Return a preset, or the one with electrodes under a law for each shell."""
+    if name != "laws":
+        return presets.load(name)
+    system = presets.load("electrodes")
+    assert system.control is not None
+    return system.replace(control=[system.control.replace(shells=[shell]) for shell in (0, 1)])
+
+
+def _open(page: Any, address: str, system: System, resolution: dict[str, Any]) -> None:
+    """Open a system at a resolution and wait until it and the bare one are drawn."""
+    held = {"v": 1, "system": system.model_dump(mode="json"), "resolution": resolution}
+    page.goto(address.partition("?")[0] + "page/icon.svg")
+    page.goto(f"{address}#{fragment(held)}")
+    _wait(page, "Boolean(window.coaxshell?.state?.runs?.current && !window.coaxshell.state.job)")
+    bare = "!window.coaxshell.state.system.control && !window.coaxshell.state.system.absorbers?.count"
+    _wait(page, f"Boolean(window.coaxshell.state.runs.bare || ({bare}))")
+    time.sleep(1.5)  # errors and warnings, and what stands for full resolution
 
 
 def _type(box: Any, text: str) -> None:
     box.fill(text)
     box.press("Enter")
+
+
+class Watch:
+    """What changes on a page take: from event to curves by its own clock, and processor time."""
+
+    def __init__(self, page: Any, pid: int) -> None:
+        self._page, self._pid = page, pid
+        self._session = page.context.new_cdp_session(page)
+        self._session.send("Performance.enable", {"timeDomain": "threadTicks"})
+
+    def spent(self) -> tuple[float, float]:
+        """Return processor time of the server with its workers and of the page's main thread so far, s."""
+        found = {one["name"]: one["value"] for one in self._session.send("Performance.getMetrics")["metrics"]}
+        return processor_of_all(self._pid), found["TaskDuration"]
+
+    def told(self, what: str, changes: list[Callable[[], object]]) -> None:
+        """Carry out changes and print what they took, with the size of their answers."""
+        before = self.spent()
+        taken = [_timed(self._page, change) for change in changes]
+        server, page = (1e3 * (after - start) / len(changes) for after, start in zip(self.spent(), before, strict=True))
+        size = self._page.evaluate(SIZE)
+        spread = f"median {statistics.median(taken):.0f} ms, {min(taken):.0f} to {max(taken):.0f}, first {taken[0]:.0f}"
+        print(f"{what}: {spread}; server {server:.0f} ms, page {page:.0f} ms of processor time, answer {size / 1e3:.0f} kB", flush=True)
 
 
 def _timed(page: Any, change: Callable[[], object]) -> float:
@@ -79,16 +135,12 @@ def _timed(page: Any, change: Callable[[], object]) -> float:
 
 
 def _wait(page: Any, condition: str) -> None:
-    """Wait for up to half a minute; the page's own policy forbids playwright's way, which evaluates text there."""
-    for _ in range(600):
+    """Wait for up to two minutes; the page's own policy forbids playwright's way, which evaluates text there."""
+    for _ in range(2400):
         if page.evaluate(condition):
             return
         time.sleep(0.05)
     raise TimeoutError(condition)
-
-
-def _told(what: str, taken: list[float]) -> None:
-    print(f"{what}: median {statistics.median(taken):.0f} ms, {min(taken):.0f} to {max(taken):.0f}, first {taken[0]:.0f}", flush=True)
 
 
 if __name__ == "__main__":
