@@ -6,6 +6,14 @@ from mutation import Mutation
 
 GRADIENTS = (
     Mutation(
+        "gradient-of-reflections",
+        "solver/adjoint/planes.py",
+        "total = _per_load(solved, back) - own",
+        "total = _per_load(solved, back)",
+        "what was sent back before is sent back again, backwards",
+        "solver/test_adjoint.py",
+    ),
+    Mutation(
         "gradient-gap-of-faces",
         "solver/adjoint/faces.py",
         "back[i - 1][1] = back[i - 1][1] - fluid.ba * inner[i]",

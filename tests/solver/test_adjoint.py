@@ -181,6 +181,21 @@ def test_walls_fluids_gains_and_sources(cubic):
     assert_allclose(along(sensitivity(system), changes), difference(system, changes), rtol=1e-7)
 
 
+@pytest.mark.parametrize("cubic", [0.0, 1e22])
+def test_reflections_of_surface_and_bottom(cubic):
+    """Images that are turned over and images of images that are not, up to three rounds; the sines take part."""
+    system = BASE.replace(absorbers=layout(cubic=cubic), control=None, sea=cx.Sea(depth=1.3, bottom=2.9))
+    steps = {
+        "sea.depth": 1e-3,
+        "shells[1].radius": 1e-4,
+        "source.distance": 1e-3,
+        "fluids[2].sound_speed": 1e-4,
+        "absorbers[0].angle": 0.01,
+    }
+    changes, settings = relative(system, steps | {"absorbers[1].damping": 0.01}), {"duration": 1.4, "time_step": 0.035, "modes": 3}
+    assert_allclose(along(sensitivity(system, **settings), changes), difference(system, changes, **settings), rtol=1e-7)
+
+
 def test_orders_that_the_step_does_not_resolve():
     system = BASE.replace(absorbers=layout())
     wall = system.shells[0]

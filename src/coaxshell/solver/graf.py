@@ -27,7 +27,9 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.radial_functions import RadialFunctions
 
 
-def returned_load(outgoing: ComplexArray, surface: RadialFunctions, planes: Planes, images: Iterable[Image]) -> ComplexArray:
+def returned_load(
+    outgoing: ComplexArray, surface: RadialFunctions, planes: Planes, images: Iterable[Image], *, transposed: bool = False
+) -> ComplexArray:
     """Return the load on r = b of what the planes send back of an outgoing wave, its rigid scattering included, same shape.
 
     Parameters
@@ -39,14 +41,16 @@ def returned_load(outgoing: ComplexArray, surface: RadialFunctions, planes: Plan
     planes : Planes
     images : iterable of Image
         Of the axis.
+    transposed : bool
+        Whether it is what loads change that is given, and what outgoing waves change that is asked for.
     """
     m = surface.orders
-    turned = _turned(outgoing, m, planes.up)
+    scale = -surface.exterior / surface.radius * np.where(m == 0.0, 0.5, 1.0)[:, None]
+    turned = _turned(outgoing, m, planes.up) * (scale if transposed else 1.0)
     total = np.zeros_like(turned)
     for image in images:
-        total += image.sign * _seen(turned, surface, image)
-    total *= -surface.exterior / surface.radius * np.where(m == 0.0, 0.5, 1.0)[:, None]
-    return _turned(total, m, -planes.up)
+        total += image.sign * _seen(turned, surface, image, transposed=transposed)
+    return _turned(total * (1.0 if transposed else scale), m, -planes.up)
 
 
 def causal_images(planes: Planes, head: float, lasting: float) -> list[Image]:
@@ -62,7 +66,7 @@ def _turned(waves: ComplexArray, orders: FloatArray, angle: float) -> ComplexArr
     return np.stack([cos * waves[0] + sin * waves[1], cos * waves[1] - sin * waves[0]])
 
 
-def _seen(waves: ComplexArray, surface: RadialFunctions, image: Image) -> ComplexArray:
+def _seen(waves: ComplexArray, surface: RadialFunctions, image: Image, *, transposed: bool) -> ComplexArray:
     """Return sum_n [K_{n+m}(kappa D) +- K_{n-m}(kappa D)]/(K_m K_n) A_n, with the signs of an image above or below, mirrored or not."""
     alternating = np.where(surface.orders % 2 == 0.0, 1.0, -1.0)[:, None]
     arriving, leaving = np.ones_like(alternating), np.ones_like(alternating)
@@ -72,6 +76,8 @@ def _seen(waves: ComplexArray, surface: RadialFunctions, image: Image) -> Comple
     if not image.mirrored:
         leaving = leaving * alternating
         signs[1:] = -1.0
+    if transposed:  # the sums themselves are symmetric in m and n
+        arriving, leaving = leaving, arriving
     found = np.empty_like(waves)
     apart = RadialFunctions(surface.kappa, abs(image.shift), np.arange(2.0 * surface.max_order + 1.0))
     for m, (high, low) in enumerate(_rows(surface, apart)):

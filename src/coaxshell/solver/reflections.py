@@ -17,6 +17,7 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver.excitation import incident_on_surface
 from coaxshell.solver.graf import causal_images, returned_load
 from coaxshell.solver.rounds import rounds
+from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -66,9 +67,13 @@ def sent_back(solved: SolvedSpectra, slope: ComplexArray) -> ComplexArray:
         dp/dr of the sources and their images at the outermost surface.
     """
     structure = solved.structure
-    problem, grid, planes = structure.problem, structure.grid, structure.problem.planes
+    return sent_by(structure.problem, structure, solved.face_motion.outer[-1], slope)
+
+
+def sent_by(problem: Problem, structure: StructureSpectra, outer: ComplexArray, slope: ComplexArray) -> ComplexArray:
+    """Return the load that planes send back, for those and the head of a problem, of an outermost face that moves by *outer*."""
+    grid, planes = structure.grid, problem.planes
     assert planes is not None
-    outer = solved.face_motion.outer[-1]
     images = causal_images(planes, problem.head, float(grid.time[-1]))
     load: ComplexArray = np.zeros_like(outer)
 

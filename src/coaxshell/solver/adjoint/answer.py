@@ -117,6 +117,8 @@ class Backwards:
         What links that were solved at each node feel of the surfaces, where walls have two faces.
     pressure : ndarray, same shape, or None
         Transforms of the modal pressures of the links, there.
+    returned : ndarray, shape (parities, M + 1, nodes), or None
+        What the number changes by per unit of what the planes of the sea send back.
     """
 
     reading: Reading
@@ -125,6 +127,7 @@ class Backwards:
     tighter: FloatArray
     moved: ComplexArray | None = None
     pressure: ComplexArray | None = None
+    returned: ComplexArray | None = None
 
 
 def backwards(solved: SolvedSpectra, reading: Reading) -> Backwards:

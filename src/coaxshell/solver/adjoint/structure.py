@@ -23,6 +23,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.adjoint.answer import Backwards, Felt
+from coaxshell.solver.adjoint.planes import of_planes
 from coaxshell.solver.coupling import fluid_matrix
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.kernels import exponential_weights, initial_decay
@@ -76,7 +77,7 @@ class StructureSensitivity:
             total += float(np.einsum("imt,imt->", np.einsum("iimt->imt", self._resolved), closed[1] - closed[0]))
             if self._late.any():
                 total += self._of_late_orders(before, after)
-        return total
+        return total + of_planes(self._solved, self._back, before, after)
 
     def _of_fluids(self, before: Problem, after: Problem) -> float:
         s, bars = self._grid.nodes, self._bars
@@ -95,7 +96,7 @@ class StructureSensitivity:
     def _load(self, problem: Problem) -> ComplexArray:
         """Return the load on W of the outermost shell, shape (parities, M + 1, nodes)."""
         radial = RadialBasis(self._modes, self._grid.nodes)
-        loads = SurfaceLoads(problem, self._grid, self._modes)(radial, slice(0, self._grid.nodes.size))
+        loads = SurfaceLoads(problem, self._grid, self._modes, None, self._structure.returned)(radial, slice(0, self._grid.nodes.size))
         return problem.shells[-1].leverage[1] * np.stack(loads[: self._bars.load.shape[0]])
 
     def _of_late_orders(self, before: Problem, after: Problem) -> float:

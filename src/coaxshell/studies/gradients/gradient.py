@@ -12,6 +12,7 @@ from coaxshell._version import __version__
 from coaxshell.errors import InputError
 from coaxshell.model.base import shown
 from coaxshell.model.loading import SystemLike, as_system
+from coaxshell.model.shells import Shell
 from coaxshell.model.system import System
 from coaxshell.numerics.identity import numerics
 from coaxshell.numerics.keywords import showing
@@ -110,7 +111,10 @@ def power_of(smooth: float | None) -> float | None:
 def require_gradient(system: System, settings: Settings) -> None:
     """Refuse runs that have no gradient: InputError."""
     if system.sea is not None and (system.sea.surface or system.sea.bottom is not None):
-        raise InputError("sea", "what surface and bottom reflect is not run backwards yet", "leave the sea out")
+        solid = [i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"]
+        if solid:
+            remedy = f'leave the sea out, or use shells[{solid[0]}].theory = "thin"'
+            raise InputError("sea", "what surface and bottom reflect is not run backwards beside elastic walls", remedy)
     if settings.engine != "spectral":
         raise InputError("engine", f"{settings.engine!r} has no gradient", 'use engine="spectral"')
     if settings.dimensions != 2:

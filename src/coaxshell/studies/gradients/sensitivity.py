@@ -13,9 +13,10 @@ from coaxshell.model.absorbers import Absorber, AbsorberRing
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
-from coaxshell.solver.adjoint.answer import Backwards, backwards
+from coaxshell.solver.adjoint.answer import Backwards
 from coaxshell.solver.adjoint.faced import FacedSensitivity
 from coaxshell.solver.adjoint.laws import ElementSensitivity
+from coaxshell.solver.adjoint.planes import backwards_with_planes
 from coaxshell.solver.adjoint.structure import StructureSensitivity
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set, properties
 from coaxshell.solver.recompute import spectra_of
@@ -76,7 +77,7 @@ class MetricSensitivity:
 
     @cached_property
     def _back(self) -> Backwards:
-        return backwards(self._solved, self._smooth.reading(self._solution, self._solved, self._norm.slope))
+        return backwards_with_planes(self._solved, self._smooth.reading(self._solution, self._solved, self._norm.slope))
 
     @cached_property
     def _structure(self) -> StructureSensitivity | FacedSensitivity:
