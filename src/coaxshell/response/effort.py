@@ -24,6 +24,7 @@ from coaxshell.response.summary_text import aligned
 from coaxshell.response.voltages import CutElectrode, actuator_limit, cut_voltage, largest_demanded_voltage, largest_mean
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.electrodes import Segment, segment_length
+from coaxshell.structure.electroded_wall import ElectrodedWall
 
 if TYPE_CHECKING:
     from coaxshell.response.electrical import OfSegments
@@ -75,7 +76,9 @@ class SegmentEffort:
 
 @dataclass(frozen=True)
 class ShellEffort:
-    """What the actuators of one shell are asked for, largest magnitudes; None where the paper's law, which has no charge, controls it.
+    """What the actuators of one shell are asked for, largest magnitudes.
+
+    None where the paper's law, which has no charge, controls it, and at stations of elastic walls, which keep none.
 
     Attributes
     ----------
@@ -191,7 +194,7 @@ def control_effort(motion: WallMotion, segment: Segment = None, **limits: float 
     Parameters
     ----------
     motion : WallMotion
-        Of a run in two dimensions with all its instants.
+        Of a run with all its instants, or of a station of one in three dimensions.
     segment : float, str or None
         Length of the wall over which voltages, charges and currents are means, as in the summary; "point" for points.
     **limits : float
@@ -201,15 +204,13 @@ def control_effort(motion: WallMotion, segment: Segment = None, **limits: float 
     Raises
     ------
     InputError
-        If nothing is controlled, a limit is unknown or not positive, or the run is one of three dimensions.
+        If nothing is controlled, or a limit is unknown or not positive.
     """
     solution = motion.solution
     system = solution.problem.system
     controlled = [i for i in system.controlled_shells if wired(system, i, "actuator")]
     if not controlled:
         raise InputError("control", "nothing is fed back", "give the system a PDControl or a Feedback")
-    if solution.along is not None:
-        raise InputError("dimensions", "the effort of control is told of two dimensions", "run with dimensions=2")
     known = {name: _positive(name, value) for name, value in limits.items() if value is not None}
     return ControlEffort(tuple(_of_shell(motion, i, segment, known) for i in controlled))
 
@@ -236,15 +237,17 @@ def _of_shell(motion: WallMotion, shell: int, segment: Segment, limits: dict[str
     field_limit = actuator_limit(solution, shell).volts / thinnest
     found: dict[str, float | None] = dict.fromkeys(("charge", "current", "real_power", "apparent_power", "energy"))
     segments: tuple[SegmentEffort, ...] = ()
+    known = solution.along is None or isinstance(solution.problem.shells[shell], ElectrodedWall)  # no station keeps charges of solids
+    told = known and law is not None and law.transducers == "electrodes"
     step = solution.settings.time_step * solution.problem.scales.time
     if (cut := of_segments(motion, shell)) is not None:
         asked = cut_voltage(solution, shell, asked=True)
         segments = tuple(_of_segment(cut, asked, number, thinnest, step) for number in range(cut.segments.count))
         found |= {name: max(getattr(one, name) for one in segments) for name in ("charge", "current")}
-    elif law is not None and law.transducers == "electrodes":
+    elif told:
         for name, modal in (("charge", charge(motion, shell)), ("current", current(motion, shell))):
             found[name] = largest_mean(solution, shell, partial(_window, modal), everything, length, halved=False).value
-    if law is not None and law.transducers == "electrodes":
+    if told:
         used = power(motion, shell)
         found["real_power"], found["apparent_power"] = float(np.abs(used.real).max()), float(used.apparent.max())
         found["energy"] = float(np.trapezoid(used.real, dx=step))

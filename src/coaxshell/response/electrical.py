@@ -20,9 +20,13 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.energy.electrodes import on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
+from coaxshell.response.modal import amplitudes, orders
+from coaxshell.response.voltages import demanded_voltage, time_derivative
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.recompute import marches, spectra_of
+from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.electroded_wall import ElectrodedWall
 from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.segments import Segments
 
@@ -90,8 +94,22 @@ def _of_segments(motion: WallMotion, shell: int, wall: SegmentedWall) -> OfSegme
 
 
 def _electrical(motion: WallMotion, shell: int) -> Electrical:
+    wall = motion.solution.problem.shells[shell]
+    if motion.solution.along is not None and isinstance(wall, ElectrodedWall):
+        return _at_station(motion.solution, shell, wall)
     whole = _whole(motion)
     return Electrical(*_inverted(motion, whole, *_spectra(whole, shell)))
+
+
+def _at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> Electrical:
+    """Return what actuators hold and take at a station along the axis, from the fields there; the current by differences."""
+    solution.need_every_instant("a current")
+    scales, voltage = solution.problem.scales, demanded_voltage(solution, shell)
+    total = np.zeros_like(voltage)
+    for moved, capacitance in wall.charges_of_fields(orders(solution)):
+        total += amplitudes(solution, shell, moved) + capacitance * voltage
+    charge = total * (scales.pressure * scales.length)
+    return Electrical(voltage, charge, time_derivative(charge, solution.settings.time_step * scales.time))
 
 
 def _whole(motion: WallMotion) -> Motion:

@@ -16,6 +16,7 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
 from coaxshell.response import absorbers, arguments, fields, storage
 from coaxshell.response.response import HEAD_AND_TAIL, Response
+from coaxshell.response.spatial_effort import SpatialEffort, spatial_effort
 from coaxshell.response.spatial_summary import SpatialSummary, station_card, summarise_stations
 from coaxshell.response.station_choice import chosen_stations
 from coaxshell.response.stations import StationMotion, Transforms, joined
@@ -167,6 +168,16 @@ class SpatialResponse(Response):
         See :class:`coaxshell.response.spatial_summary.SpatialSummary`.
         """
         return summarise_stations(self.spatial, self.motions, window, segment)
+
+    def control_effort(  # type: ignore[override]
+        self, *, segment: Segment = None, whole_length: bool = False, progress: Progress | None = None, **limits: float | None
+    ) -> SpatialEffort:
+        """Return what control costs at every station, as in two dimensions, against limits of material and amplifier.
+
+        *whole_length* adds power and energy over the whole length, for about the work of :meth:`energy`. Print it for a table.
+        See :func:`coaxshell.response.spatial_effort.spatial_effort`.
+        """
+        return spatial_effort(self.spatial, self.motions, segment, whole_length=whole_length, progress=progress, **limits)
 
     def energy(self, every: int = 10, progress: Progress | None = None) -> xr.Dataset:
         """Return every store, flow and loss of energy over the whole length of the shells and the closure residual, J.

@@ -136,6 +136,11 @@ class ElectrodedWall(ThinWall):
         actuators = electrodes.serving(self.section, "actuator")
         return tuple((electrodes.push(self.section, modes, one), one.permittivity / one.thickness) for one in actuators)
 
+    def charges_of_fields(self, orders: FloatArray) -> tuple[tuple[FieldGain, float], ...]:
+        """Return the charge of each actuator per unit of the fields at a station along the axis, and mu33~/t."""
+        actuators = electrodes.serving(self.section, "actuator")
+        return tuple((electrodes.push_of_fields(self.section, orders, one), one.permittivity / one.thickness) for one in actuators)
+
     def voltage_limit(self, field: float | None = None) -> float:
         """Return the least of field limit times thickness of all actuators."""
         actuators = electrodes.serving(self.section, "actuator")

@@ -73,7 +73,17 @@ def open_reading(section: Section, modes: Modes, layer: PiezoelectricLayer) -> G
 
 def open_reading_of_fields(section: Section, orders: FloatArray, layer: PiezoelectricLayer) -> FieldGain:
     """Return the open-circuit voltage of one layer per unit of the fields at a station, V."""
-    (around, along), one = _open_circuit(layer), np.ones_like(orders)
+    return _of_fields(section, orders, layer, _open_circuit(layer))
+
+
+def push_of_fields(section: Section, orders: FloatArray, layer: PiezoelectricLayer) -> FieldGain:
+    """Return the charge per area of one layer per unit of the fields at a station, without that of its voltage."""
+    return _of_fields(section, orders, layer, _couplings(layer))
+
+
+def _of_fields(section: Section, orders: FloatArray, layer: PiezoelectricLayer, factors: tuple[float, float]) -> FieldGain:
+    """Return a hoop and an axial strain in the middle of a layer, times a factor each, per unit of the fields at a station."""
+    (around, along), one = factors, np.ones_like(orders)
     v, w = strain_gain(orders, section.radius, layer.centre)
     return FieldGain(v=around * v, w=around * w, u_z=along * one, w_zz=along * layer.centre * one)
 

@@ -14,7 +14,7 @@ from coaxshell.response.energy.solid_transducers import solid_electrical
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.segmented_wall import SegmentedWall
-from coaxshell.structure.shell_model import Gain
+from coaxshell.structure.shell_model import Gain, ShellModel
 
 
 def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
@@ -29,13 +29,9 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
         charges = () if wall.gains is None else wall.charges(motion.modes)
         if wall.gains is None or not charges:
             continue
-        driven, area, w, v = True, wall.radius * motion.circle, motion.normal[i], motion.tangential[i]
-        u = None if motion.axial is None else motion.axial[i]
-        if motion.voltage is None:
-            volts = wall.gains.at(s, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w, u)
-        else:
-            volts = motion.voltage[i]
-        moved = [_combined(charge, v, w, u) for charge, _ in charges]
+        driven, area = True, wall.radius * motion.circle
+        volts, held_by = driven_at(motion, i, wall)
+        moved = [one for one, _ in held_by]
         if isinstance(wall, SegmentedWall):
             volts, moved, area = on_segments(wall, volts, moved)
         history = grid.invert(volts)
@@ -44,6 +40,18 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
             supplied += SurfaceWork(grid, area, current)(volts)
             held += 0.5 * capacitance * np.einsum("m,hmt,hmt->t", area, history, history)
     return (supplied, held) if driven else None
+
+
+def driven_at(motion: Motion, shell: int, wall: ShellModel) -> tuple[ComplexArray, list[tuple[ComplexArray, float]]]:
+    """Return the transforms of a wall's voltage, V, and of the charge of each actuator without that voltage, with its capacitance."""
+    assert wall.gains is not None
+    w, v = motion.normal[shell], motion.tangential[shell]
+    u = None if motion.axial is None else motion.axial[shell]
+    if motion.voltage is None:
+        volts = wall.gains.at(motion.grid.nodes, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w, u)
+    else:
+        volts = motion.voltage[shell]
+    return volts, [(_combined(charge, v, w, u), capacitance) for charge, capacitance in wall.charges(motion.modes)]
 
 
 def on_segments(wall: SegmentedWall, volts: ComplexArray, moved: list[ComplexArray]) -> tuple[ComplexArray, list[ComplexArray], FloatArray]:

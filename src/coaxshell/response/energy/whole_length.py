@@ -10,7 +10,7 @@ without point absorbers: these take from some and give to others, and what they 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from coaxshell.response.energy.lines import WallsAtLines, lines_energy
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.parts import Entry, absorber_entries, parts_of
 from coaxshell.solver.axial.blocks import on_threads
+from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
 from coaxshell.solver.axial.lines import line_layout
 from coaxshell.solver.axial.motion import wave_motions
@@ -65,21 +66,12 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     """
     problem, settings = solution.problem, solution.settings
     every = whole_steps(every, solution.time.size - 1)
-    require_balanced(problem)
-    uniform = not isinstance(problem.sources[0], SphericalFrontGeometry)
-    solution.at(0).need_every_instant("what is computed from its transforms (energy)")
-    grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
-    sampling = whole_length_sampling(problem, settings)
-    Cost(2.0 * ARRAYS * solution.fields["w"][0].nbytes * settings.refinement).require(
-        f"the energy of {solution.time.size:,} instants and orders 0 to {sampling.max_order:,}", "run fewer orders or a coarser step"
-    )
-    linked = _lines(solution, sampling, grid, progress)
+    along = along_the_length(solution, progress)
+    uniform, grid, sampling, linked, held, forces = along.uniform, along.grid, along.sampling, along.linked, along.held, along.forces
     walls = None if linked is None else WallsAtLines(linked, grid)
-    count = 1 if uniform else len(sampling.modes)
+    count = along.count
     total: dict[str, Entry] = {}
     power = np.zeros(len(problem.shells))
-    held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
-    forces = held.forces if held is not None else None if linked is None else linked.forces
     for j, wave in enumerate(wave_motions(problem, sampling, grid, forces)):
         moved = wave.normal, wave.tangential, wave.axial
         motion = Motion(problem, grid, wave.modes, *moved, every * settings.refinement, wave.incident, solid=wave.solid)
@@ -107,6 +99,60 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     scales = problem.scales
     found = labelled(solution, every, total, scales.line_energy if uniform else scales.energy, "J/m" if uniform else "J")
     return found.assign_attrs(extent="per metre of length" if uniform else "over the whole length")
+
+
+@dataclass(frozen=True, eq=False)
+class AlongTheLength:
+    """What integrals along the whole axis of a run are made with.
+
+    Attributes
+    ----------
+    uniform : bool
+        Whether all sources are, so that one wavenumber, k = 0, is a run per length.
+    grid : LaplaceGrid
+    sampling : AxialSampling
+    linked : LineSolution or None
+        What line absorbers do.
+    held : HeldPoints or None
+        What point absorbers hold.
+    """
+
+    uniform: bool
+    grid: LaplaceGrid
+    sampling: AxialSampling
+    linked: LineSolution | None
+    held: HeldPoints | None
+
+    @property
+    def count(self) -> int:
+        """Number of axial wavenumbers."""
+        return 1 if self.uniform else len(self.sampling.modes)
+
+    @property
+    def forces(self) -> WallForces | None:
+        """Forces of the absorbers at the wavenumbers, None without any."""
+        return self.held.forces if self.held is not None else None if self.linked is None else self.linked.forces
+
+
+def along_the_length(solution: SpatialSolution, progress: Progress | None = None) -> AlongTheLength:
+    """Return what integrals along the whole axis of a run are made with, its absorbers solved again.
+
+    Raises
+    ------
+    InputError
+        If instants of the run are missing, and as :func:`require_balanced`.
+    """
+    problem, settings = solution.problem, solution.settings
+    require_balanced(problem)
+    solution.at(0).need_every_instant("what is computed from its transforms (energy)")
+    grid = LaplaceGrid(settings.time_step / settings.refinement, settings.steps * settings.refinement)
+    sampling = whole_length_sampling(problem, settings)
+    Cost(2.0 * ARRAYS * solution.fields["w"][0].nbytes * settings.refinement).require(
+        f"the energy of {solution.time.size:,} instants and orders 0 to {sampling.max_order:,}", "run fewer orders or a coarser step"
+    )
+    linked = _lines(solution, sampling, grid, progress)
+    held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
+    return AlongTheLength(not isinstance(problem.sources[0], SphericalFrontGeometry), grid, sampling, linked, held)
 
 
 def whole_length_cost(solution: SpatialSolution) -> Cost:

@@ -123,7 +123,7 @@ def _dense(points: InterfacePoints, law: SideAdmittance, compliance: ComplexArra
 
 
 def _held(law: SideAdmittance, receptance: ComplexArray, excited: ComplexArray) -> ComplexArray:
-    """Return the same from G, (nodes, 2N, 2N)."""
+    """Return w of (1 + G Y) w = w_linear, (2N, nodes), from G, (nodes, 2N, 2N)."""
     count, system = receptance.shape[-1] // 2, np.empty_like(receptance)
     for side in (0, 1):
         here, there = slice(side * count, (side + 1) * count), slice((1 - side) * count, (2 - side) * count)

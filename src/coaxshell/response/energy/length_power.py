@@ -1,0 +1,85 @@
+"""Power of the amplifiers of a three-dimensional run over the whole length of the shells, by Parseval's theorem as its energy.
+
+Of wall i, with u and i the transforms of its actuators' voltage and current per area at each axial wavenumber k_j and the weights of
+:mod:`coaxshell.response.energy.whole_length`,
+
+    P(t) = L [P(k_0) + (1/2) sum_j P(k_j)],      P(k) = oint u i ds,      S = (int u^2 dA  int i^2 dA)^(1/2) >= |P|.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coaxshell.errors import InputError
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.progress import Progress
+from coaxshell.response.energy.electrodes import driven_at
+from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.whole_length import along_the_length
+from coaxshell.solver.axial.motion import wave_motions
+from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.structure.electroded_wall import ElectrodedWall
+
+
+@dataclass(frozen=True)
+class LengthPower:
+    """Power of the amplifiers of one wall over time, W and VA, each (T,), and ``step``, s."""
+
+    shell: int
+    real: FloatArray
+    apparent: FloatArray
+    step: float
+
+    @property
+    def largest_real(self) -> float:
+        """Largest magnitude of the real power."""
+        return float(np.abs(self.real).max())
+
+    @property
+    def largest_apparent(self) -> float:
+        """Largest apparent power."""
+        return float(self.apparent.max())
+
+    @property
+    def energy(self) -> float:
+        """What was given by the end, J."""
+        return float(np.trapezoid(self.real, dx=self.step))
+
+
+def length_power(solution: SpatialSolution, progress: Progress | None = None) -> tuple[list[LengthPower], str]:
+    """Return the power of every wall whose actuators are driven between electrodes, and along what it counts.
+
+    Parameters
+    ----------
+    solution : SpatialSolution
+    progress : callable, optional
+        Called with the fraction done and the name of the stage.
+
+    Raises
+    ------
+    InputError
+        If no thin wall is driven between electrodes, and as :func:`coaxshell.response.energy.whole_length.require_balanced`.
+    """
+    problem = solution.problem
+    walls = {i: wall for i, wall in enumerate(problem.shells) if isinstance(wall, ElectrodedWall) and wall.gains is not None}
+    if not walls:
+        raise InputError("whole_length", "no thin wall is driven between electrodes, whose charge is known", "leave it out")
+    length = along_the_length(solution, progress)
+    grid = length.grid
+    products = {i: np.zeros((3, grid.time.size)) for i in walls}
+    for j, wave in enumerate(wave_motions(problem, length.sampling, grid, length.forces)):
+        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident)
+        for i, wall in walls.items():
+            volts, charges = driven_at(motion, i, wall)
+            current = sum((moved + capacitance * volts for moved, capacitance in charges), np.zeros_like(volts)) * grid.nodes
+            u, c, weight = grid.invert(volts), grid.invert(current), wave.length * wall.radius * motion.circle
+            products[i] += [np.einsum("m,hmt,hmt->t", weight, a, b) for a, b in ((u, c), (u, u), (c, c))]
+        if progress is not None:
+            progress((j + 1.0) / length.count, f"axial wavenumber {j + 1:,} of {length.count:,}")
+    scales, kept = problem.scales, slice(None, None, solution.settings.refinement)
+    watts = (scales.line_energy if length.uniform else scales.energy) / scales.time
+    step = solution.settings.time_step * scales.time
+    found = [LengthPower(i, watts * one[0, kept], watts * np.sqrt(one[1, kept] * one[2, kept]), step) for i, one in products.items()]
+    return found, "per metre of length" if length.uniform else "over the whole length"
