@@ -137,6 +137,8 @@ def test_limits_and_segments_know_matrices():
     cut = cx.simulate(under(MIXED, segments=4, saturation=True, field_limit=5e3), **RUN)
     assert np.abs(cut.actuator_voltage("inner", [0, 90]).to_numpy()).max() == pytest.approx(15.0)
     assert np.abs(cut.energy().closure_relative).max() < 2e-5
+    with pytest.raises(InputError, match=r"time_step: is too long for limits of shells that answer each other so strongly"):
+        cx.simulate(under([[0.2, 0.9], [-0.9, 0.2]], gain=10.0, segments=4, saturation=True, field_limit=1e3), **RUN)
 
 
 @pytest.mark.parametrize(

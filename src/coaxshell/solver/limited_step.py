@@ -21,6 +21,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import linalg
 from coaxshell.solver.electrode_patterns import Patterns
@@ -57,7 +58,13 @@ class LimitedStep:
         self._sides = np.zeros(limits.shape)
 
     def solve(self, known: FloatArray) -> tuple[FloatArray, int]:
-        """Return delta, (walls, patterns), from b, and the iterations it took; 0 where no limit is reached."""
+        """Return delta, (walls, patterns), from b, and the iterations it took; 0 where no limit is reached.
+
+        Raises
+        ------
+        InputError
+            If walls that answer each other within a step do so too strongly to be solved in turn.
+        """
         at = known @ self._evaluate.T
         if (np.abs(at) <= self._limits).all():
             self._sides[:] = 0.0
@@ -69,9 +76,13 @@ class LimitedStep:
             for wall, b in enumerate(beside):
                 delta[wall], more = self._of_wall(wall, b)
                 taken += more
-            if self._others is None or np.abs(delta - before).max() <= _TOLERANCE * self._size:
-                break
-        return delta, taken
+            if self._others is None or np.abs(delta - before).max() <= _TOLERANCE * max(self._size, float(np.abs(known).max())):
+                return delta, taken
+        raise InputError(
+            "time_step",
+            "is too long for limits of shells that answer each other so strongly: what they give does not settle within a step",
+            "use a quarter of it, or four times the refinement, or lower gains across shells (control.matrix)",
+        )
 
     def _of_wall(self, wall: int, b: FloatArray) -> tuple[FloatArray, int]:
         """Return delta of one wall and the iterations it took."""

@@ -186,7 +186,8 @@ def require_stable_ties(problem: Problem, max_order: int, duration: float) -> No
         return
     cut, laws = segments_of(problem.system), laws_of(problem.system)
     fastest = fastest_growth(problem, max_order, found, 1.0 / duration)
-    hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
+    turns = fastest.frequency if not fastest.frequency < 1e-9 * fastest.rate else 0.0  # rounding of a real pole
+    hertz = turns / (2.0 * np.pi * problem.scales.time)
     if laws[0].dead:
         where = f"{found.counts[0]:.0f} motions, of all orders together, grow without bound, the fastest"
     else:
