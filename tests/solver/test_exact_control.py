@@ -90,7 +90,7 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
     assert transducers is not None
     assert wall.gains is not None
     found, law, mass = wall.receptance(modes, s), wall.gains.at(s, modes)[0], np.tile(part.mesh.mass, 2)
-    places = [0, part.mesh.radius.size - 1]
+    places, given = [0, part.mesh.radius.size - 1], wall.under_voltage(modes, s, wall.asked_of_port)
     for m in (2, 3):
         rows = strain_rows(part.mesh, part.orders[m : m + 1], 0.0)[0]
         stiffness = rows.reshape(len(rows), -1).T @ rows.reshape(len(rows), -1)
@@ -106,6 +106,7 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
         volts = law * (read @ free) / (1.0 - law * (read @ pushed))
         pushed = pushed + through @ ((through.T @ push) / squares[2:])
         moved = -(free + np.outer(pushed, volts))[places]
+        np.testing.assert_allclose(given.faces[:, m, 0], -pushed[places], rtol=0, atol=1e-6 * np.abs(pushed).max())
         here = [[found.inner[m, 0], found.across[m, 0]], [found.back[m, 0], found.outer[m, 0]]]
         np.testing.assert_allclose(here, moved, rtol=0, atol=1e-6 * np.abs(moved).max())
         if kind != "paper":
@@ -175,16 +176,12 @@ def test_an_unstable_loop_is_refused() -> None:
         cx.simulate(system("paper", control=cx.PDControl(proportional=2e4, derivative=150)), duration=1.0, time_step=2e-2, modes=6)
 
 
-@pytest.mark.parametrize(
-    ("changes", "settings", "message"),
-    [
-        ({"control": GAINS["paper"].replace(saturation=True)}, {}, r"control\.saturation: the voltage on shells\[0\]"),
-        ({"control": GAINS["paper"].replace(saturation=True)}, {"dimensions": 3}, r"control\.saturation: the voltage on shells\[0\]"),
-    ],
-)
-def test_what_is_not_known_is_refused(changes: dict[str, Any], settings: dict[str, Any], message: str) -> None:
-    with pytest.raises(cx.InputError, match=message):
-        cx.simulate(system("paper", **changes), duration=0.5, time_step=2e-2, modes=4, **settings)
+def test_what_is_not_known_is_refused() -> None:
+    limited = system("paper", control=GAINS["paper"].replace(saturation=True))
+    ring = cx.absorber_ring(3, mass=20, damping=1e5, linear_stiffness=1e9, cubic_stiffness=1e20, footprint=0.2)
+    for changed, dimensions, message in ((limited, 3, "in two dimensions alone"), (limited.replace(absorbers=ring), 2, "beside absorbers")):
+        with pytest.raises(cx.InputError, match=rf"control\.saturation: .*{message}"):
+            cx.simulate(changed, duration=0.5, time_step=2e-2, modes=4, dimensions=dimensions)
 
 
 def test_feedback_on_walls_with_losses_is_refused() -> None:

@@ -88,8 +88,9 @@ def test_thin_walls_far_from_exact_ones_are_warned_of():
     assert at_faces == [text for text in at_faces if "with fluids at its faces" in text and "wetted" not in text]
     active = cx.presets.load("active")
     assert warned(active)[0].endswith('theory = "elastic"')
-    saturating = warned(active.with_overrides({"control.saturation": True}))
-    assert saturating[0].endswith('theory = "elastic", which does not know saturation, to see by how much')
+    assert warned(active.with_overrides({"control.saturation": True}))[0].endswith('theory = "elastic"')
+    beside = warned(cx.presets.load("hybrid").with_overrides({"control.saturation": True}))
+    assert beside[0].endswith('theory = "elastic", which marches saturation without absorbers, to see by how much')
 
 
 def test_what_is_no_thin_wall_or_near_an_exact_one_is_not_warned_of():

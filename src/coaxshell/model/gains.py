@@ -23,8 +23,12 @@ def limits_currents(system: SystemParts) -> bool:
 
 
 def limits_voltages(system: SystemParts) -> bool:
-    """Return whether a march runs beside the linear answer: voltages of electrodes or of laws but PD, or currents, at their limit."""
-    marched = (law.saturation and (law.transducers == "electrodes" or isinstance(law, Feedback)) for law in laws_of(system))
+    """Return whether a march runs beside the linear answer: currents at their limit, or voltages of electrodes, of laws but PD.
+
+    Those of any law where walls are elastic solids.
+    """
+    solid = any(getattr(shell, "theory", "") == "elastic" for shell in system.shells)
+    marched = (law.saturation and (solid or law.transducers == "electrodes" or isinstance(law, Feedback)) for law in laws_of(system))
     return limits_currents(system) or any(marched)
 
 

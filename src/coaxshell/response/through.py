@@ -48,6 +48,7 @@ def each_within(spectra: SolvedSpectra, shell: int, asked: Sequence[Asked], per:
     assert isinstance(wall, ElasticWall)
     assert solid is not None
     loads, blocks = solid.loads[:, shell], node_blocks(grid, modes.max_order)
+    volts = None if spectra.voltage is None or wall.transducers is None else spectra.voltage[shell]
     wall.prepare(modes)
     together = per * max(1, BYTES // (per * loads[0].nbytes))
     for start in range(0, len(asked), together):
@@ -55,11 +56,16 @@ def each_within(spectra: SolvedSpectra, shell: int, asked: Sequence[Asked], per:
         found = np.empty((len(some), *loads.shape[1:]), np.complex128)
 
         def work(block: slice, some: list[Asked] = some, found: ComplexArray = found) -> None:
-            inner, outer = np.moveaxis(wall.transfer(modes, grid.nodes[block], some), 1, 0)
+            s, given = grid.nodes[block], None
+            inner, outer = np.moveaxis(wall.transfer(modes, s, some, fed_back=volts is None), 1, 0)
+            if volts is not None:
+                given = wall.under_voltage(modes, s, some).shown
             for parity in range(loads.shape[1]):
                 there = found[:, parity, :, block]
                 np.multiply(inner, loads[0, parity, :, block], out=there)
                 there += outer * loads[1, parity, :, block]
+                if given is not None and volts is not None:
+                    there += given * volts[parity, :, block]
 
         with one_blas_thread():  # small products on all threads
             map_node_blocks(blocks, work, None, "depth")

@@ -20,7 +20,6 @@ from coaxshell.solver.electrodes import lower_half, segment_mean
 from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.control_law import ControlGains, ControlLaw
-from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.shell_model import FieldGain, Gain
 
@@ -140,9 +139,9 @@ class CutElectrode(NamedTuple):
 def cut_voltage(solution: ModalSolution, shell: int, *, asked: bool = False) -> CutElectrode | None:
     """Return the voltages of the segments of a shell's electrodes, given or *asked* for; None where they are not cut."""
     wall, kept = solution.problem.shells[shell], getattr(solution, "segment_voltage", None)
-    if kept is None or not isinstance(wall, SegmentedWall) or wall.gains is None:
+    if kept is None or wall.electrode_segments is None or wall.gains is None:
         return None
-    return CutElectrode(wall.segments, kept[shell] if asked else applied(kept[shell], actuator_limit(solution, shell)))
+    return CutElectrode(wall.electrode_segments, kept[shell] if asked else applied(kept[shell], actuator_limit(solution, shell)))
 
 
 def mean_shares(solution: ModalSolution, shell: int, length: float) -> FloatArray:

@@ -316,7 +316,8 @@ def thin_walls(problem: Problem, duration: float) -> list[str]:
             f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, error.at_faces, THIN_LIMIT)
         )
         remedies = [f'wetted = "faces" (about {faces} %)'] if error.at_faces < FACES_HELP * error.value else []
-        remedies.append('theory = "elastic"' + (", which does not know saturation, to see by how much" if saturates(system) else ""))
+        alone = saturates(system) and system.absorber_list
+        remedies.append('theory = "elastic"' + (", which marches saturation without absorbers, to see by how much" if alone else ""))
         where = "faces" if error.wetted == "faces" else "mid-surface"
         found.append(
             f"{shell_phrase(error.shell, len(problem.shells))}: thin-wall theory with fluids at its {where} leaves its hoop stress about "

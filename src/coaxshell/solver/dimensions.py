@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import limits_voltages, saturates, segments_of, ties_shells
+from coaxshell.model.gains import limits_currents, limits_voltages, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -43,15 +43,15 @@ def require_sources_alone(system: System, dimensions: int) -> None:
             where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
             problem = f"a wave along the axis has complex wavenumbers, which shells[{solid}], an elastic wall, does not know"
             raise InputError(f"{where}.inclination", problem, f"use inclination = 0, {thin}")
-    if saturates(system):
-        problem = f"the voltage on shells[{solid}], an elastic wall, has no limit that is marched yet"
-        raise InputError("control.saturation", problem, f"use saturation = false and compare voltage and limit, {thin}")
+    if limits_currents(system):
+        problem = f"the current into shells[{solid}], an elastic wall, has no limit that is marched yet"
+        raise InputError("control.current_saturation", problem, f"leave it out and compare current and limit, {thin}")
 
 
 def _require_linear_electrodes(system: System) -> None:
-    """Raise InputError if feedback by electrodes, or by any law but PD, is to saturate beside absorbers."""
+    """Raise InputError if feedback by electrodes, by any law but PD, or of elastic walls is to saturate beside absorbers."""
     if limits_voltages(system) and system.absorber_list:
-        problem = "beside absorbers no limit of the voltage is marched yet but that of PDControl with the paper's transducers"
+        problem = "beside absorbers no limit of the voltage is marched yet but that of PDControl with the paper's transducers on thin walls"
         raise InputError("control.saturation", problem, "leave the absorbers out, or use saturation = false and compare voltage and limit")
 
 
@@ -72,8 +72,11 @@ def _require_ties(system: System, dimensions: int) -> None:
     if dimensions == 3:
         require_loops_alone(system, "the sum over axial wavenumbers", f"use dimensions=2, or {whole}")
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
-    if solid is not None:
-        require_loops_alone(system, f"shells[{solid}], an elastic wall,", f'use theory = "thin", or {whole}')
+    if solid is not None and system.absorber_list:
+        require_loops_alone(system, f"shells[{solid}], an elastic wall beside absorbers,", f'use theory = "thin", or {whole}')
+    if solid is not None and ties_shells(system):
+        problem = f"the sensors of one shell drive another, which shells[{solid}], an elastic wall, does not know yet"
+        raise InputError("control.matrix", problem, 'use theory = "thin", or leave matrix out')
 
 
 def require_cubic_springs(system: System, what: str, remedy: str) -> None:

@@ -16,7 +16,6 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.interface.saturation import circle
 from coaxshell.solver.scaling import Problem
-from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.segments import Segments
 
 
@@ -177,8 +176,8 @@ class OrderPatterns(Patterns):
 
 def segments_of(problem: Problem, shells: tuple[int, ...]) -> tuple[Segments, ...]:
     """Return the segments of walls under control; none where nothing is cut."""
-    walls = [problem.shells[i] for i in shells]
-    return tuple(wall.segments for wall in walls if isinstance(wall, SegmentedWall))
+    each = (problem.shells[i].electrode_segments for i in shells)
+    return tuple(one for one in each if one is not None)
 
 
 def patterns_of(problem: Problem, shells: tuple[int, ...], orders: FloatArray, parities: int) -> Patterns:

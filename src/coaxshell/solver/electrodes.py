@@ -32,7 +32,6 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.control_law import ControlGains
-from coaxshell.structure.segmented_wall import SegmentedWall
 
 Segment = float | str | None
 """Length of a segment, m or as text such as "50 mm"; "point" for the value at a point; None for what the pulse's band allows."""
@@ -51,9 +50,9 @@ def segment_length(problem: Problem, shell: int, segment: Segment = None) -> flo
     """
     wall = problem.system.shells[shell]
     around = 2.0 * math.pi * wall.radius
-    electrodes = problem.shells[shell]
-    if segment is None and isinstance(electrodes, SegmentedWall):
-        return around * electrodes.segments.covered / electrodes.segments.count
+    cut = problem.shells[shell].electrode_segments
+    if segment is None and cut is not None:
+        return around * cut.covered / cut.count
     if segment is None:
         highest = max(pulse_band(source.pulse) for source in problem.system.sources)
         wave = problem.scales.velocity / highest if highest > 0.0 else math.inf

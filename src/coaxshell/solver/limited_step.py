@@ -8,7 +8,14 @@ their limit on the side sigma, y = -delta = P_h d the excess cut off there, d = 
 or, where fewer points are held than there are patterns, (1 - E_h kappa P_h) d = E_h b - sigma V. The set of points is corrected until it
 reproduces itself (a semi-smooth Newton method), starting from that of the step before.
 
-Where it does not, the step is solved by an iteration that always converges: with delta = -a/2 + r(a), r = clip - a/2 of slope 1/2 or -1/2,
+Where it turns in circles, only a part of each correction is taken: with g the sums of squares of patterns the equation is that of the least
+
+    Phi(a) = (1/2) sum of (g/kappa) (a - b)^2 - (1/2) sum over points of the squares of what exceeds the limit,
+
+strongly convex because 0 < kappa < 1 and patterns are orthogonal, and each correction leads down.
+
+Where even that fails, as of feedback that does not damp, the step is solved by an iteration that always converges: with
+delta = -a/2 + r(a), r = clip - a/2 of slope 1/2 or -1/2,
 
     a <- (1 - kappa/2)^-1 [b - kappa r(a)],
 
@@ -27,6 +34,9 @@ from coaxshell.numerics.late import linalg
 from coaxshell.solver.electrode_patterns import Patterns
 
 _MAX_SETS = 30
+_WHOLE = 8
+"""Sets that are corrected in one go, before only a part of each correction is taken."""
+_SHORTEST = 1e-6
 _TOLERANCE = 1e-10
 """Of the voltages, in units of the limit."""
 _MOST_ITERATIONS = 100_000
@@ -50,6 +60,7 @@ class LimitedStep:
         self._evaluate, self._project = np.ascontiguousarray(patterns.evaluate), np.ascontiguousarray(patterns.project)
         self._limits, self._present = limits, present
         self._size = float(limits.max())
+        self._squares = (self._evaluate**2).sum(axis=0)
         walls = len(limits)
         self._kappa = -np.stack([present[i, i] for i in range(walls)])
         others = present.copy()
@@ -88,17 +99,36 @@ class LimitedStep:
         """Return delta of one wall and the iterations it took."""
         evaluate, kappa, limit, sides = self._evaluate, self._kappa[wall], self._limits[wall], self._sides[wall]
         free = evaluate @ b
+        asked = b
         for taken in range(1, _MAX_SETS):
             held = np.flatnonzero(sides)
             y = self._excess(b, free[held], kappa, sides[held] * limit[held], held) if held.size else np.zeros_like(b)
-            volts = evaluate @ (b + kappa * y) if held.size else free
+            found, part = b + kappa * y, 1.0
+            if taken > _WHOLE:
+                part = self._part(asked, found - asked, b, kappa, limit)
+            asked = asked + part * (found - asked) if part < 1.0 else found
+            volts = evaluate @ asked if held.size else free
             beyond = np.where(np.abs(volts) > limit, np.sign(volts), 0.0)
-            if np.array_equal(beyond, sides):
+            if part == 1.0 and np.array_equal(beyond, sides):
                 self._sides[wall] = sides
                 return -y, taken
             sides = beyond
         self._sides[wall] = sides
         return self._safely(b, kappa, limit)
+
+    def _part(self, a: FloatArray, way: FloatArray, b: FloatArray, kappa: FloatArray, limit: FloatArray) -> float:
+        """Return the part of a correction that brings Phi down, all of it if it can."""
+        at, along = self._evaluate @ a, self._evaluate @ way
+        weight = self._squares / np.maximum(kappa, 1e-12)
+
+        def phi(part: float) -> float:
+            beyond = np.maximum(np.abs(at + part * along) - limit, 0.0)
+            return float(weight @ (a + part * way - b) ** 2 - beyond @ beyond)
+
+        part, start = 1.0, phi(0.0)
+        while part > _SHORTEST and phi(part) > start:
+            part *= 0.5
+        return part
 
     def _excess(self, b: FloatArray, free: FloatArray, kappa: FloatArray, target: FloatArray, held: Places) -> FloatArray:
         """Return y where some points are held at a target each, sigma V; ``free`` is E_h b."""

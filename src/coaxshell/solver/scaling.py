@@ -196,7 +196,7 @@ class Problem:
     @property
     def tied(self) -> bool:
         """Whether feedback runs from wall to wall or from segment to segment, so that it ties walls or orders to each other."""
-        return any(isinstance(wall, TiedWall) and wall.gains is not None for wall in self.shells)
+        return any((isinstance(wall, TiedWall) or wall.electrode_segments is not None) and wall.gains is not None for wall in self.shells)
 
     @property
     def open_loop(self) -> Problem:
@@ -250,11 +250,9 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
 
 def _cut(wall: ThinWall, system: System, index: int) -> ThinWall:
     """Return a wall with its electrodes cut into the segments that its law asks for."""
-    control = law_of(system, index)
-    if control is None or control.segments is None or not isinstance(wall, ElectrodedWall):
+    segments = _segments(system, index)
+    if segments is None or not isinstance(wall, ElectrodedWall):
         return wall
-    circumference = 2.0 * math.pi * wall.radius * system.reference_radius
-    segments = Segments(control.segments, 1.0 - control.segments * (control.segment_gap or 0.0) / circumference, control.dead or ())
     kind = LossySegmentedWall if isinstance(wall, LossyElectrodedWall) else SegmentedWall
     return kind(**vars(wall), segments=segments)
 
@@ -279,6 +277,15 @@ def _reading_each_other(system: System, walls: list[ShellModel]) -> tuple[ShellM
     return tuple(found)
 
 
+def _segments(system: System, index: int) -> Segments | None:
+    """Return the segments into which the law of a wall cuts its electrodes."""
+    control = law_of(system, index)
+    if control is None or control.segments is None:
+        return None
+    circumference = 2.0 * math.pi * system.shells[index].radius
+    return Segments(control.segments, 1.0 - control.segments * (control.segment_gap or 0.0) / circumference, control.dead or ())
+
+
 def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ElasticWall:
     require_solid(shell, f"shells[{index}]")
     density = system.exterior.density
@@ -292,7 +299,11 @@ def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band)
             )
         return LossySolidWall.of(layers, core)
     wall = ElasticWall.of(layers, core)
-    return wall if gains is None else replace(wall, gains=gains, transducers=_transducers(system, index, scales))
+    return (
+        wall
+        if gains is None
+        else replace(wall, gains=gains, transducers=_transducers(system, index, scales), segments=_segments(system, index))
+    )
 
 
 def _transducers(system: System, index: int, scales: Scales) -> Transducers:

@@ -20,7 +20,7 @@ from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.margins import FURTHER, Loop, LoopMargins, followed, margins_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour
+from coaxshell.solver.stability import Contour, along_alone
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 128
@@ -46,7 +46,7 @@ class CutLoop(NamedTuple):
 
 def segmented_loops(problem: Problem, modes: Modes, least: float) -> dict[int, CutLoop]:
     """Return the loops of each wall that feeds anything back, by its number, on Re s = *least* or a little more."""
-    contour = Contour.of(problem, modes, least)
+    contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     nodes = contour._replace(fades=FURTHER * contour.fades).nodes
     walls = controlled(problem)
     patterns = patterns_of(problem, walls, modes.orders, 1)

@@ -23,6 +23,7 @@ from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel
+from coaxshell.structure.solid_ports import UnderVoltage
 
 
 def band(grid: LaplaceGrid) -> float:
@@ -51,10 +52,12 @@ class FacedSystem:
     """
 
     def __init__(self, problem: Problem, s: ComplexArray, modes: Modes) -> None:
+        self._problem, self._s, self._modes = problem, s, modes
         ports = [_port(wall, modes, s) for wall in problem.shells]
         self.cascade = CascadeSystem(problem, s, modes, walls=[receptance for receptance, _ in ports])
         self.radial = self.cascade.radial
         self._reading = [reading for _, reading in ports]
+        self._volts: dict[int, UnderVoltage] = {}
 
     def under_sources(self, load: ComplexArray) -> list[WallAnswer]:
         """Return what all walls do under a pressure on the surface that the exterior fluid wets."""
@@ -69,11 +72,49 @@ class FacedSystem:
         """Return V/W of a wall whose faces move alike."""
         return self._reading[shell]
 
+    def under_voltage(self, shell: int, volts: ComplexArray | float) -> list[WallAnswer]:
+        """Return what all walls do under a voltage that is given to the actuators of one, no law asking for any."""
+        wall = self._problem.shells[shell]
+        if isinstance(wall, ElasticWall):
+            given = self._given(shell, wall)
+            faces = self.cascade.solve_free(shell, given.faces[0] * volts, given.faces[1] * volts)
+        else:
+            faces = self.cascade.solve(shell, wall.drive(self._modes).columns.recovered(self._reading[shell]) * volts)
+        found = [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
+        own = found[shell]
+        if not isinstance(wall, ElasticWall):
+            found[shell] = own._replace(tangential=own.tangential + wall.driven_along(self._modes, self._s) * volts)
+            return found
+        normal, tangential, hoop, *potentials = given.shown * volts
+        potentials = [a + b for a, b in zip(own.potentials, [*potentials, given.heard * volts, volts], strict=True)]
+        found[shell] = WallAnswer(own.normal + normal, own.tangential + tangential, own.hoop + hoop, potentials, own.faces)
+        return found
+
+    def sensed(self, shell: int, answer: WallAnswer) -> ComplexArray:
+        """Return what the law of a wall reads of what the wall does, V."""
+        wall = self._problem.shells[shell]
+        if isinstance(wall, ElasticWall):
+            return answer.potentials[sensed_place(wall)]
+        read = wall.sensor_gain(self._modes).columns
+        return np.asarray(read.w * answer.normal + read.v * answer.tangential)
+
+    def _given(self, shell: int, wall: ElasticWall) -> UnderVoltage:
+        if shell not in self._volts:
+            self._volts[shell] = wall.under_voltage(self._modes, self._s, wall.asked_of_port)
+        return self._volts[shell]
+
     def _answer(self, reading: ComplexArray, faces: FaceMotion) -> WallAnswer:
         if reading.ndim == 2:
             return WallAnswer(faces.outer, reading * faces.outer, 0.0, [], faces)
         normal, tangential, hoop, *potentials = reading[:, 0] * faces.load_inner + reading[:, 1] * faces.load_outer
         return WallAnswer(normal, tangential, hoop, potentials, faces)
+
+
+def sensed_place(wall: ElasticWall) -> int:
+    """Return the place of what its law reads among the potentials of a wall under control."""
+    place = wall.layer_number("sensor")
+    assert place is not None
+    return place
 
 
 def _port(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:

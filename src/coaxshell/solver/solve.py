@@ -145,7 +145,7 @@ def _solved(
     links = absorber_set(problem, system.absorber_list, source_parities(problem))
     saturate = saturates(system) and not limits_voltages(system)
     bare = saturates(system) or problem.tied
-    (structure.open_loop if bare else structure).solve(units=links.count > 0 or bare)
+    (structure.open_loop if bare else structure).solve(units=links.count > 0 or (bare and not problem.two_faced))
     stopwatch.lap("modal system at all Laplace nodes")
     solved = reflected(structure, lambda one: solve_linked(one, links, progress, saturate=saturate), progress)
     structure = solved.structure

@@ -112,7 +112,8 @@ class SolvedSpectra:
     @property
     def nbytes(self) -> int:
         """Bytes of all transforms, those of the structure that forces need included."""
-        structure = self.passive if self.absorbers.count or self.passive is not self.structure else None
+        driven = self.passive is not self.structure and not self.problem.two_faced  # of whose walls voltages are no loads on surfaces
+        structure = self.passive if self.absorbers.count or driven else None
         unit = 0 if structure is None else structure.unit_bytes
         solid = 0 if self.solid is None else self.solid.nbytes
         return self.normal.nbytes + self.tangential.nbytes + unit + solid

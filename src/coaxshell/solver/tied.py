@@ -71,7 +71,7 @@ class TiedLoops:
     def answer(self, pressure: ComplexArray | None = None) -> tuple[Moved, ComplexArray, ComplexArray]:
         """Return motion, voltages in orders and those of patterns, under the sources and pressures (shells, parities, M + 1, nodes)."""
         bare = self.structure.open_loop
-        free = Moved(bare.normal, bare.tangential) if pressure is None else bare.forced_spectra(pressure)
+        free = Moved(bare.normal, bare.tangential, bare.solid) if pressure is None else bare.forced_spectra(pressure)
         found = self.loops.voltages(self.patterns.readings(read_of(self.structure, free)))
         voltage: ComplexArray = of_all(self.structure.problem, self.response, self.patterns.in_orders(found))
         return driven(self.structure, self.response, voltage, pressure), voltage, found

@@ -28,7 +28,7 @@ from coaxshell.numerics.winding import turning
 from coaxshell.solver.electrode_loops import ElectrodeLoops, shares_of
 from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour, remedy
+from coaxshell.solver.stability import Contour, along_alone, remedy
 from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
@@ -55,6 +55,8 @@ def collocated(problem: Problem, max_order: int) -> bool:
     Every wall is pushed by what it reads, its drive is its reading times -c in all orders, and with A its circumference c A K is symmetric
     without negative eigenvalues.
     """
+    if problem.two_faced:
+        return False  # what an elastic wall reads of the strain along it is its push but for parts of h/R
     modes, shells, factors = Modes.up_to(max_order), controlled(problem), []
     shares = shares_of(problem, shells)
     for i in shells:
@@ -108,7 +110,7 @@ def growing(problem: Problem, max_order: int, least: float) -> PatternPoles | No
     contour = Contour.of(problem, modes, least)
     if collocated(problem, max_order) and never_gives(problem, contour, max_order):
         return None
-    return counted(problem, modes, contour)
+    return counted(along_alone(problem, modes), modes, contour)
 
 
 def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
@@ -143,6 +145,7 @@ class PatternGrowth(NamedTuple):
 def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least: float) -> PatternGrowth:
     """Return the fastest growth: its rate is enclosed by contours, from the last of which Newton's method finds the pole beside it."""
     modes, low, high = Modes.up_to(max_order), least, 4.0 * least
+    problem = along_alone(problem, modes)
     while (beyond := counted(problem, modes, Contour.of(problem, modes, high))) is not None:
         found, low, high = beyond, high, 4.0 * high
     while high > _ROUGHLY * low:

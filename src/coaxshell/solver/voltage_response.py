@@ -3,6 +3,8 @@
 With V eliminated a voltage of order m on wall j is a normal load f_j = P_w + P_v r_j per volt, r = V/W, and moves V by P_v/A_vv besides:
 
     W_i = C_ij f_j u_j,      V_i = r_i W_i + (P_v/A_vv) u_i,      phi_i = (S_w + S_v r_i) W_i + (S_v P_v/A_vv) u_i.
+
+Where walls have two faces voltages are no loads on a surface: :mod:`coaxshell.solver.faced_voltages`.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.faced_voltages import moved_by_voltages, read_of_solids, readings_of_grid, readings_per_volt
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 from coaxshell.structure.control_law import ControlLaw
@@ -39,7 +42,7 @@ class VoltageResponse:
     shells : tuple of int
         Those under control.
     load : ndarray, shape (controlled, orders, nodes)
-        f: normal load per volt.
+        f: normal load per volt; nothing where walls have two faces.
     slid : ndarray, same shape
         P_v/A_vv: V per volt where W is held.
     read : ndarray, shape (controlled, controlled, orders, nodes)
@@ -82,6 +85,12 @@ class VoltageResponse:
         return cls(shells, load, slid, read)
 
     @classmethod
+    def of_faces(cls, shells: tuple[int, ...], read: ComplexArray) -> VoltageResponse:
+        """Return it from what is read, where walls have two faces."""
+        nothing = np.zeros((0, *read.shape[2:]), np.complex128)
+        return cls(shells, nothing, nothing, read)
+
+    @classmethod
     def at(
         cls,
         passive: Problem,
@@ -91,6 +100,9 @@ class VoltageResponse:
         reading: Callable[[ShellModel, Modes], Gain] = sensed_of,
     ) -> VoltageResponse:
         """Return it at any nodes; ``passive`` is the problem ``controls`` without its feedback."""
+        if passive.two_faced:
+            shells = controlled(controls)
+            return cls.of_faces(shells, readings_per_volt(passive, shells, modes, s))
         system = ModalSystem(passive, s, modes)
         count = len(passive.shells)
         compliance = np.stack([np.stack(system.solve(j, 1.0)) for j in range(count)], axis=1)
@@ -125,30 +137,39 @@ def of_all(problem: Problem, response: VoltageResponse, values: Values) -> Value
 
 def response_of(structure: StructureSpectra, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> VoltageResponse:
     """Return the answers to voltages at the orders and nodes of a run."""
-    bare = structure.open_loop
+    bare, shells = structure.open_loop, controlled(structure.problem)
+    if structure.problem.two_faced:
+        return VoltageResponse.of_faces(shells, readings_of_grid(bare.problem, shells, bare.modes, bare.grid))
     known = structure.problem, structure.modes, structure.grid.nodes, bare.compliance, list(bare.tangential_ratio)
     return VoltageResponse.of(*known, reading)
 
 
 def read_without(structure: StructureSpectra, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> ComplexArray:
     """Return what the sensors read of the motion without voltages, V, (controlled, parities, M + 1, nodes)."""
-    return read_of(structure, Moved(structure.open_loop.normal, structure.open_loop.tangential), reading)
+    bare = structure.open_loop
+    return read_of(structure, Moved(bare.normal, bare.tangential, bare.solid), reading)
 
 
 def read_of(structure: StructureSpectra, moved: Moved, reading: Callable[[ShellModel, Modes], Gain] = sensed_of) -> ComplexArray:
     """Return what the sensors read of a motion, V, (controlled, parities, M + 1, nodes)."""
+    if moved.solid is not None:
+        return read_of_solids(structure.open_loop.problem, controlled(structure.problem), moved.solid, structure.modes)
     gains = [(i, reading(structure.problem.shells[i], structure.modes).columns) for i in controlled(structure.problem)]
     return np.stack([gain.v * moved.tangential[i] + gain.w * moved.normal[i] for i, gain in gains])
 
 
 def driven(structure: StructureSpectra, response: VoltageResponse, voltage: ComplexArray, beside: ComplexArray | None = None) -> Moved:
     """Return the motion under the sources, voltages in orders, V, and modal pressures *beside*, shape (shells, parities, M + 1, nodes)."""
+    bare = structure.open_loop
+    if bare.solid is not None:
+        whole = bare.solid.plus(moved_by_voltages(bare.problem, bare.grid, bare.modes, voltage))
+        return Moved(whole.normal, whole.tangential, whole)
     pressure = np.zeros_like(voltage)
     for load, i in zip(response.load, response.shells, strict=True):
         pressure[i] = load * voltage[i]
     if beside is not None:
         pressure[:, : beside.shape[1]] += beside
-    moved = structure.open_loop.forced_spectra(pressure)
+    moved = bare.forced_spectra(pressure)
     for slid, i in zip(response.slid, response.shells, strict=True):
         moved.tangential[i, : voltage.shape[1]] += slid * voltage[i]
     return moved

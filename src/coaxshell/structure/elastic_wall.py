@@ -27,8 +27,10 @@ from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
 from coaxshell.structure.elastic_depth import ALL_SHOWN, DISPLACEMENTS, STRESSES, Shown, all_by_shapes, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
+from coaxshell.structure.segments import Segments
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
+from coaxshell.structure.solid_ports import Port, UnderVoltage, VoltPort, of_faces, per_volt, products
 from coaxshell.structure.solid_transducers import (
     Driven,
     Loop,
@@ -58,43 +60,6 @@ class Asked(NamedTuple):
     depth: float
 
 
-class VoltPort(NamedTuple):
-    """What voltages on the driven layers do to what is shown.
-
-    Attributes
-    ----------
-    loop : LoopPart
-    rows : ndarray, shape (orders, quantities driven, shapes)
-        Weights of the shapes in the motion along the wall that volts make.
-    resting : ndarray, shape (orders, quantities, driven)
-        What they make at once.
-    """
-
-    loop: LoopPart
-    rows: FloatArray
-    resting: FloatArray
-
-
-class Port(NamedTuple):
-    """What some orders show at their faces and within, per unit of each shape.
-
-    Attributes
-    ----------
-    squares : ndarray, shape (orders, shapes)
-        omega^2.
-    faces : ndarray, shape (orders, 2, shapes)
-        u_r of the faces.
-    shown : ndarray, shape (orders, quantities, shapes)
-    volts : VoltPort or None
-        What voltages do, where a loop is closed.
-    """
-
-    squares: FloatArray
-    faces: FloatArray
-    shown: FloatArray
-    volts: VoltPort | None = None
-
-
 @dataclass(frozen=True, kw_only=True)
 class ElasticWall(ShellModel):
     """A wall of solid layers.
@@ -117,11 +82,14 @@ class ElasticWall(ShellModel):
         Frequency above which shapes do not answer, where only slower ones are looked at.
     meshed_as : tuple of SolidLayer or None
         Layers beside its own that decide on its mesh.
+    segments : Segments or None
+        Of its electrodes. Where they are cut its feedback, which ties orders to each other, is closed by the solver, not by the wall.
     """
 
     layers: tuple[SolidLayer, ...]
     core: int
     transducers: Transducers | None = None
+    segments: Segments | None = None
     frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
     depth_read: float | None = field(default=None, compare=False)
     keeps_shapes: bool = field(default=False, compare=False)
@@ -216,7 +184,7 @@ class ElasticWall(ShellModel):
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
-        found = self._summed(modes, s, [_of_faces(part) for part in self.basis(modes)])
+        found = self._summed(modes, s, [of_faces(part) for part in self.basis(modes)])
         loop = self.loop(modes, s)
         return FaceReceptance(*found) if loop is None else self._closed(found, loop)
 
@@ -227,39 +195,55 @@ class ElasticWall(ShellModel):
         grounded, in the sign of the sensor equation. Under control two more: what the law reads, and the voltage that it gives.
         """
         found = self._summed(modes, s, self._of_port(modes))
-        shown, loop = found[3:].reshape(-1, 2, *found.shape[1:]), self.loop(modes, s)
-        if loop is None:
+        shown = found[3:].reshape(-1, 2, *found.shape[1:])
+        if self.transducers is None:
             return FaceReceptance(*found[:3]), shown
-        shown = shown + self._by_volts(modes, s, tuple(self.asked_of_port), loop)
+        loop = self._loop(modes, s, self._law(modes, s))
+        shown = shown + self._by_volts(modes, s, self.asked_of_port, loop)
         return self._closed(found[:3], loop), np.concatenate([shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
 
-    def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
-        """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
+    def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
+        """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes).
+
+        Without being ``fed_back`` its actuators are given no voltage.
+        """
         found = self._summed(modes, s, self._weights(modes, asked))
-        shown, loop = found.reshape(-1, 2, *found.shape[1:]), self.loop(modes, s)
-        return shown if loop is None else shown + self._by_volts(modes, s, tuple(asked), loop)
+        shown, loop = found.reshape(-1, 2, *found.shape[1:]), self.loop(modes, s, fed_back=fed_back)
+        return shown if loop is None else shown + self._by_volts(modes, s, asked, loop)
+
+    def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
+        """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
+        loop = self._loop(modes, s, 0.0)
+        shown = np.einsum("qjmk,jmk->qmk", self._shown_per_volt(modes, s, asked), loop.given)
+        return UnderVoltage(np.einsum("ajmk,jmk->amk", loop.moved, loop.given), shown, loop.heard)
 
     # Control
 
-    def loop(self, modes: Modes, s: ComplexArray) -> Loop | None:
+    @property
+    def electrode_segments(self) -> Segments | None:
+        """Segments of its electrodes."""
+        return self.segments
+
+    def loop(self, modes: Modes, s: ComplexArray, *, fed_back: bool = True) -> Loop | None:
         """Return what its transducers do to it; None without any, or where none acts and none is open."""
-        if not self.closes_a_loop:
-            return None
+        return self._loop(modes, s, self._law(modes, s) if fed_back else 0.0) if self.closes_a_loop else None
+
+    def _loop(self, modes: Modes, s: ComplexArray, law: ComplexArray | float) -> Loop:
         pairs = list(zip(self.basis(modes), self.driven(modes), strict=True))
         parts = [loop_part(part, driven, self.wetted) for part, driven in pairs]
-        return self._loop_of(parts, [part.squares for part, _ in pairs], modes, s)
+        return self._loop_of(parts, [part.squares for part, _ in pairs], s, law)
 
     @property
     def closes_a_loop(self) -> bool:
         """Whether any layer acts, or is an open circuit."""
         return self.transducers is not None and (self.gains is not None or bool(self.transducers.opened.any()))
 
-    def _loop_of(self, parts: Sequence[LoopPart], squares: Sequence[FloatArray], modes: Modes, s: ComplexArray) -> Loop:
+    def _loop_of(self, parts: Sequence[LoopPart], squares: Sequence[FloatArray], s: ComplexArray, law: ComplexArray | float) -> Loop:
         assert self.transducers is not None
         sums = [modal_sums(part.rows, square, s) for part, square in zip(parts, squares, strict=True)]
         resting = np.concatenate([part.moved for part in parts]), np.concatenate([part.read for part in parts])
         whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
-        return closed_loop(whole, resting, self.transducers, self._law(modes, s))
+        return closed_loop(whole, resting, self.transducers, law)
 
     @kept_with_modes
     def driven(self, modes: Modes) -> tuple[Driven, ...]:
@@ -268,7 +252,7 @@ class ElasticWall(ShellModel):
         return tuple(driven_of(part, self.transducers) for part in self.basis(modes))
 
     def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
-        return 0.0 if self.gains is None else self.gains.at(s, modes)
+        return 0.0 if self.gains is None or self.segments is not None else self.gains.at(s, modes)
 
     def _closed(self, open_loop: ComplexArray, loop: Loop) -> FaceReceptance:
         """Return the receptances H_ii, H_io and H_oo with what the transducers add."""
@@ -277,16 +261,19 @@ class ElasticWall(ShellModel):
         h_ii, h_io, h_oo = open_loop
         return FaceReceptance(h_ii + added[0, 0], h_io + added[0, 1], h_oo + added[1, 1], loop.characteristic, h_io + added[1, 0])
 
-    def _by_volts(self, modes: Modes, s: ComplexArray, asked: tuple[Asked, ...], loop: Loop) -> ComplexArray:
-        """Return what voltages add to quantities per load on either face: by the motion that they make, in their layers by the field."""
+    def _by_volts(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], loop: Loop) -> ComplexArray:
+        """Return what voltages add to quantities per load on either face, (quantities, 2, orders, nodes)."""
+        return np.asarray(np.einsum("qjmk,jbmk->qbmk", self._shown_per_volt(modes, s, asked), loop.volts))
+
+    def _shown_per_volt(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
+        """Return quantities per volt on each driven layer: by the motion that it makes, in its layer by its field."""
         parts = []
         for part, driven in zip(self.basis(modes), self.driven(modes), strict=True):
             shown = self._shown(part, asked)
             for row, one in enumerate(asked):
                 shown[:, row] *= -1.0 if one.what == "potential" and one in self._asked_potentials else 1.0
             parts.append(self._per_volt(part, driven, shown, asked))
-        sums = self._summed(modes, s, [rows for rows, _ in parts])
-        return _shown_by_volts(sums, [resting for _, resting in parts], loop)
+        return per_volt(self._summed(modes, s, [rows for rows, _ in parts]), [resting for _, resting in parts])
 
     def _per_volt(self, part: OrdersBasis, driven: Driven, shown: FloatArray, asked: Sequence[Asked]) -> tuple[FloatArray, FloatArray]:
         """Return what volts on each driven layer add to quantities, ``shown`` per unit of each shape.
@@ -324,7 +311,11 @@ class ElasticWall(ShellModel):
             along = part.squares < (1.5 * top) ** 2
             products = np.einsum("mjn,min->mn", np.abs(driven.loads), np.abs(driven.readings))
             size.append((products * along).sum(axis=1))
-        fades = self.gains.fades(np.concatenate(size) * np.abs(self.gains.weight(modes.orders)))
+        sizes = np.concatenate(size)
+        if self.segments is not None:  # of a pattern that of all its orders together
+            pattern = np.abs(modes.orders - self.segments.count * np.rint(modes.orders / self.segments.count))
+            sizes = (self.segments.loop_shares(modes.orders, 1) @ sizes)[pattern.astype(int)]
+        fades = self.gains.fades(sizes * np.abs(self.gains.weight(modes.orders)))
         return max(fades, 1.2 * top) if fades > 0.0 else 0.0
 
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
@@ -335,7 +326,7 @@ class ElasticWall(ShellModel):
         """
         parts, ports = [], self.ports(modes)
         for port in ports:
-            pressed, weights = -port.faces * np.array(self.wetted)[:, None], _products(port.faces)
+            pressed, weights = -port.faces * np.array(self.wetted)[:, None], products(port.faces)
             if reads:
                 shown = (port.shown[:, :, None] * pressed[:, None]).reshape(len(weights), -1, weights.shape[-1])
                 weights = np.concatenate([weights, shown], axis=1)
@@ -345,11 +336,11 @@ class ElasticWall(ShellModel):
         volts = [port.volts for port in ports if port.volts is not None]
         if not volts:
             return FaceReceptance(*found[:3]), per_load
-        loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], modes, s)
+        loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], s, self._law(modes, s))
         if reads:
             sums = [modal_sums(one.rows, port.squares, s) for one, port in zip(volts, ports, strict=True)]
             whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
-            by_volts = _shown_by_volts(whole, [one.resting for one in volts], loop)
+            by_volts = np.einsum("qjmk,jbmk->qbmk", per_volt(whole, [one.resting for one in volts]), loop.volts)
             per_load = np.concatenate([per_load + by_volts, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
         return self._closed(found[:3], loop), per_load
 
@@ -403,7 +394,7 @@ class ElasticWall(ShellModel):
         found = self._weights(modes, self.asked_of_port)
         for each in found:
             each[:, 6:] *= -1.0  # Phi = -cos(pi z'/t) phi: a half cosine has no sign of its own
-        return [np.concatenate([_of_faces(part), each], axis=1) for part, each in zip(self.basis(modes), found, strict=True)]
+        return [np.concatenate([of_faces(part), each], axis=1) for part, each in zip(self.basis(modes), found, strict=True)]
 
     def _weights(self, modes: Modes, asked: Sequence[Asked]) -> list[FloatArray]:
         """Return the weights of all shapes in quantities per load on either face, (orders, 2 quantities, shapes) of each part."""
@@ -477,20 +468,3 @@ class ElasticWall(ShellModel):
     def energy(self, motion: WallMotion) -> WallEnergy:
         """Refuse: the energy of a solid wall needs its motion through the thickness."""
         raise NotImplementedError("the energy of an elastic wall is that of its shapes")
-
-
-def _shown_by_volts(sums: ComplexArray, resting: Sequence[FloatArray], loop: Loop) -> ComplexArray:
-    """Return what voltages add to quantities per load on either face, (quantities, 2, orders, nodes)."""
-    at_once = np.concatenate(resting)
-    per_volt = sums.reshape(*at_once.shape[1:], *sums.shape[1:]) + np.moveaxis(at_once, 0, -1)[..., None]
-    return np.asarray(np.einsum("qjmk,jbmk->qbmk", per_volt, loop.volts))
-
-
-def _of_faces(part: OrdersBasis) -> FloatArray:
-    """Return the weights of the shapes in H_ii, H_io and H_oo, shape (orders, 3, shapes)."""
-    return _products(part.faces)
-
-
-def _products(faces: FloatArray) -> FloatArray:
-    inner, outer = faces[:, 0], faces[:, 1]
-    return np.stack([inner * inner, inner * outer, outer * outer], axis=1)

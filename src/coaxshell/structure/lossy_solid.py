@@ -96,7 +96,7 @@ class LossySolidWall(ElasticWall):
         self._stations.prepare(modes)
         self._faces.prepare(modes)
 
-    def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
+    def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
         return self._per_load(self._reading(asked).at(modes, s)[1])
 

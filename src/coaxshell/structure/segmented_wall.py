@@ -26,6 +26,11 @@ class SegmentedWall(TiedWall):
 
     segments: Segments
 
+    @property
+    def electrode_segments(self) -> Segments | None:
+        """Segments of its electrodes."""
+        return self.segments
+
     def _spread(self, modes: Modes) -> FloatArray:
         """Return the sum of r_m |P| |S|/M over all orders of the pattern of each order."""
         orders = np.arange(0.0, modes.orders.max() + 1.0)

@@ -29,6 +29,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.control_law import ControlLaw
 from coaxshell.structure.losses import Relaxation
+from coaxshell.structure.segments import Segments
 
 Ratio = TypeVar("Ratio", FloatArray, ComplexArray)
 
@@ -354,6 +355,11 @@ class ShellModel(ABC):
 
     def layer_number(self, role: str) -> int | None:
         """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
+        return None
+
+    @property
+    def electrode_segments(self) -> Segments | None:
+        """Segments into which its electrodes are cut; None where they are whole."""
         return None
 
     @property

@@ -202,6 +202,10 @@ class Loop(NamedTuple):
         Voltages per inward load on either face.
     sensed : ndarray, shape (2, orders, nodes)
         What the control law reads per inward load on either face.
+    given : ndarray, shape (driven, orders, nodes)
+        Voltages per volt that is given to all actuators beside what the law asks for.
+    heard : ndarray, shape (orders, nodes)
+        What the control law reads of that volt.
     characteristic : ndarray, shape (orders, nodes)
         det(1 - L Y).
     """
@@ -209,6 +213,8 @@ class Loop(NamedTuple):
     moved: ComplexArray
     volts: ComplexArray
     sensed: ComplexArray
+    given: ComplexArray
+    heard: ComplexArray
     characteristic: ComplexArray
 
 
@@ -279,12 +285,14 @@ def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], tran
     gains = np.broadcast_to(law, shape)
     laws = np.diag(opened)[..., None, None] + np.multiply.outer(np.outer(acting, sensing), gains)
     matrix = np.eye(count)[..., None, None] - np.einsum("ijmk,jlmk->ilmk", laws, answer)
-    asked = np.einsum("ijmk,jbmk->ibmk", laws, read)
+    given = np.broadcast_to(acting[:, None, None, None], (count, 1, *shape))
+    asked = np.concatenate([np.einsum("ijmk,jbmk->ibmk", laws, read), given], axis=1)
     if count == 1:
         volts, characteristic = asked / matrix[:, :1], matrix[0, 0]
     else:
         square = np.moveaxis(matrix, (0, 1), (-2, -1))
         volts = np.moveaxis(np.linalg.solve(square, np.moveaxis(asked, (0, 1), (-2, -1))), (-2, -1), (0, 1))
         characteristic = np.linalg.det(square)
-    sensed = np.einsum("j,jbmk->bmk", sensing, read + np.einsum("ijmk,jbmk->ibmk", answer, volts))
-    return Loop(moved, volts, sensed, characteristic)
+    heard = np.einsum("i,ibmk->bmk", sensing, np.einsum("ijmk,jbmk->ibmk", answer, volts))
+    sensed = np.einsum("j,jbmk->bmk", sensing, read) + heard[:2]
+    return Loop(moved, volts[:, :2], sensed, volts[:, 2], heard[2], characteristic)

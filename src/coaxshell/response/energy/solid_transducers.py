@@ -16,8 +16,11 @@ def volts_of(motion: Motion, shell: int) -> ComplexArray | None:
     wall, solid = motion.problem.shells[shell], motion.solid
     assert isinstance(wall, ElasticWall)
     assert solid is not None
-    loop = wall.loop(motion.modes, motion.grid.nodes)
-    return None if loop is None else np.asarray(np.einsum("jbmk,bhmk->jhmk", loop.volts, solid.loads[:, shell]))
+    loop = wall.loop(motion.modes, motion.grid.nodes, fed_back=motion.voltage is None)
+    if loop is None:
+        return None
+    found = np.einsum("jbmk,bhmk->jhmk", loop.volts, solid.loads[:, shell])
+    return np.asarray(found if motion.voltage is None else found + loop.given[:, None] * motion.voltage[shell])
 
 
 def driven_at(wall: ElasticWall, motion: Motion, order: int) -> FloatArray:
