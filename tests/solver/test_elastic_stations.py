@@ -197,7 +197,7 @@ def test_blocks_elsewhere_find_the_same(monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"source": cx.PlaneWave(pulse=SLOW, inclination=20.0)}, r"source\.inclination: a wave along the axis has complex wavenumbers"),
+        ({"source": cx.PlaneWave(pulse=SLOW, inclination=20.0)}, r"source\.inclination: 20 degrees: .* pressure waves in the .* run ahead"),
         (
             {"absorbers": [cx.Absorber(mass=5.0, linear_stiffness=1e8, inner_shell=1, inertance=1.0)]},
             "absorbers: line absorbers with laws, inertance, or a mass on one shell alone are solved in two dimensions",

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import limits_currents, limits_voltages, segments_of, ties_shells
+from coaxshell.model.gains import law_of, limits_currents, limits_voltages, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
+from coaxshell.structure.constituents import loses
 
 _WORDS = {"z": "{:g} m is off the plane", "inclination": "{:g} degrees lead out of the plane"}
 
@@ -31,21 +32,30 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 
 
 def require_sources_alone(system: System, dimensions: int) -> None:
-    """Raise InputError if more than sources whose waves do not travel along the axis is asked of a system with elastic walls."""
+    """Raise InputError if a system has electrodes or elastic walls under what is not known of them."""
     _require_ties(system, dimensions)
     _require_linear_electrodes(system)
     solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
-    if solid is None:
-        return
-    thin = f'or shells[{solid}].theory = "thin"'
-    for number, source in enumerate(system.sources if dimensions == 3 else ()):
-        if getattr(source, "inclination", 0.0):
-            where = f"source[{number}]" if isinstance(system.source, tuple) else "source"
-            problem = f"a wave along the axis has complex wavenumbers, which shells[{solid}], an elastic wall, does not know"
-            raise InputError(f"{where}.inclination", problem, f"use inclination = 0, {thin}")
-    if limits_currents(system):
+    if solid is not None and limits_currents(system):
         problem = f"the current into shells[{solid}], an elastic wall, has no limit that is marched yet"
-        raise InputError("control.current_saturation", problem, f"leave it out and compare current and limit, {thin}")
+        remedy = f'leave it out and compare current and limit, or shells[{solid}].theory = "thin"'
+        raise InputError("control.current_saturation", problem, remedy)
+    inclined = next((i for i, source in enumerate(system.sources) if getattr(source, "inclination", 0.0)), None)
+    if dimensions == 3 and inclined is not None:
+        where = f"source[{inclined}]" if isinstance(system.source, tuple) else "source"
+        _require_plain_solids(system, f"{where}.inclination")
+
+
+def _require_plain_solids(system: System, where: str) -> None:
+    """Raise InputError if an elastic wall that an inclined wave meets is under control or has losses."""
+    for i, shell in enumerate(system.shells):
+        if not isinstance(shell, Shell) or shell.theory != "elastic":
+            continue
+        controlled = law_of(system, i) is not None
+        if controlled or any(loses(layer.material) for layer in shell.layers):
+            what = "under control" if controlled else "with losses, or layers as soft as rubber"
+            problem = f"a wave that runs along shells[{i}], an elastic wall {what}, is not solved"
+            raise InputError(where, problem, f'use inclination = 0, or shells[{i}].theory = "thin"')
 
 
 def _require_linear_electrodes(system: System) -> None:

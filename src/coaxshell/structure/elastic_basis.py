@@ -116,15 +116,24 @@ def elastic_basis(
     """
     assert isinstance(modes.wavenumber, (int, float))
     wavenumber = float(modes.wavenumber)
-    needed = np.stack([degrees(layer, modes.orders, wavenumber, frequency) for layer in meshed_as or layers], axis=1)
+    meshes = order_meshes(tuple(layers), modes.orders, wavenumber, frequency, meshed_as)
+    return tuple(orders_basis(mesh, members, modes.orders[members], wavenumber) for members, mesh in meshes)
+
+
+def order_meshes(
+    layers: tuple[SolidLayer, ...], orders: FloatArray, wavenumber: float, frequency: float, meshed_as: Sequence[SolidLayer] | None = None
+) -> list[tuple[slice, WallMesh]]:
+    """Return the meshes of some orders at an axial wavenumber, and the places of the orders that share each."""
+    needed = np.stack([degrees(layer, orders, wavenumber, frequency) for layer in meshed_as or layers], axis=1)
     steps = np.ceil(needed / STEP).astype(int)
-    edges = [0, *(1 + np.flatnonzero(np.any(np.diff(steps, axis=0), axis=1))), modes.count]
-    found = []
-    for start, stop in pairwise(edges):
-        members = slice(int(start), int(stop))
-        mesh = _mesh(tuple(layers), tuple(int(p) for p in needed[members].max(axis=0)))
-        found.append(orders_basis(mesh, members, modes.orders[members], wavenumber))
-    return tuple(found)
+    edges = [0, *(1 + np.flatnonzero(np.any(np.diff(steps, axis=0), axis=1))), orders.size]
+    members = [slice(int(start), int(stop)) for start, stop in pairwise(edges)]
+    return [(some, _mesh(layers, tuple(int(p) for p in needed[some].max(axis=0)))) for some in members]
+
+
+def stiffness_powers(mesh: WallMesh) -> FloatArray:
+    """Return K of (u_r, u_theta, u_z) without potentials by 1, m, m^2, k, k^2 and m k, (6, n, n), over the roots of the mass."""
+    return _linear_rows(mesh)[1]
 
 
 _mesh = lru_cache(maxsize=64)(wall_mesh)
@@ -219,10 +228,13 @@ def strain_rows(mesh: WallMesh, orders: FloatArray, wavenumber: float) -> FloatA
     return np.concatenate(rows, axis=1)
 
 
-def layer_strains(part: LayerMesh, orders: FloatArray, wavenumber: float) -> FloatArray:
-    """Return the strains at the points of a layer, shape (orders, 6, points, displacements, points)."""
+def layer_strains(part: LayerMesh, orders: FloatArray, wavenumber: float, taking: int | None = None) -> FloatArray:
+    """Return the strains at the points of a layer, shape (orders, 6, points, displacements, points).
+
+    ``taking`` is how many displacements take part, unless told all that do at the wavenumber.
+    """
     local = strains(orders, wavenumber, part.radius, part.derivative, np.eye(part.radius.size))
-    return local[:, :, :, : displacements(wavenumber)]
+    return local[:, :, :, : displacements(wavenumber) if taking is None else taking]
 
 
 class PotentialOfLayer:
@@ -239,10 +251,12 @@ class PotentialOfLayer:
     ----------
     rows : ndarray, shape (orders, p - 1, displacements, points)
         L^-1 Q, G = L L'.
+    root : ndarray, shape (orders, p - 1, p - 1)
+        L.
     """
 
-    def __init__(self, part: LayerMesh, orders: FloatArray, wavenumber: float) -> None:
-        layer, local = part.layer, layer_strains(part, orders, wavenumber)
+    def __init__(self, part: LayerMesh, orders: FloatArray, wavenumber: float, taking: int | None = None) -> None:
+        layer, local = part.layer, layer_strains(part, orders, wavenumber, taking)
         assert layer.coupling is not None
         assert layer.permittivity is not None
         e, mu, weights, inside = np.array(layer.coupling), layer.permittivity, part.weights, slice(1, -1)
@@ -258,20 +272,20 @@ class PotentialOfLayer:
         charge = -(weights[:, None, None] * around)[:, inside]
         flat = charge.reshape(*charge.shape[:2], -1)
         flat += (slope * weights[:, None]).T @ radial.reshape(*radial.shape[:2], -1)
-        self._root = np.linalg.cholesky(electric)
-        self.rows: FloatArray = np.linalg.solve(self._root, flat).reshape(charge.shape)
+        self.root: FloatArray = np.linalg.cholesky(electric)
+        self.rows: FloatArray = np.linalg.solve(self.root, flat).reshape(charge.shape)
 
     @property
     def per_row(self) -> FloatArray:
         """Return Phi at the points of the layer per unit of each row, L'^-1, shape (orders, points, p - 1)."""
-        inverse = np.linalg.inv(np.swapaxes(self._root, 1, 2))
+        inverse = np.linalg.inv(np.swapaxes(self.root, 1, 2))
         return np.pad(inverse, ((0, 0), (1, 1), (0, 0)))
 
     @property
     def values(self) -> FloatArray:
         """Return Phi at the points of the layer per displacement there, shape (orders, points, displacements, points)."""
         flat = self.rows.reshape(*self.rows.shape[:2], -1)
-        inner = np.linalg.solve(np.swapaxes(self._root, 1, 2), flat).reshape(self.rows.shape)
+        inner = np.linalg.solve(np.swapaxes(self.root, 1, 2), flat).reshape(self.rows.shape)
         return np.pad(inner, ((0, 0), (1, 1), (0, 0), (0, 0)))
 
 

@@ -19,7 +19,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from coaxshell.errors import InputError
 from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
@@ -30,6 +29,7 @@ from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
+from coaxshell.structure.solid_inclined import InclinedPlace, inclined_answers
 from coaxshell.structure.solid_ports import Port, UnderVoltage, VoltPort, of_faces, per_volt, products
 from coaxshell.structure.solid_transducers import (
     Driven,
@@ -170,12 +170,6 @@ class ElasticWall(ShellModel):
         return tuple(replace(part, shapes=part.shapes * answering[..., None, None]) for part, answering in zip(found, slow, strict=True))
 
     def _shapes(self, modes: Modes) -> tuple[OrdersBasis, ...]:
-        if np.ndim(modes.wavenumber):
-            raise InputError(
-                "source.inclination",
-                "a wave along the axis meets an elastic wall at complex wavenumbers, which its shapes do not have",
-                'use inclination = 0, or theory = "thin"',
-            )
         return elastic_basis(self.layers, modes, self.frequency, self.meshed_as)
 
     def prepare(self, modes: Modes) -> None:
@@ -184,6 +178,8 @@ class ElasticWall(ShellModel):
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
+        if np.ndim(modes.wavenumber):
+            return self._inclined(modes, s, [])[0]
         found = self._summed(modes, s, [of_faces(part) for part in self.basis(modes)])
         loop = self.loop(modes, s)
         return FaceReceptance(*found) if loop is None else self._closed(found, loop)
@@ -207,9 +203,20 @@ class ElasticWall(ShellModel):
 
         Without being ``fed_back`` its actuators are given no voltage.
         """
+        if np.ndim(modes.wavenumber):
+            return self._inclined(modes, s, asked)[1]
         found = self._summed(modes, s, self._weights(modes, asked))
         shown, loop = found.reshape(-1, 2, *found.shape[1:]), self.loop(modes, s, fed_back=fed_back)
         return shown if loop is None else shown + self._by_volts(modes, s, asked, loop)
+
+    def _inclined(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> tuple[FaceReceptance, ComplexArray]:
+        """Return the receptances of its faces and quantities per inward load on either of them in a wave that runs along the axis."""
+        last = len(self.layers) - 1
+        faces = [InclinedPlace("normal", self.wetted[0], 0), InclinedPlace("normal", self.wetted[1], last)]
+        places = [InclinedPlace(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked]
+        found = inclined_answers(self.layers, modes, s, self.frequency, [*faces, *places])
+        found *= -1.0  # an inward load q at r is a force -r q
+        return FaceReceptance(found[0, 0], found[0, 1], found[1, 1]), found[2:] * np.array(self.wetted)[:, None, None]
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
@@ -324,6 +331,10 @@ class ElasticWall(ShellModel):
         W, V and U of the middle, the six stresses at the design depth (:data:`coaxshell.structure.elastic_depth.STRESSES`) and the
         potentials; at :attr:`depth_read` all but the potentials, if there is one. Under control what the law reads and gives come last.
         """
+        if np.ndim(modes.wavenumber):
+            receptance, per_load = self._inclined(modes, s, self.asked_of_stations if reads else [])
+            per_load[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
+            return receptance, per_load
         parts, ports = [], self.ports(modes)
         for port in ports:
             pressed, weights = -port.faces * np.array(self.wetted)[:, None], products(port.faces)

@@ -3,7 +3,8 @@
 A plane wave inclined by alpha runs along the axis at 1/sin alpha (in c_e) from the infinite past. What travels along the axis faster
 than that gets ahead of it: then nothing is at rest before the front comes, and there is no start.
 
-Bending waves get faster with frequency. With b^2 = I/d11 and n = m/R, those that keep pace with the trace have
+In a wall of elastic solids nothing is faster than the pressure waves of its layers. In a thin one bending waves get faster with
+frequency. With b^2 = I/d11 and n = m/R, those that keep pace with the trace have
 
     b omega = n^2 + (k^2 = omega^2 sin^2 alpha),        omega = [b +- sqrt(b^2 - 4 n^2 sin^2 alpha)]/(2 sin^2 alpha),
 
@@ -67,7 +68,8 @@ def _waves(problem: Problem) -> Iterator[tuple[str, float]]:
         if fluid is not None:
             yield f"sound in {region_phrase(i, count)}", 1.0 / fluid.slowness
     for i, wall in enumerate(problem.shells):
-        yield f"membrane waves in the {shell_phrase(i, count)}", wall.fastest_wave(0.0)
+        kind = "membrane" if wall.faces_move_alike else "pressure"
+        yield f"{kind} waves in the {shell_phrase(i, count)}", wall.fastest_wave(0.0)
 
 
 def _require_fast_trace(problem: Problem, where: str, geometry: PlaneGeometry) -> None:

@@ -1,0 +1,255 @@
+"""Walls of solid layers in waves that run along the axis with a front: one complex wavenumber k = -i s sin(alpha) for each Laplace node.
+
+No shapes serve them, because k depends on s; but stiffness is a polynomial in m and k, and so is all that a ceramic's potentials, kept
+as unknowns beside the displacements, add to it:
+
+    [K(m, k) + M s^2   Q'(m, k)] [x  ]   [f]
+    [Q(m, k)          -G(m, k) ] [Phi] = [0],
+
+each entry a sum over 1, m, m^2, k, k^2 and m k of real matrices that are made once a mesh (:class:`InclinedMesh`). It is solved for a unit
+force on either face, at each order and node: what lies within a layer, I, is eliminated by its ends, B, and what is left ties the joints,
+
+    S = A_JJ - sum over layers of A_IB' X,      X = A_II^-1 A_IB,      x_I = -X x_B.
+
+Displacements are divided by the root of the mass, potentials by that of G(0, 0).
+
+Fronts that lead everything, sin(alpha) less than c_e over the fastest speed of any layer, make x causal
+(:mod:`coaxshell.solver.axial.inclination`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.lobatto import interpolation
+from coaxshell.numerics.modes import Modes
+from coaxshell.structure.elastic_basis import PotentialOfLayer, order_meshes, stiffness_powers
+from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown
+from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, strains
+from coaxshell.structure.solid import SolidLayer
+
+_DISPLACEMENTS = 3
+_SAMPLES = ((0.0, (0.0, 1.0, 2.0)), (1.0, (0.0, 1.0)), (2.0, (0.0,)))
+"""Wavenumbers, and orders at each, that tell a polynomial of second degree in both."""
+_BYTES = 2**25
+"""Matrices of several nodes that are solved together."""
+
+
+class InclinedPlace(NamedTuple):
+    """A quantity at a radius of a layer, by the layer's number."""
+
+    what: Shown
+    radius: float
+    layer: int
+
+
+class InclinedMesh:
+    """The equations of a wall on one mesh, by powers of m and k.
+
+    Attributes
+    ----------
+    mesh : WallMesh
+    powers : ndarray, shape (6, N, N)
+        Of 1, m, m^2, k, k^2 and m k.
+    inertia : ndarray, shape (N,)
+        1 of displacements, 0 of potentials.
+    """
+
+    def __init__(self, mesh: WallMesh) -> None:
+        self.mesh = mesh
+        self._root = np.tile(np.sqrt(mesh.mass), _DISPLACEMENTS)
+        count = self._root.size
+        self._ceramics = {part: _Electric(part) for part in mesh.layers if part.layer.coupling is not None}
+        total = count + sum(one.size for one in self._ceramics.values())
+        self.powers = np.zeros((6, total, total))
+        self.powers[:, :count, :count] = stiffness_powers(mesh)
+        self.inertia = np.where(np.arange(total) < count, 1.0, 0.0)
+        self._place: dict[LayerMesh, slice] = {}
+        start = count
+        for part, one in self._ceramics.items():
+            own = self._place[part] = slice(start, start + one.size)
+            columns = self._columns(part)
+            coupling = one.coupling / self._root[columns]
+            self.powers[:, own, columns] += coupling
+            self.powers[:, columns, own] += np.swapaxes(coupling, 1, 2)
+            self.powers[:, own, own] -= one.permittivity
+            start = own.stop
+
+        self._joints, self._layers = self._parts()
+        self._between = self.powers[np.ix_(range(6), self._joints, self._joints)]
+
+    def _parts(self) -> tuple[list[int], list[_Within]]:
+        """Return the places of the displacements of all joints, and what lies within each layer."""
+        points = self.mesh.radius.size
+        ends = [self.mesh.layers[0].nodes.start, *(part.nodes.stop - 1 for part in self.mesh.layers)]
+        joints = [which * points + end for which in range(_DISPLACEMENTS) for end in ends]
+        found = []
+        for part in self.mesh.layers:
+            columns, edges = self._columns(part), (part.nodes.start, part.nodes.stop - 1)
+            held = [place for place in columns if place % points in edges]
+            potentials = self._place.get(part, slice(0, 0))
+            inner = [*(place for place in columns if place not in held), *range(potentials.start, potentials.stop)]
+            own, across = (self.powers[np.ix_(range(6), inner, some)] for some in (inner, held))
+            found.append(_Within(inner, [joints.index(place) for place in held], own, across, self.inertia[inner]))
+        return joints, found
+
+    def _columns(self, part: LayerMesh) -> list[int]:
+        """Return the places of the displacements at the points of a layer."""
+        points = range(part.nodes.start, part.nodes.stop)
+        return [which * self.mesh.radius.size + point for which in range(_DISPLACEMENTS) for point in points]
+
+    def rows(self, place: InclinedPlace) -> FloatArray:
+        """Return a quantity per unit of each unknown, by 1, m and k, shape (3, N)."""
+        part = self.mesh.layers[place.layer]
+        inside = 2.0 * (place.radius - part.layer.inner) / part.layer.thickness - 1.0
+        at = interpolation(part.degree, min(max(inside, -1.0), 1.0))
+        found, columns = np.zeros((3, self.inertia.size)), self._columns(part)
+        if place.what in DISPLACEMENTS:
+            which, sign = DISPLACEMENTS[place.what]
+            values = np.zeros((_DISPLACEMENTS, at.size))
+            values[which] = sign * at
+            found[0, columns] = values.ravel() / self._root[columns]
+            return found
+        if place.what == "potential":
+            found[0, self._place[part]] = self._ceramics[part].values(at)
+            return found
+        component, slope = STRESSES[place.what], at @ part.derivative
+        local = [strains(np.array([m]), k, np.array([place.radius]), slope[None], at[None])[0, :, 0] for m, k in ((0, 0), (1, 0), (0, 1))]
+        each = np.stack([local[0], local[1] - local[0], local[2] - local[0]])
+        found[:, columns] = np.einsum("j,ajcp->acp", part.layer.matrix[component], each).reshape(3, -1) / self._root[columns]
+        if part in self._ceramics:
+            e, one = np.array(part.layer.coupling)[:, component], self._ceramics[part]
+            field = np.stack([e[0] * one.values(slope), -e[1] / place.radius * one.values(at), -e[2] * one.values(at)])
+            found[:, self._place[part]] = field
+        return found
+
+    def solve(self, order: float, wavenumber: ComplexArray, s: ComplexArray, rows: FloatArray) -> ComplexArray:
+        """Return quantities per unit force along r on the inner and on the outer face of one order, shape (quantities, 2, nodes).
+
+        Parameters
+        ----------
+        order : float
+        wavenumber, s : ndarray, shape (nodes,)
+        rows : ndarray, shape (quantities, 3, N)
+        """
+        size, outer = self.inertia.size, self.mesh.radius.size - 1
+        forces = np.zeros((size, 2))
+        forces[[0, outer], [0, 1]] = 1.0 / self._root[[0, outer]]
+        found = np.empty((len(rows), 2, s.size), np.complex128)
+        step, flat = max(1, _BYTES // (16 * size * size)), rows.reshape(-1, size)
+        for start in range(0, s.size, step):
+            some = slice(start, start + step)
+            k, square = wavenumber[some], s[some] ** 2
+            matrix, eliminated = _at(self._between, order, k), []
+            _add_inertia(matrix, square, self.inertia[self._joints])
+            for one in self._layers:
+                own, across = _at(one.own, order, k), _at(one.across, order, k)
+                _add_inertia(own, square, one.inertia)
+                eliminated.append(np.linalg.solve(own, across))
+                matrix[:, np.array(one.ends)[:, None], one.ends] -= np.swapaxes(across, 1, 2) @ eliminated[-1]
+            joints = np.linalg.solve(matrix, np.broadcast_to(forces[self._joints], (k.size, len(self._joints), 2)))
+            answer = np.empty((k.size, size, 2), np.complex128)
+            answer[:, self._joints] = joints
+            for one, x in zip(self._layers, eliminated, strict=True):
+                answer[:, one.inner] = -(x @ joints[:, one.ends])
+            shown = np.moveaxis((flat @ answer).reshape(k.size, len(rows), 3, 2), 0, -1)
+            found[..., some] = shown[:, 0] + order * shown[:, 1] + k * shown[:, 2]
+        return found
+
+
+class _Within(NamedTuple):
+    """What lies within a layer: its places among the unknowns, its ends among the joints, A_II and A_IB by powers, and what has inertia."""
+
+    inner: list[int]
+    ends: list[int]
+    own: FloatArray
+    across: FloatArray
+    inertia: FloatArray
+
+
+def _at(powers: FloatArray, order: float, k: ComplexArray) -> ComplexArray:
+    """Return a matrix at an order and wavenumbers, shape (nodes, rows, columns), from its powers."""
+    fixed = powers[0] + order * powers[1] + order**2 * powers[2]
+    linear, along = powers[3] + order * powers[5], k[:, None, None]
+    return np.asarray(fixed + along * linear + (along * along) * powers[4])
+
+
+def _add_inertia(matrix: ComplexArray, square: ComplexArray, inertia: FloatArray) -> None:
+    places = np.arange(inertia.size)
+    matrix[:, places, places] += square[:, None] * inertia
+
+
+class _Electric:
+    """The potential of a piezoelectric layer between grounded faces as unknowns: Q and G by powers of m and k, over the root of G(0, 0).
+
+    Attributes
+    ----------
+    coupling : ndarray, shape (6, p - 1, 3 (p + 1))
+    permittivity : ndarray, shape (6, p - 1, p - 1)
+    size : int
+        p - 1.
+    """
+
+    def __init__(self, part: LayerMesh) -> None:
+        coupling, permittivity = {}, {}
+        for k, orders in _SAMPLES:
+            potential = PotentialOfLayer(part, np.array(orders), k, _DISPLACEMENTS)
+            for place, m in enumerate(orders):
+                root = potential.root[place]
+                coupling[m, k] = root @ potential.rows[place].reshape(len(root), -1)
+                permittivity[m, k] = root @ root.T
+        self._root = np.linalg.cholesky(permittivity[0.0, 0.0])
+        self.size = len(self._root)
+        self.coupling = np.linalg.solve(self._root, _powers(coupling))
+        self.permittivity = np.linalg.solve(self._root, np.swapaxes(np.linalg.solve(self._root, _powers(permittivity)), 1, 2))
+
+    def values(self, at: FloatArray) -> FloatArray:
+        """Return a sum over the points of the layer of the potential there, per unit of each unknown, shape (p - 1,)."""
+        return np.asarray(np.linalg.solve(self._root, at[1:-1]))
+
+
+def _powers(sampled: dict[tuple[float, float], FloatArray]) -> FloatArray:
+    """Return the polynomial in m and k through its values at (m, k) of :data:`_SAMPLES`: of 1, m, m^2, k, k^2 and m k."""
+    f = sampled
+    fixed = f[0.0, 0.0]
+    around2, along2 = 0.5 * (f[2.0, 0.0] - 2.0 * f[1.0, 0.0] + fixed), 0.5 * (f[0.0, 2.0] - 2.0 * f[0.0, 1.0] + fixed)
+    around, along = f[1.0, 0.0] - fixed - around2, f[0.0, 1.0] - fixed - along2
+    both = f[1.0, 1.0] - fixed - around - around2 - along - along2
+    return np.stack([fixed, around, around2, along, along2, both])
+
+
+_made = lru_cache(maxsize=64)(InclinedMesh)
+
+
+def inclined_answers(
+    layers: Sequence[SolidLayer], modes: Modes, s: ComplexArray, frequency: float, places: Sequence[InclinedPlace]
+) -> ComplexArray:
+    """Return quantities per unit outward force on the inner and on the outer face, shape (quantities, 2, orders, nodes).
+
+    Parameters
+    ----------
+    layers : sequence of SolidLayer
+        Dimensionless, without losses.
+    modes : Modes
+        Of one wavenumber for each node.
+    s : ndarray, shape (nodes,)
+    frequency : float
+        Up to which waves are resolved, radians per transit.
+    places : sequence of InclinedPlace
+    """
+    k = np.broadcast_to(np.asarray(modes.wavenumber, np.complex128), s.shape)
+    shortest = frequency * float(np.max(np.abs(k) / np.abs(s)))
+    found = np.empty((len(places), 2, modes.count, s.size), np.complex128)
+    with one_blas_thread():  # many small matrices
+        for members, mesh in order_meshes(tuple(layers), modes.orders, shortest, frequency):
+            equations = _made(mesh)
+            rows = np.stack([equations.rows(place) for place in places])
+            for order in range(members.start, members.stop):
+                found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows)
+    return found
