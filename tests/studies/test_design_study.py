@@ -13,7 +13,7 @@ from coaxshell.studies import OptimisationStudy, read_study
 
 STUDIES = Path(__file__).parents[2] / "docs" / "studies"
 NAMES = ["a-equal-absorbers", "b-25-free", "b-60-free", "b-mirror-pairs", "c-hybrid", "d-mass-front", "e-robust-free"]
-SCRIPTS = ["c-electrodes", "d-front"]
+SCRIPTS = ["c-electrodes", "d-front", "optima-in-space"]
 
 
 def test_every_study_has_a_result():
