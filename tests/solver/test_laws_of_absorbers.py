@@ -10,11 +10,15 @@ from numpy.testing import assert_allclose
 
 import coaxshell as cx
 from coaxshell import Response
+from coaxshell.acoustics.basis import Modes
 from coaxshell.model import presets
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface.absorbers import absorber_set, side_admittance
+from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 BARE = presets.load("bare")
 LAWS = cx.laws
@@ -226,3 +230,15 @@ def test_saturation_beside_laws_is_refused():
     system = of(single(law=FULL["stops"]), system=BARE.replace(control=cx.PDControl(proportional=-2e4, derivative=-150, saturation=True)))
     with pytest.raises(cx.InputError, match="saturation"):
         run(system)
+
+
+def test_links_begin_at_rest_whatever_the_band_limit_leaves_of_the_motion_then():
+    system = of(cx.Absorber(angle=0, mass=1e6, law=LAWS.Polynomial([1.0])))  # it yields to everything
+    problem = dimensionless(system)
+    structure = StructureSpectra(problem, LaplaceGrid(2e-2, 60), Modes.up_to(6))
+    links = absorber_set(problem, system.absorber_list, 1)
+    moved, _ = structure.motion_at(structure.points(links))
+    assert abs(moved[:, 0]).max() > 1e-6 * abs(moved).max()
+    found = march_interface(structure, links).laws
+    assert found is not None
+    assert_allclose(found.stretch[:, 1:], -moved[:, 1:], rtol=0, atol=1e-8 * abs(moved).max())

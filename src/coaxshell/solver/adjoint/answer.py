@@ -25,7 +25,6 @@ from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.spectral import node_blocks
-from coaxshell.solver.structure_spectra import StructureSpectra
 
 
 class Reading(NamedTuple):
@@ -200,13 +199,13 @@ def _marched_by_laws(solved: SolvedSpectra, points: InterfacePoints, per_pressur
     back = march_backwards(structure.kernels_transposed, absorbers, points, laws, points.project_transposed(pressure), grid.time_step)
     pressure -= back.velocity
     of_stretch = laws.stretch_slope.T
-    damping_of_start = _of_the_first_instant(structure, absorbers, points, of_stretch, back.law)
+    of_stretch[:, 0] = 0.0  # links begin at rest, whatever the inverse transform leaves of w_0
     walls = [(-back.force, forward.forced_velocity), (-of_stretch, structure.linear_displacement)]
     own = np.array([[bars[0][0], bars[0][1], bars[1][2]] if bars else np.zeros(3) for bars in laws.sensitivity.elements])
     stiffness, damping, cubic = own.reshape(2, absorbers.count, 3).sum(axis=0).T
     links = LinkSensitivity(
         mass=np.einsum("nt,nt->n", back.mass, forward.mass_acceleration),
-        damping=damping + damping_of_start,
+        damping=damping,
         linear=stiffness,
         cubic=cubic,
         around=_around(solved, points, (done.force, pressure), walls),
@@ -217,24 +216,6 @@ def _marched_by_laws(solved: SolvedSpectra, points: InterfacePoints, per_pressur
     felt = Felt(displacement, np.zeros_like(displacement), forced, forward.modal_force)
     given = None if solved.solid is None else middles_transform(grid, forward.modal_force)
     return Backwards(reading, links, felt, tighter, pressure=given)
-
-
-def _of_the_first_instant(
-    structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints, of_stretch: FloatArray, law: FloatArray
-) -> FloatArray:
-    """Set what the walls' displacement w_0 at the first instant changes, and return its part of the common dampers' slopes, (N,).
-
-    D begins at 0 and is twice the mean less the one before, so that w_0, which the inverse transform leaves at the first instant, stays
-    in it from step to step, D_n = -w_n + (-1)^n w_0; the dampers take the rate of w itself.
-    """
-    assert absorbers.elements is not None
-    dt, count = structure.grid.time_step, absorbers.count
-    signs = (-1.0) ** np.arange(law.shape[1])
-    signs[0] = 0.0
-    damping = np.tile(absorbers.damping, 2) * absorbers.elements.present
-    of_stretch[:, 0] = -(of_stretch @ signs) + damping * (law @ signs) * (2.0 / dt)
-    start = points.evaluate(structure.linear_displacement[..., 0])
-    return np.asarray((-2.0 / dt * (law @ signs) * start * absorbers.elements.present).reshape(2, count).sum(axis=0))
 
 
 def _first(absorbers: AbsorberSet) -> list[int]:

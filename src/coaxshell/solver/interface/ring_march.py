@@ -27,8 +27,10 @@ from coaxshell.solver.structure_spectra import StructureSpectra
 
 LINKS = 24
 """Links 2N from which on a ring is marched so: fewer take less by one matrix."""
-_STEPS = 16
-"""Of a block."""
+_BLOCK_NUMBERS = 2048
+"""Classes times steps of a block at most: above, what a class answers leaves the processor's cache."""
+_STEPS = 32
+"""Of a block, at most."""
 _MOST_ITERATIONS = 30
 _SLOWEST = 0.15
 """The change of an iteration over that of the one before it, at most, where fewer steps could be taken at once."""
@@ -101,7 +103,7 @@ class RingPlan:
         project = [one[: absorbers.count].T @ shapes for _, one in maps]
         if any(one.size != absorbers.count for one in rows):
             return None
-        steps = min(_STEPS, table.steps)
+        steps = min(_STEPS if len(shapes) * _STEPS <= _BLOCK_NUMBERS else _STEPS // 2, table.steps)
         own = _of_classes(points, table.kernels[..., :steps], evaluate, project, surfaces)
         every = LinkConstants.of(absorbers, np.zeros(2 * absorbers.count) + own[:, [0, 1], [0, 1], 0].max(), structure.grid.time_step)
         if every.auxiliary_stiffness.any():
@@ -120,7 +122,7 @@ class RingPlan:
 
     @property
     def steps(self) -> int:
-        """Of a block."""
+        """Number of steps of a block."""
         return int(self.mass_velocity.shape[1])
 
     def excited(self, modal: FloatArray) -> FloatArray:
@@ -250,7 +252,7 @@ def _march_block(
     links, count, half = plan.links, len(displacement), plan.links.half_step
     integral = half * (2.0 * np.tri(count, k=-1) + np.eye(count))
     excited = plan.excited(plan.kernels.forcing(state.history, count))
-    free_w = np.tensordot(integral, excited, 1) + (state.displacement + half * state.velocity)
+    free_w = _integrated(integral, excited) + (state.displacement + half * state.velocity)
     free_u = state.mass_velocity - links.mobility * state.force.sum(axis=0)
     free_q = state.mass_displacement + half * state.mass_velocity + integral.sum(axis=1)[:, None] * free_u
     free_stretch = free_q[:, None] - displacement - free_w
@@ -266,7 +268,7 @@ def _march_block(
     moved = plan.excited(own)
     after = _State(
         force[-1],
-        free_w[-1] + np.tensordot(integral[-1], moved, 1),
+        free_w[-1] + _integrated(integral[-1:], moved)[0],
         excited[-1] + moved[-1],
         mass[-1],
         free_u + u[-1],
@@ -274,6 +276,11 @@ def _march_block(
         together,
     )
     return after, force, mass, iterations
+
+
+def _integrated(rule: FloatArray, values: FloatArray) -> FloatArray:
+    """Return a rule (instants, steps) of values (steps, 2, classes)."""
+    return np.asarray(rule @ values.reshape(len(values), -1)).reshape(-1, *values.shape[1:])
 
 
 def _flat(values: FloatArray) -> FloatArray:

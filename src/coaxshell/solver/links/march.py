@@ -98,8 +98,13 @@ def march_links(
 
 
 def _means(motion: MotionWithout, step: float) -> MotionWithout:
-    """Return the means of the displacement over the steps before the instants, and of the velocity, whose integral it is."""
-    w = motion.displacement
+    """Return the means of the displacement over the steps before the instants, and of the velocity, whose integral it is.
+
+    At t = 0 all is at rest, as the links are: the little that the band limit leaves of w there would go on in their stretches,
+    D_n = 2 D~_n - D_{n-1}, with a sign that changes at every step.
+    """
+    w = motion.displacement.copy()
+    w[0] = 0.0
     before = np.concatenate([np.zeros_like(w[:1]), w[:-1]])
     return MotionWithout(0.5 * (w + before), (w - before) / step, motion.demanded_voltage)
 
