@@ -13,9 +13,10 @@ import coaxshell as cx
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure import elastic_mesh
 from coaxshell.structure.axial import natural_frequencies
-from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums, orders_basis, strain_rows
+from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, orders_basis, strain_rows
 from coaxshell.structure.elastic_mesh import wall_mesh
 from coaxshell.structure.section import section
+from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.solid import SolidLayer, require_solid, solid_layers
 
 STEEL = cx.Elastic(name="steel", density=7800, youngs_modulus=210e9, poisson_ratio=0.3)

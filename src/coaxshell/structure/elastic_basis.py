@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, degrees, strains, wall_mesh
@@ -287,50 +287,3 @@ class PotentialOfLayer:
         flat = self.rows.reshape(*self.rows.shape[:2], -1)
         inner = np.linalg.solve(np.swapaxes(self.root, 1, 2), flat).reshape(self.rows.shape)
         return np.pad(inner, ((0, 0), (1, 1), (0, 0), (0, 0)))
-
-
-FAR = 4.0
-"""Shapes whose frequency is this many times the largest |s| answer by a series."""
-TERMS = 11
-"""Terms of that series: the rest is (1/FAR^2)^TERMS, 6e-14 of what they give."""
-
-
-def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> ComplexArray:
-    """Return sums over the shapes of weight/(omega^2 + s^2), shape (rows, orders, nodes), by matrix products of real numbers.
-
-    With x + i y = s^2 and a = omega^2 + x a term is (a - i y)/(a^2 + y^2). Shapes far above all nodes together are a polynomial in s^2,
-    sum over j of (-s^2)^j sum weight/omega^(2 + 2 j).
-
-    Parameters
-    ----------
-    weights : ndarray, shape (orders, rows, shapes)
-    squares : ndarray, shape (orders, shapes)
-        omega^2, ascending.
-    s : ndarray, shape (nodes,)
-    """
-    x, y = (s * s).real, (s * s).imag
-    y2, largest = y * y, float(np.abs(s).max()) ** 2
-    far = squares > FAR**2 * largest
-    found = _far_sums(weights, np.where(far, -largest / np.where(far, squares, 1.0), 0.0), largest, s)
-    real, imaginary = np.empty((2, squares.shape[1], s.size))  # in the cache of a processor for all orders
-    for m, near in enumerate(np.count_nonzero(~far, axis=1)):
-        above, size = real[:near], imaginary[:near]
-        np.add(squares[m, :near, None], x, out=above)
-        np.multiply(above, above, out=size)
-        np.add(size, y2, out=size)
-        np.divide(above, size, out=above)
-        np.divide(-y, size, out=size)
-        found.real[:, m] += weights[m, :, :near] @ above
-        found.imag[:, m] += weights[m, :, :near] @ size
-    return found
-
-
-def _far_sums(weights: FloatArray, ratio: FloatArray, largest: float, s: ComplexArray) -> ComplexArray:
-    """Return the sums over shapes far above the nodes by their series; ``ratio`` is -max|s|^2/omega^2 of these, and 0 of others."""
-    orders, rows, _ = weights.shape
-    terms: FloatArray = np.cumprod(np.broadcast_to(ratio[..., None], (*ratio.shape, TERMS)), axis=-1) / -largest
-    powers = np.empty((TERMS, s.size), np.complex128)
-    powers[0] = 1.0
-    np.cumprod(np.broadcast_to(s * s / largest, (TERMS - 1, s.size)), axis=0, out=powers[1:])
-    coefficients = np.ascontiguousarray(np.swapaxes(weights @ terms, 0, 1)).reshape(rows * orders, TERMS)
-    return (coefficients @ powers.view(np.float64)).view(np.complex128).reshape(rows, orders, s.size)

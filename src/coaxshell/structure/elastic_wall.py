@@ -5,7 +5,7 @@ within it by the loads on both: with u_r = phi_a at face a of a shape of its eig
 
     x = -sum over shapes of (shape) sum_a phi_a r_a q_a/(omega^2 + s^2),      H_ab = sum phi_a phi_b/(omega^2 + s^2).
 
-All of it is a matrix product for each order (:func:`coaxshell.structure.elastic_basis.modal_sums`), so that it costs hardly more than a
+All of it is a matrix product for each order (:func:`coaxshell.structure.shape_sums.modal_sums`), so that it costs hardly more than a
 thin wall. The reference surface, whose motion stands for the wall's, is its middle.
 """
 
@@ -23,10 +23,11 @@ from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes, kept_with_modes
-from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, modal_sums
+from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis
 from coaxshell.structure.elastic_depth import ALL_SHOWN, DISPLACEMENTS, STRESSES, Shown, all_by_shapes, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.segments import Segments
+from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
 from coaxshell.structure.solid_inclined import InclinedPlace, inclined_answers

@@ -24,10 +24,11 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
-from coaxshell.structure.elastic_basis import OrdersBasis, displacements, elastic_basis, modal_sums
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements, elastic_basis
 from coaxshell.structure.elastic_depth import STRESSES, Shown, field_stress, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.losses import Relaxation
+from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_potentials import Potentials
 
