@@ -2,7 +2,7 @@
 
 Cold runs at the paper's resolution (M = 150, dt = 1e-3, T = 5), errors and warnings read; sets on a prepared structure; Figure 9 of the
 paper; evaluations of a study at M = 60, dt = 4e-3, timed by a few; and the direct engine's run of the hybrid. Processor seconds of the
-whole process, medians of turns; two quiet cores take about a third of them by the clock. ``python -m benchmarks.absorbers 1`` takes one
+whole process, medians of turns, where some aims are by the clock of two quiet cores. ``python -m benchmarks.absorbers 1`` takes one
 turn, and leaves out Figure 9 and the direct engine.
 """
 
