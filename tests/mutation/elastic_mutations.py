@@ -39,11 +39,11 @@ ELASTIC = (
     ),
     Mutation(
         "solid-sums-imaginary",
-        "structure/elastic_basis.py",
-        "np.divide(-y, size, out=size)",
-        "np.divide(y, size, out=size)",
+        "structure/shape_sums.py",
+        "minus_y, y2 = -y, y * y",
+        "minus_y, y2 = y, y * y",
         "sum over the shapes of a solid wall, its phase",
-        "structure/test_elastic_solids.py",
+        "structure/test_shape_sums.py",
     ),
     Mutation(
         "solid-stress-field",
@@ -119,11 +119,11 @@ ELASTIC = (
     ),
     Mutation(
         "solid-far-shapes",
-        "structure/elastic_basis.py",
-        "np.where(far, -largest /",
-        "np.where(far, largest /",
-        "series of the shapes far above the nodes: alternating",
-        "structure/test_elastic_solids.py",
+        "structure/shape_sums.py",
+        "-np.sign(place) / (np.abs(place) + root)",
+        "np.sign(place) / (np.abs(place) + root)",
+        "polynomial of the shapes that do not resonate in a block: alternating above, not below",
+        "structure/test_shape_sums.py",
     ),
     Mutation(
         "solid-low-shapes",
