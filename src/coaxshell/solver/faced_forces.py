@@ -19,6 +19,7 @@ from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.convolution import summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import FacedSystem, SolidSpectra, WallAnswer, band, make_shapes, nothing_moves
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
@@ -43,8 +44,12 @@ def surface_motion(problem: Problem, normal: ComplexArray, faces: ComplexArray) 
 
 def surfaces_of(problem: Problem, answers: list[WallAnswer]) -> ComplexArray:
     """Return the displacements of all surfaces, shape (surfaces, orders, nodes), from what the walls do."""
-    faces = [answer.faces for answer in answers]
-    return np.stack([faces[i].inner if side == 0 else faces[i].outer for i, side, _ in problem.surfaces])
+    return np.stack(_moved(problem, [answer.faces for answer in answers]))
+
+
+def _moved(problem: Problem, faces: list[FaceMotion]) -> list[ComplexArray]:
+    """Return the displacement of each surface, of shape (orders, nodes)."""
+    return [faces[i].inner if side == 0 else faces[i].outer for i, side, _ in problem.surfaces]
 
 
 def surface_compliance(
@@ -67,9 +72,10 @@ def surface_compliance(
     make_shapes(problem, modes, s)
 
     def work(block: slice) -> None:
-        system = FacedSystem(problem, s[block], modes)
+        cascade = CascadeSystem(problem, s[block], modes)  # what walls show beside their faces is not asked for
         for j, surface in enumerate(problem.surfaces):
-            found[:, j, :, block] = surfaces_of(problem, system.under_force(surface, 1.0))
+            for i, moved in enumerate(_moved(problem, cascade.solve(surface.shell, 1.0, surface.side))):
+                found[i, j, :, block] = moved
 
     with one_blas_thread():
         map_node_blocks(node_blocks(grid, modes.count), work, progress, "frequencies")
