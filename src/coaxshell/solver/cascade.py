@@ -165,25 +165,35 @@ class CascadeSystem:
 
     def solve_free(self, shell: int, inner: ComplexArray, outer: ComplexArray) -> list[FaceMotion]:
         """Return the motion of all faces where one wall would move by d_i and d_o if no fluid held it, as an actuator within it does."""
-        count, still = len(self.walls), np.zeros((self.modes.count, self.s.size), np.complex128)
-        free_inner, driven, pressures = [still] * count, [still] * count, [still] * (count + 1)
+        count = len(self.walls)
+        free_inner: list[Entry] = [0.0] * count  # as all within the wall that is pressed on
+        driven: list[Entry] = [0.0] * count
+        pressures: list[Entry] = [0.0] * count
+        free_inner[shell], driven[shell] = inner, outer - self.walls[shell].back * (self._radii[shell][0] * self._held(shell, inner))
         for i in range(shell, count):
-            h, zeta, radius = self.walls[i], self._within[i], self._radii[i][0]
-            d_inner, d_outer = (inner, outer) if i == shell else (still, still)
-            free_inner[i] = d_inner - h.inner * (radius * pressures[i])
-            within = pressures[i] + zeta * free_inner[i] / self._wall_divisor[i]
-            driven[i] = d_outer - h.back * (radius * within)
-            pressures[i + 1] = self.fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
+            if i > shell:
+                h, radius = self.walls[i], self._radii[i][0]
+                free_inner[i] = -h.inner * (radius * pressures[i])
+                driven[i] = -h.back * (radius * (pressures[i] + self._held(i, free_inner[i])))
+            if i + 1 < count:
+                pressures[i + 1] = self.fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
         found: list[FaceMotion] = []
-        beyond = still  # the next wall's inner face
+        beyond: Entry = 0.0  # the next wall's inner face
         for i in reversed(range(count)):
             h, fluid = self.walls[i], self.fluids[i + 1]
-            load = (fluid.aa * driven[i] + fluid.ab * beyond) / self._gap_divisor[i]
-            w_outer = driven[i] + self._seen[i] * load
-            w_inner = (h.across * (self._radii[i][1] * load) + free_inner[i]) / self._wall_divisor[i]
-            found.append(FaceMotion(w_inner, w_outer, -(self._within[i] * w_inner + pressures[i]), load))
+            pushed = fluid.ab * beyond if i < shell else fluid.aa * driven[i] + fluid.ab * beyond
+            load = pushed / self._gap_divisor[i]
+            w_outer = self._seen[i] * load if i < shell else driven[i] + self._seen[i] * load
+            through = h.across * (self._radii[i][1] * load)
+            w_inner = (through if i < shell else through + free_inner[i]) / self._wall_divisor[i]
+            held = self._within[i] * w_inner if i <= shell else self._within[i] * w_inner + pressures[i]
+            found.append(FaceMotion(w_inner, w_outer, -held, load))
             beyond = w_inner
         return found[::-1]
+
+    def _held(self, wall: int, moved: Entry) -> Entry:
+        """Return the pressure on the inner face of a wall that would move by so much if nothing were within it."""
+        return self._within[wall] * moved / self._wall_divisor[wall]
 
     def determinant(self) -> ComplexArray:
         """Return what vanishes at the poles of the response, shape (orders, nodes): of thin walls the tridiagonal system's determinant."""
