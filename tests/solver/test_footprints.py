@@ -164,6 +164,24 @@ def test_reciprocity_between_all_places_of_a_mixed_system() -> None:
     np.testing.assert_allclose(found, found.swapaxes(1, 2), rtol=0, atol=1e-10 * np.abs(found).max())
 
 
+def test_forces_on_several_surfaces_are_read_once() -> None:
+    """Walls read of the sum of their faces' motions do what they do under each force, all added."""
+    places = [(0, 0, 0.05), (0, 70, None), (1, 10, None)]
+    fitted = tuple(cx.Absorber(angle=angle, inner_shell=inner, footprint=arc, **LINEAR) for inner, angle, arc in places)
+    problem, s, modes = dimensionless(system(("elastic", "thin", "elastic"), fitted)), np.array([0.3 + 0.2j, 2.0 + 7.0j]), Modes.up_to(3)
+    faced = FacedSystem(problem, s, modes)
+    loads = [(surface, np.full((4, 2), 1.0 + j)) for j, surface in enumerate(problem.surfaces)]
+    assert len(loads) > 2
+    each = [faced.under_force(*load) for load in loads]
+    for i, together in enumerate(faced.under_forces(loads)):
+        for name in ("normal", "tangential", "hoop"):
+            parts = [getattr(answers[i], name) for answers in each]
+            np.testing.assert_allclose(getattr(together, name), sum(parts), rtol=0, atol=1e-12 * np.abs(parts).max() * len(parts))
+        for side, moved in enumerate(together.faces):
+            parts = [answers[i].faces[side] for answers in each]
+            np.testing.assert_allclose(moved, sum(parts), rtol=0, atol=1e-12 * np.abs(parts).max() * len(parts))
+
+
 def test_the_immediate_answer_of_a_face_is_the_impedance_of_its_layer() -> None:
     """At steps shorter than the transit through the thickness 1/(rho c_L + rho_f c_f), at longer ones dt/2 over the mass, both found."""
     problem = dimensionless(system(thickness=0.1))

@@ -107,13 +107,14 @@ def moved_by_forces(
     s = grid.nodes[nodes]
     found = nothing_moves(problem, pressure.shape[1], modes.count, s.size)
     acting = [(j, surface) for j, surface in enumerate(problem.surfaces) if pressure[j].any()]
+    if not acting:
+        return found
     make_shapes(problem, modes, s)
 
     def work(block: slice) -> None:
         system = FacedSystem(problem, s[block], modes)
-        for j, surface in acting:
-            for parity in range(pressure.shape[1]):
-                found.add(parity, block, system.under_force(surface, pressure[j, parity, :, block]))
+        for parity in range(pressure.shape[1]):
+            found.put(parity, block, system.under_forces([(surface, pressure[j, parity, :, block]) for j, surface in acting]))
 
     with one_blas_thread():
         blocks = [slice(0, s.size)] if s.size < grid.nodes.size else node_blocks(grid, modes.count)

@@ -73,13 +73,14 @@ def moved_by_voltages(
     """Return all that voltages in orders, V, shape (shells, parities, M + 1, nodes), move without sources and feedback."""
     found = nothing_moves(passive, voltage.shape[1], modes.count, grid.nodes.size)
     acting = [i for i, volts in enumerate(voltage) if volts.any()]
+    if not acting:
+        return found
     make_shapes(passive, modes, grid.nodes)
 
     def work(block: slice) -> None:
         system = FacedSystem(passive, grid.nodes[block], modes)
-        for i in acting:
-            for parity in range(voltage.shape[1]):
-                found.add(parity, block, system.under_voltage(i, voltage[i, parity, :, block]))
+        for parity in range(voltage.shape[1]):
+            found.put(parity, block, system.under_voltages([(i, voltage[i, parity, :, block]) for i in acting]))
 
     with one_blas_thread():
         map_node_blocks(node_blocks(grid, modes.count), work, progress, "motion by voltages")

@@ -6,6 +6,7 @@ on the faces give everything within it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -65,8 +66,11 @@ class FacedSystem:
 
     def under_force(self, surface: Surface, load: ComplexArray | float) -> list[WallAnswer]:
         """Return what all walls do under an inward pressure on one surface of a wall."""
-        faces = self.cascade.solve(surface.shell, load, surface.side)
-        return [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
+        return self.under_forces([(surface, load)])
+
+    def under_forces(self, loads: Sequence[tuple[Surface, ComplexArray | float]]) -> list[WallAnswer]:
+        """Return what all walls do under inward pressures on several surfaces, read once."""
+        return self._together([self.cascade.solve(surface.shell, load, surface.side) for surface, load in loads])
 
     def ratio(self, shell: int) -> ComplexArray:
         """Return V/W of a wall whose faces move alike."""
@@ -74,21 +78,32 @@ class FacedSystem:
 
     def under_voltage(self, shell: int, volts: ComplexArray | float) -> list[WallAnswer]:
         """Return what all walls do under a voltage that is given to the actuators of one, no law asking for any."""
+        return self.under_voltages([(shell, volts)])
+
+    def under_voltages(self, voltages: Sequence[tuple[int, ComplexArray | float]]) -> list[WallAnswer]:
+        """Return the same under voltages given to the actuators of several walls, read once."""
+        found = self._together([self._freed(shell, volts) for shell, volts in voltages])
+        for shell, volts in voltages:
+            found[shell] = self._driven(shell, volts, found[shell])
+        return found
+
+    def _freed(self, shell: int, volts: ComplexArray | float) -> list[FaceMotion]:
+        """Return the motion of all faces under a voltage on one wall."""
         wall = self._problem.shells[shell]
         if isinstance(wall, ElasticWall):
             given = self._given(shell, wall)
-            faces = self.cascade.solve_free(shell, given.faces[0] * volts, given.faces[1] * volts)
-        else:
-            faces = self.cascade.solve(shell, wall.drive(self._modes).columns.recovered(self._reading[shell]) * volts)
-        found = [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
-        own = found[shell]
+            return self.cascade.solve_free(shell, given.faces[0] * volts, given.faces[1] * volts)
+        return self.cascade.solve(shell, wall.drive(self._modes).columns.recovered(self._reading[shell]) * volts)
+
+    def _driven(self, shell: int, volts: ComplexArray | float, own: WallAnswer) -> WallAnswer:
+        """Return what a wall does with what a voltage adds to it that its faces do not tell."""
+        wall = self._problem.shells[shell]
         if not isinstance(wall, ElasticWall):
-            found[shell] = own._replace(tangential=own.tangential + wall.driven_along(self._modes, self._s) * volts)
-            return found
+            return own._replace(tangential=own.tangential + wall.driven_along(self._modes, self._s) * volts)
+        given = self._given(shell, wall)
         normal, tangential, hoop, *potentials = given.shown * volts
         potentials = [a + b for a, b in zip(own.potentials, [*potentials, given.heard * volts, volts], strict=True)]
-        found[shell] = WallAnswer(own.normal + normal, own.tangential + tangential, own.hoop + hoop, potentials, own.faces)
-        return found
+        return WallAnswer(own.normal + normal, own.tangential + tangential, own.hoop + hoop, potentials, own.faces)
 
     def sensed(self, shell: int, answer: WallAnswer) -> ComplexArray:
         """Return what the law of a wall reads of what the wall does, V."""
@@ -102,6 +117,11 @@ class FacedSystem:
         if shell not in self._volts:
             self._volts[shell] = wall.under_voltage(self._modes, self._s, wall.asked_of_port)
         return self._volts[shell]
+
+    def _together(self, each: Sequence[Sequence[FaceMotion]]) -> list[WallAnswer]:
+        """Return what all walls do in several motions of their faces at once."""
+        faces = [FaceMotion(*(sum(parts[1:], parts[0]) for parts in zip(*moving, strict=True))) for moving in zip(*each, strict=True)]
+        return [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
 
     def _answer(self, reading: ComplexArray, faces: FaceMotion) -> WallAnswer:
         if reading.ndim == 2:
@@ -145,18 +165,17 @@ class SolidSpectra:
     loads: ComplexArray
     potentials: ComplexArray
 
-    def add(self, parity: int, nodes: slice, answers: list[WallAnswer]) -> None:
-        """Add what all walls do, in one parity at a slice of the nodes."""
+    def put(self, parity: int, nodes: slice, answers: Sequence[WallAnswer]) -> None:
+        """Put down what all walls do, in one parity at a slice of the nodes; what thin walls do not show stays 0."""
         for shell, wall in enumerate(answers):
             at = (shell, parity, slice(None), nodes)
-            self.normal[at] += wall.normal
-            self.tangential[at] += wall.tangential
-            self.hoop[at] += wall.hoop
+            self.normal[at], self.tangential[at] = wall.normal, wall.tangential
+            if isinstance(wall.hoop, np.ndarray):
+                self.hoop[at] = wall.hoop
             for layer, potential in enumerate(wall.potentials):
-                self.potentials[(layer, *at)] += potential
+                self.potentials[(layer, *at)] = potential
             for side in (0, 1):
-                self.faces[(side, *at)] += wall.faces[side]
-                self.loads[(side, *at)] += wall.faces[2 + side]
+                self.faces[(side, *at)], self.loads[(side, *at)] = wall.faces[side], wall.faces[2 + side]
 
     def plus(self, other: SolidSpectra) -> SolidSpectra:
         """Return both motions together; parities that one of them lacks are at rest there."""
@@ -228,7 +247,7 @@ def solid_spectra(
     def work(block: slice) -> None:
         system = FacedSystem(problem, grid.nodes[block], modes)
         for parity, load in enumerate(loads(system.radial, block)):
-            found.add(parity, block, system.under_sources(load))
+            found.put(parity, block, system.under_sources(load))
 
     with one_blas_thread():  # small products on all threads
         map_node_blocks(node_blocks(grid, modes.max_order), work, progress, "frequencies")
