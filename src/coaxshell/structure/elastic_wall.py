@@ -31,7 +31,7 @@ from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
 from coaxshell.structure.solid_inclined import InclinedPlace, inclined_answers
-from coaxshell.structure.solid_ports import Port, UnderVoltage, VoltPort, of_faces, per_volt, products
+from coaxshell.structure.solid_ports import Port, UnderVoltage, VoltPort, of_faces, per_volt, products, under_volts
 from coaxshell.structure.solid_transducers import (
     Driven,
     Loop,
@@ -39,6 +39,7 @@ from coaxshell.structure.solid_transducers import (
     Transducers,
     along_wall,
     at_rest,
+    by_circuits,
     closed_loop,
     driven_of,
     field_of_volts,
@@ -222,8 +223,9 @@ class ElasticWall(ShellModel):
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
         loop = self._loop(modes, s, 0.0)
-        shown = np.einsum("qjmk,jmk->qmk", self._shown_per_volt(modes, s, asked), loop.given)
-        return UnderVoltage(np.einsum("ajmk,jmk->amk", loop.moved, loop.given), shown, loop.heard)
+        each, given = np.concatenate([loop.moved, self._shown_per_volt(modes, s, asked)]), loop.given[:, None]
+        found = under_volts(each, given)[:, 0]
+        return UnderVoltage(found[:2], found[2:], loop.heard)
 
     # Control
 
@@ -237,7 +239,7 @@ class ElasticWall(ShellModel):
         return self._loop(modes, s, self._law(modes, s) if fed_back else 0.0) if self.closes_a_loop else None
 
     def _loop(self, modes: Modes, s: ComplexArray, law: ComplexArray | float) -> Loop:
-        pairs = list(zip(self.basis(modes), self.driven(modes), strict=True))
+        pairs = list(zip(self.basis(modes), self._circuits(modes), strict=True))
         parts = [loop_part(part, driven, self.wetted) for part, driven in pairs]
         return self._loop_of(parts, [part.squares for part, _ in pairs], s, law)
 
@@ -251,7 +253,7 @@ class ElasticWall(ShellModel):
         sums = [modal_sums(part.rows, square, s) for part, square in zip(parts, squares, strict=True)]
         resting = np.concatenate([part.moved for part in parts]), np.concatenate([part.read for part in parts])
         whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
-        return closed_loop(whole, resting, self.transducers, law)
+        return closed_loop(whole, resting, self.transducers.circuits, law)
 
     @kept_with_modes
     def driven(self, modes: Modes) -> tuple[Driven, ...]:
@@ -259,24 +261,30 @@ class ElasticWall(ShellModel):
         assert self.transducers is not None
         return tuple(driven_of(part, self.transducers) for part in self.basis(modes))
 
+    @kept_with_modes
+    def _circuits(self, modes: Modes) -> tuple[Driven, ...]:
+        """Return the same of the circuits that close the loop."""
+        assert self.transducers is not None
+        return tuple(by_circuits(one, self.transducers.circuits) for one in self.driven(modes))
+
     def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
         return 0.0 if self.gains is None or self.segments is not None else self.gains.at(s, modes)
 
     def _closed(self, open_loop: ComplexArray, loop: Loop) -> FaceReceptance:
         """Return the receptances H_ii, H_io and H_oo with what the transducers add."""
         inner, outer = self.wetted
-        added = np.einsum("ajmk,jbmk->abmk", loop.moved, loop.volts) / np.array([inner, outer])[:, None, None]
+        added = under_volts(loop.moved, loop.volts) / np.array([inner, outer])[:, None, None]
         h_ii, h_io, h_oo = open_loop
         return FaceReceptance(h_ii + added[0, 0], h_io + added[0, 1], h_oo + added[1, 1], loop.characteristic, h_io + added[1, 0])
 
     def _by_volts(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], loop: Loop) -> ComplexArray:
         """Return what voltages add to quantities per load on either face, (quantities, 2, orders, nodes)."""
-        return np.asarray(np.einsum("qjmk,jbmk->qbmk", self._shown_per_volt(modes, s, asked), loop.volts))
+        return under_volts(self._shown_per_volt(modes, s, asked), loop.volts)
 
     def _shown_per_volt(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
-        """Return quantities per volt on each driven layer: by the motion that it makes, in its layer by its field."""
+        """Return quantities per volt of each circuit: by the motion that it makes, in its layers by their field."""
         parts = []
-        for part, driven in zip(self.basis(modes), self.driven(modes), strict=True):
+        for part, driven in zip(self.basis(modes), self._circuits(modes), strict=True):
             shown = self._shown(part, asked)
             for row, one in enumerate(asked):
                 shown[:, row] *= -1.0 if one.what == "potential" and one in self._asked_potentials else 1.0
@@ -284,15 +292,16 @@ class ElasticWall(ShellModel):
         return per_volt(self._summed(modes, s, [rows for rows, _ in parts]), [resting for _, resting in parts])
 
     def _per_volt(self, part: OrdersBasis, driven: Driven, shown: FloatArray, asked: Sequence[Asked]) -> tuple[FloatArray, FloatArray]:
-        """Return what volts on each driven layer add to quantities, ``shown`` per unit of each shape.
+        """Return what volts of each circuit add to quantities, ``shown`` per unit of each shape.
 
-        Weights of all shapes in the motion along the wall, (orders, quantities driven, shapes), and what answers at once, by the field and
-        through the thickness, (orders, quantities, driven).
+        Weights of all shapes in the motion along the wall, (orders, quantities circuits, shapes), and what answers at once, by the field
+        and through the thickness, (orders, quantities, circuits).
         """
         assert self.transducers is not None
         along = (shown * (np.arange(shown.shape[-1]) < along_wall(part.wavenumber)))[:, :, None] * driven.loads[:, None]
         each = [field_of_volts(part, self.transducers, self.layer_at(x.depth), self.radius + x.depth, x.what) for x in asked]
-        return along.reshape(part.orders.size, -1, shown.shape[-1]), np.stack(each, axis=1) + at_rest(part, shown, driven)
+        at_once = np.stack(each, axis=1) @ self.transducers.circuits.shares + at_rest(part, shown, driven)
+        return along.reshape(part.orders.size, -1, shown.shape[-1]), at_once
 
     @property
     def shows_control(self) -> bool:
@@ -352,7 +361,7 @@ class ElasticWall(ShellModel):
         if reads:
             sums = [modal_sums(one.rows, port.squares, s) for one, port in zip(volts, ports, strict=True)]
             whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
-            by_volts = np.einsum("qjmk,jbmk->qbmk", per_volt(whole, [one.resting for one in volts]), loop.volts)
+            by_volts = under_volts(per_volt(whole, [one.resting for one in volts]), loop.volts)
             per_load = np.concatenate([per_load + by_volts, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
         return self._closed(found[:3], loop), per_load
 
@@ -376,7 +385,7 @@ class ElasticWall(ShellModel):
         if not self.closes_a_loop:
             return None
         assert self.transducers is not None
-        driven = driven_of(part, self.transducers)
+        driven = by_circuits(driven_of(part, self.transducers), self.transducers.circuits)
         return VoltPort(loop_part(part, driven, self.wetted), *self._per_volt(part, driven, shown, self.asked_of_stations))
 
     def prepare_stations(self, modes: Modes) -> None:

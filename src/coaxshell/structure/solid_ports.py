@@ -13,14 +13,14 @@ from coaxshell.structure.solid_transducers import LoopPart
 
 
 class VoltPort(NamedTuple):
-    """What voltages on the driven layers do to what is shown.
+    """What voltages of the circuits do to what is shown.
 
     Attributes
     ----------
     loop : LoopPart
-    rows : ndarray, shape (orders, quantities driven, shapes)
+    rows : ndarray, shape (orders, quantities circuits, shapes)
         Weights of the shapes in the motion along the wall that volts make.
-    resting : ndarray, shape (orders, quantities, driven)
+    resting : ndarray, shape (orders, quantities, circuits)
         What they make at once.
     """
 
@@ -68,17 +68,28 @@ class UnderVoltage(NamedTuple):
 
 
 def per_volt(sums: ComplexArray, resting: Sequence[FloatArray]) -> ComplexArray:
-    """Return quantities per volt on each driven layer, (quantities, driven, orders, nodes), by motion along the wall and at once.
+    """Return quantities per volt of each circuit, (quantities, circuits, orders, nodes), by motion along the wall and at once.
 
     Parameters
     ----------
-    sums : ndarray, shape (quantities driven, orders, nodes)
+    sums : ndarray, shape (quantities circuits, orders, nodes)
         Over all shapes, of the motion along the wall.
-    resting : sequence of ndarray, shape (orders, quantities, driven)
+    resting : sequence of ndarray, shape (orders, quantities, circuits)
         What answers at once, of each part of a basis.
     """
     at_once = np.concatenate(resting)
     return np.asarray(sums.reshape(*at_once.shape[1:], *sums.shape[1:]) + np.moveaxis(at_once, 0, -1)[..., None])
+
+
+def under_volts(each: ComplexArray, volts: ComplexArray) -> ComplexArray:
+    """Return what voltages do, (quantities, loads, orders, nodes).
+
+    By what a volt of each circuit does, (quantities, circuits, orders, nodes), and their volts, (circuits, loads, orders, nodes).
+    """
+    found: ComplexArray = each[:, 0, None] * volts[0]
+    for one, given in zip(np.moveaxis(each[:, 1:], 1, 0), volts[1:], strict=True):
+        found += one[:, None] * given
+    return found
 
 
 def of_faces(part: OrdersBasis) -> FloatArray:

@@ -101,6 +101,35 @@ class Transducers:
             return np.ones(1)
         return np.array([float(one in self.sensors) / len(self.sensors) for one in self.driven])
 
+    @property
+    def circuits(self) -> Circuits:
+        """By what voltages and readings the loop is closed: one of each where all that reads is driven too, else those of every layer."""
+        count = len(self.driven)
+        if self.listening.any():
+            return Circuits(np.eye(count), np.eye(count), self.opened, self.acting, self.sensing, self.listening)
+        return Circuits(self.acting[:, None], self.sensing[None], np.zeros(1), np.ones(1), np.ones(1), np.zeros(1))
+
+
+class Circuits(NamedTuple):
+    """Voltages that are given and readings that are taken, of which a loop is closed.
+
+    Attributes
+    ----------
+    shares : ndarray, shape (driven, circuits)
+        Voltage of each driven layer per voltage of a circuit.
+    reading : ndarray, shape (circuits, driven)
+        What each circuit reads of the readings of the layers.
+    opened, acting, sensing, listening : ndarray, shape (circuits,)
+        As of :class:`Transducers`, of circuits instead of layers.
+    """
+
+    shares: FloatArray
+    reading: FloatArray
+    opened: FloatArray
+    acting: FloatArray
+    sensing: FloatArray
+    listening: FloatArray
+
 
 class Driven(NamedTuple):
     """Transducers of some orders, per unit of each shape.
@@ -118,6 +147,11 @@ class Driven(NamedTuple):
     loads: FloatArray
     readings: FloatArray
     capacitance: FloatArray
+
+
+def by_circuits(driven: Driven, circuits: Circuits) -> Driven:
+    """Return the loads and readings of the circuits instead of the layers; capacitances stay those of the layers."""
+    return Driven(circuits.shares.T @ driven.loads, circuits.reading @ driven.readings, driven.capacitance)
 
 
 def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
@@ -196,18 +230,20 @@ class Loop(NamedTuple):
 
     Attributes
     ----------
-    moved : ndarray, shape (2, driven, orders, nodes)
+    moved : ndarray, shape (2, circuits, orders, nodes)
         Inward displacement of each face per volt.
-    volts : ndarray, shape (driven, 2, orders, nodes)
+    volts : ndarray, shape (circuits, 2, orders, nodes)
         Voltages per inward load on either face.
     sensed : ndarray, shape (2, orders, nodes)
         What the control law reads per inward load on either face.
-    given : ndarray, shape (driven, orders, nodes)
+    given : ndarray, shape (circuits, orders, nodes)
         Voltages per volt that is given to all actuators beside what the law asks for.
     heard : ndarray, shape (orders, nodes)
         What the control law reads of that volt.
     characteristic : ndarray, shape (orders, nodes)
         det(1 - L Y).
+    shares : ndarray, shape (driven, circuits)
+        Of :class:`Circuits`: voltages of the layers are their product with those of the circuits.
     """
 
     moved: ComplexArray
@@ -216,6 +252,7 @@ class Loop(NamedTuple):
     given: ComplexArray
     heard: ComplexArray
     characteristic: ComplexArray
+    shares: FloatArray
 
 
 def loop_rows(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -> FloatArray:
@@ -265,34 +302,36 @@ def inertia_left_out(squares: FloatArray, s: ComplexArray, along: int) -> Comple
     return factor
 
 
-def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], transducers: Transducers, law: ComplexArray | float) -> Loop:
+def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], circuits: Circuits, law: ComplexArray | float) -> Loop:
     """Return the loop from the sums over all shapes of :func:`loop_rows` and the control law H(s), 0 without feedback.
 
     Parameters
     ----------
     sums : ndarray, shape (rows, orders, nodes)
     resting : tuple of ndarray
-        Of :func:`at_rest`, inward displacements of the faces, (orders, 2, driven), and readings, (orders, driven, driven).
-    transducers : Transducers
+        Of :func:`at_rest`, inward displacements of the faces, (orders, 2, circuits), and readings, (orders, circuits, circuits).
+    circuits : Circuits
     law : ndarray or float
         Broadcast to (orders, nodes).
     """
-    count, shape = len(transducers.driven), sums.shape[1:]
-    opened, acting, sensing = transducers.opened, transducers.acting, transducers.sensing
+    shares, _, opened, acting, sensing, listening = circuits
+    count, shape = opened.size, sums.shape[1:]
     moved = sums[: 2 * count].reshape(2, count, *shape) + np.moveaxis(resting[0], 0, -1)[..., None]
     read = sums[2 * count : 4 * count].reshape(count, 2, *shape)
-    answer = sums[4 * count :].reshape(count, count, *shape) + np.moveaxis(resting[1] * transducers.listening[:, None], 0, -1)[..., None]
+    answer = sums[4 * count :].reshape(count, count, *shape) + np.moveaxis(resting[1] * listening[:, None], 0, -1)[..., None]
     gains = np.broadcast_to(law, shape)
+    if count == 1:
+        own = opened[0] + acting[0] * sensing[0] * gains
+        characteristic = 1.0 - own * answer[0, 0]
+        asked, given = read[0] / characteristic, acting[0] / characteristic
+        heard = sensing[0] * answer[0, 0] * given
+        return Loop(moved, (own * asked)[None], sensing[0] * asked, given[None], heard, characteristic, shares)
     laws = np.diag(opened)[..., None, None] + np.multiply.outer(np.outer(acting, sensing), gains)
     matrix = np.eye(count)[..., None, None] - np.einsum("ijmk,jlmk->ilmk", laws, answer)
     given = np.broadcast_to(acting[:, None, None, None], (count, 1, *shape))
     asked = np.concatenate([np.einsum("ijmk,jbmk->ibmk", laws, read), given], axis=1)
-    if count == 1:
-        volts, characteristic = asked / matrix[:, :1], matrix[0, 0]
-    else:
-        square = np.moveaxis(matrix, (0, 1), (-2, -1))
-        volts = np.moveaxis(np.linalg.solve(square, np.moveaxis(asked, (0, 1), (-2, -1))), (-2, -1), (0, 1))
-        characteristic = np.linalg.det(square)
+    square = np.moveaxis(matrix, (0, 1), (-2, -1))
+    volts = np.moveaxis(np.linalg.solve(square, np.moveaxis(asked, (0, 1), (-2, -1))), (-2, -1), (0, 1))
     heard = np.einsum("i,ibmk->bmk", sensing, np.einsum("ijmk,jbmk->ibmk", answer, volts))
     sensed = np.einsum("j,jbmk->bmk", sensing, read) + heard[:2]
-    return Loop(moved, volts[:, :2], sensed, volts[:, 2], heard[2], characteristic)
+    return Loop(moved, volts[:, :2], sensed, volts[:, 2], heard[2], np.linalg.det(square), shares)

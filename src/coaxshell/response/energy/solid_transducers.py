@@ -20,7 +20,8 @@ def volts_of(motion: Motion, shell: int) -> ComplexArray | None:
     if loop is None:
         return None
     found = np.einsum("jbmk,bhmk->jhmk", loop.volts, solid.loads[:, shell])
-    return np.asarray(found if motion.voltage is None else found + loop.given[:, None] * motion.voltage[shell])
+    of_circuits = found if motion.voltage is None else found + loop.given[:, None] * motion.voltage[shell]
+    return np.asarray(np.tensordot(loop.shares, of_circuits, axes=1))
 
 
 def driven_at(wall: ElasticWall, motion: Motion, order: int) -> FloatArray:
