@@ -183,6 +183,15 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
         lambda: BARE.replace(absorbers=[cx.Absorber(mass=1), cx.Absorber(mass=1, inner_shell=5)]),
         ("absorbers[1].inner_shell:", "5", "at most 0"),
     ),
+    "absorber past a shell": (
+        lambda: cx.Absorber(mass=1, linear_stiffness=1e9, shells=(0, 2)),
+        ("shells:", "(0, 2)", "past a shell between are not solved", "inner_shell", "each gap"),
+    ),
+    "ring past a shell": (lambda: toml("mass = 10", "mass = 10\nouter_shell = 2"), ("absorbers.outer_shell:", "2", "inner_shell")),
+    "points past a shell": (
+        lambda: BARE.replace(absorbers=[{"mass": 1, "z": 0}, {"mass": 1, "z": 0, "shells": [0, 2]}]),
+        ("absorbers[1].shells:", "[0, 2]", "inner_shell"),
+    ),
     "absorber on rigid": (
         lambda: BARE.replace(shells=[cx.RigidShell(radius=0.5), BARE.shells[1]], absorbers=ring(links="inner")),
         ("absorbers.inner_shell:", "0 links shells[0]", "rigid", "an elastic shell"),

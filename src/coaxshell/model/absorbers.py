@@ -51,6 +51,17 @@ def _require_determined(one: _Link | PointAbsorber, unit: str) -> None:
         raise InputError("mass", f"0.0 {unit} on one shell alone does nothing", "must be greater than 0")
 
 
+def _require_neighbours(entries: Any) -> Any:
+    """Return the entries of an absorber; InputError if they name a pair of shells, or its outer one, which follows from inner_shell."""
+    given = entries if isinstance(entries, Mapping) else {}
+    for name in ("shells", "outer_shell"):
+        if name in given:
+            why = "an absorber joins a shell and the next one out; links past a shell between are not solved"
+            remedy = "give inner_shell alone, or for shells further apart an absorber in each gap, which holds those between too"
+            raise InputError(name, f"{shown(given[name])} is no entry: {why}", remedy)
+    return entries
+
+
 class _Link(Described):
     """Hold one absorber: f = c dD/dt + k_l D + k_nl D^3 on each side, D the stretch, and what a law adds; all per metre of length."""
 
@@ -74,6 +85,8 @@ class _Link(Described):
     """What each link exerts besides: linear, cubic, bistable, polynomial, gap, friction, maxwell, table; parallel; sides."""
     inertance: LineMass = 0.0
     """Inertance b of each link (kg per metre of length): f = b d^2D/dt^2 besides, of an inerter."""
+
+    _neighbours = model_validator(mode="before")(_require_neighbours)
 
     @model_validator(mode="after")
     def _determined(self) -> Self:
@@ -118,6 +131,8 @@ class PointAbsorber(Described):
     """Where it sits along the axis (m)."""
     footprint: Length | None = None
     """Side of the patch of each wall that it holds (m); the wall's thickness unless given."""
+
+    _neighbours = model_validator(mode="before")(_require_neighbours)
 
     @model_validator(mode="after")
     def _determined(self) -> Self:
