@@ -88,6 +88,22 @@ def test_rigid_motions_strain_nothing():
     assert squares[2] > 0.0
 
 
+def test_shapes_of_the_plane_problem_are_kept_by_all_that_they_depend_on():
+    """Layers of equal values, orders and the highest frequency; not along the axis, nor on the mesh of other layers."""
+    layers, again, modes = solids((STEEL, 0.03)), solids((STEEL, 0.03)), Modes.up_to(2)
+    found = elastic_basis(layers, modes, 50.0)
+    assert elastic_basis(again, Modes.up_to(2), 50.0) is found
+    others = [
+        elastic_basis(layers, Modes.up_to(3), 50.0),
+        elastic_basis(layers, modes, 5000.0),
+        elastic_basis(solids((STEEL, 0.04)), modes, 50.0),
+        elastic_basis(layers, modes, 50.0, solids((STEEL, 0.04))),
+    ]
+    assert all(other is not found for other in others)
+    along = Modes.up_to(2, 1.0)
+    assert elastic_basis(layers, along, 50.0) is not elastic_basis(layers, along, 50.0)
+
+
 @pytest.mark.parametrize(("order", "wavenumber"), [(2, 0.0), (2, 1.0), (0, 2.0), (5, 1.0)])
 def test_thin_walls_are_their_limit(order, wavenumber):
     """The lowest frequency differs from Kirchhoff's by O(h), h^2 without a first-order term: halving h halves it at least."""

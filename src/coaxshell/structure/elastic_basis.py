@@ -22,6 +22,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.cache import ByteBoundedCache
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, degrees, strains, wall_mesh
 from coaxshell.structure.solid import AXIAL, HOOP, PLANE, RADIAL, RADIAL_AXIAL, RADIAL_HOOP, STRAINS, SolidLayer
@@ -101,7 +102,7 @@ def rigid_motions(order: float, wavenumber: float) -> int:
 def elastic_basis(
     layers: Sequence[SolidLayer], modes: Modes, frequency: float, meshed_as: Sequence[SolidLayer] | None = None
 ) -> tuple[OrdersBasis, ...]:
-    """Return the shapes of all orders of some modes.
+    """Return the shapes of all orders of some modes; those of the plane problem are kept, and nobody may change them.
 
     Parameters
     ----------
@@ -116,8 +117,14 @@ def elastic_basis(
     """
     assert isinstance(modes.wavenumber, (int, float))
     wavenumber = float(modes.wavenumber)
-    meshes = order_meshes(tuple(layers), modes.orders, wavenumber, frequency, meshed_as)
-    return tuple(orders_basis(mesh, members, modes.orders[members], wavenumber) for members, mesh in meshes)
+
+    def made() -> tuple[OrdersBasis, ...]:
+        meshes = order_meshes(tuple(layers), modes.orders, wavenumber, frequency, meshed_as)
+        return tuple(orders_basis(mesh, members, modes.orders[members], wavenumber) for members, mesh in meshes)
+
+    if wavenumber != 0.0 or meshed_as is not None:  # one of thousands, or of a difference
+        return made()
+    return _known.get_or_make((tuple(layers), modes.orders.tobytes(), frequency), made)
 
 
 def order_meshes(
@@ -135,6 +142,14 @@ def stiffness_powers(mesh: WallMesh) -> FloatArray:
     """Return K of (u_r, u_theta, u_z) without potentials by 1, m, m^2, k, k^2 and m k, (6, n, n), over the roots of the mass."""
     return _linear_rows(mesh)[1]
 
+
+def _own_bytes(parts: tuple[OrdersBasis, ...]) -> int:
+    """Return bytes of shapes with what is made of them: up to four times their own."""
+    return 4 * sum(part.shapes.nbytes for part in parts)
+
+
+_known: ByteBoundedCache[tuple[OrdersBasis, ...]] = ByteBoundedCache(2**26, _own_bytes)
+"""Of the plane problem: runs of one wall under other sources, absorbers or gains share its shapes, as do the stages of one run."""
 
 _mesh = lru_cache(maxsize=64)(wall_mesh)
 """Many waves share a mesh, and what is made of it."""
