@@ -108,6 +108,7 @@ def test_installed_code_counts_by_its_version(monkeypatch: pytest.MonkeyPatch) -
 @pytest.fixture
 def study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a metric that gets its number from a helper of a helper, beside it and in a package."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)  # byte code of what was just changed must not be taken for its own
     (tmp_path / "kit").mkdir()
     (tmp_path / "kit" / "__init__.py").write_text("")
     (tmp_path / "kit" / "deep.py").write_text("NUMBER = 1.0\n")

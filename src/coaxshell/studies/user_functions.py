@@ -192,6 +192,9 @@ def _module(path: str, digest: str) -> ModuleType:
     for name, imported in list(sys.modules.items()):  # with the text before the change
         if getattr(imported, "__file__", None) in _files.get(path, ()):
             del sys.modules[name]
+    for file in _files.get(path, ()):  # Python takes kept byte code for that of a file changed within its second to the same size
+        with suppress(OSError, NotImplementedError):
+            Path(importlib.util.cache_from_source(file)).unlink()
     spec = importlib.util.spec_from_file_location(_name_of(path), path)
     assert spec is not None  # the path ends in .py and exists
     assert spec.loader is not None
