@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -12,6 +15,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.interface import ring_march
 from coaxshell.solver.interface.absorbers import AbsorberSet, absorber_set
 from coaxshell.solver.interface.march import MarchResult, march
+from coaxshell.solver.interface.ring_march import RingPlan, RingState, march_ring_block
 from coaxshell.solver.interface.seen import as_seen
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -65,6 +69,26 @@ def test_a_ring_moves_as_its_points_do(structure: StructureSpectra, name: str, m
             mine, other = getattr(found, attribute), getattr(points, attribute)
             assert_allclose(mine, other, rtol=0, atol=5e-11 * np.abs(other).max())  # either solves each step to 1e-11
     assert done
+
+
+def test_a_march_stopped_at_any_block_goes_on_to_the_same_bits(structure: StructureSpectra, tmp_path: Path) -> None:
+    plan = RingPlan.of(structure, absorber_set(structure.problem, ring(24), 1))
+    assert plan is not None
+    steps = 4 * plan.steps
+    moved = np.random.default_rng(0).normal(size=(2, steps, 2, plan.classes)) * 1e-6
+    blocks = [moved[:, first : first + plan.steps] for first in range(0, steps, plan.steps)]
+    states, found = [RingState.at_rest(plan)], []
+    for block in blocks:
+        state, *rest = march_ring_block(plan, states[-1], *block, surfaces=2)
+        states.append(state)
+        found.append(rest)
+    for start in range(4):
+        (tmp_path / "state").write_bytes(pickle.dumps(states[start]))
+        state = pickle.loads((tmp_path / "state").read_bytes())
+        for k in range(start, 4):
+            state, *rest = march_ring_block(plan, state, *blocks[k], surfaces=2)
+            for one, other in zip(rest, found[k], strict=True):
+                np.testing.assert_array_equal(one, other)
 
 
 def test_springs_too_stiff_for_it_are_left_to_the_points(structure: StructureSpectra, monkeypatch: pytest.MonkeyPatch) -> None:

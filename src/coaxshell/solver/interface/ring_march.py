@@ -199,8 +199,19 @@ def _by_class(matrix: FloatArray, values: FloatArray) -> FloatArray:
     return np.asarray((matrix @ values[:, :, None])[:, :, 0])
 
 
-class _State(NamedTuple):
-    """As :class:`coaxshell.solver.interface.state.LinkState`, of the classes; what came before; how many steps are tried at once."""
+class RingState(NamedTuple):
+    """The state between two blocks, as :class:`coaxshell.solver.interface.state.MarchState`: with the plan it decides all after it.
+
+    Attributes
+    ----------
+    force, displacement, velocity : ndarray, shape (2, classes)
+    mass_displacement, mass_velocity : ndarray, shape (classes,)
+        As :class:`coaxshell.solver.interface.state.LinkState`, of the classes.
+    history : History
+        Modal pressures so far.
+    together : int
+        Steps last solved together.
+    """
 
     force: FloatArray
     displacement: FloatArray
@@ -209,6 +220,12 @@ class _State(NamedTuple):
     mass_velocity: FloatArray
     history: History
     together: int
+
+    @classmethod
+    def at_rest(cls, plan: RingPlan) -> RingState:
+        """Return the state before the first block."""
+        forced, resting = np.zeros((3, 2, plan.classes)), np.zeros((2, plan.classes))
+        return cls(forced[0], forced[1], forced[2], resting[0], resting[1], History(), plan.steps)
 
 
 def march_ring(
@@ -233,11 +250,10 @@ def march_ring(
     steps, c = len(displacement), plan.classes
     displacement, velocity = ((x.reshape(2 * steps, -1) @ plan.inverse.T).reshape(steps, 2, c) for x in (displacement, velocity))
     force, mass, iterations = np.zeros((steps, 2, c)), np.zeros((steps, c)), 0
-    forced, resting = np.zeros((3, 2, c)), np.zeros((2, c))
-    state = _State(forced[0], forced[1], forced[2], resting[0], resting[1], History(), plan.steps)
+    state = RingState.at_rest(plan)
     for first in range(1, steps, plan.steps):
         block = slice(first, min(first + plan.steps, steps))
-        state, force[block], mass[block], taken = _march_block(plan, state, displacement[block], velocity[block], surfaces)
+        state, force[block], mass[block], taken = march_ring_block(plan, state, displacement[block], velocity[block], surfaces)
         iterations += taken
         if progress is not None:
             progress(block.stop / steps, "interface march")
@@ -245,10 +261,35 @@ def march_ring(
     return RingHistories(at_points, plan.shapes @ np.ascontiguousarray(mass.T), iterations)
 
 
-def _march_block(
-    plan: RingPlan, state: _State, displacement: FloatArray, velocity: FloatArray, surfaces: int
-) -> tuple[_State, FloatArray, FloatArray, int]:
-    """Solve one block of steps as :func:`coaxshell.solver.interface.march.march_block` does: state, forces, masses, iterations."""
+def march_ring_block(
+    plan: RingPlan, state: RingState, displacement: FloatArray, velocity: FloatArray, surfaces: int
+) -> tuple[RingState, FloatArray, FloatArray, int]:
+    """Solve one block of steps, as :func:`coaxshell.solver.interface.march.march_block` does for all points.
+
+    Parameters
+    ----------
+    plan : RingPlan
+    state : RingState
+        Stays as it is.
+    displacement, velocity : ndarray, shape (steps, 2, classes)
+        Of the block, without absorbers.
+    surfaces : int
+        Of the structure.
+
+    Returns
+    -------
+    RingState
+    ndarray, shape (steps, 2, classes)
+        Forces.
+    ndarray, shape (steps, classes)
+        Displacements of the masses.
+    int
+        Iterations of all steps.
+
+    Raises
+    ------
+    TooStiffError
+    """
     links, count, half = plan.links, len(displacement), plan.links.half_step
     integral = half * (2.0 * np.tri(count, k=-1) + np.eye(count))
     excited = plan.excited(plan.kernels.forcing(state.history, count))
@@ -266,7 +307,7 @@ def _march_block(
     mass = free_q + integral @ u
     history, own = plan.kernels.push(state.history, plan.pressure(force, surfaces))
     moved = plan.excited(own)
-    after = _State(
+    after = RingState(
         force[-1],
         free_w[-1] + _integrated(integral[-1:], moved)[0],
         excited[-1] + moved[-1],
