@@ -10,7 +10,7 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.model import presets
 from coaxshell.solver.electrode_patterns import CutPatterns
-from coaxshell.solver.limited_currents import CurrentMarch
+from coaxshell.solver.limited_voltages import LimitedMarch
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.structure.segments import Segments
 
@@ -32,7 +32,7 @@ def test_a_condenser_by_hand():
     # Without an answer of the wall the voltage follows what is asked for by at most the limit a step.
     patterns = CutPatterns((Segments(5, 1.0, ()),), np.arange(4.0), 2)
     asked = np.cumsum(np.random.default_rng(2).normal(size=(1, patterns.numbers.count, 40)), axis=-1)
-    march = CurrentMarch(patterns, np.full((1, 5), 0.7), np.zeros((1, 1, patterns.numbers.count, 40)))
+    march = LimitedMarch(patterns, np.full((1, 5), 0.7), np.zeros((1, 1, patterns.numbers.count, 40)), moving=True)
     lack, _ = march.lack(asked)
     wanted, given = patterns.evaluate @ asked[0], patterns.evaluate @ (asked + lack)[0]
     so_far = np.zeros(5)

@@ -29,7 +29,7 @@ from coaxshell.structure.electroded_wall import ElectrodedWall
 if TYPE_CHECKING:
     from coaxshell.response.electrical import OfSegments
 
-_ROWS = (
+ROWS = (
     ("voltage", "largest voltage", "V"),
     ("field", "largest field", "V/m"),
     ("charge", "largest charge", "C/m^2"),
@@ -38,6 +38,7 @@ _ROWS = (
     ("apparent_power", "largest apparent power", "VA/m"),
     ("energy", "energy from the amplifier", "J/m"),
 )
+"""Attribute, words and unit of all that a shell's table tells."""
 _TOTALS = ("real_power", "apparent_power", "energy")
 """What adds up over the segments of a wall."""
 LIMITS = ("voltage", "current", "apparent_power")
@@ -125,7 +126,7 @@ class ShellEffort:
         """
         if not self.segments:
             raise InputError("shell", f"electrodes of {self.shell!r} are whole", "cut them: control.segments")
-        known = [one for one, *_ in _ROWS]
+        known = [one for one, *_ in ROWS]
         if name not in known:
             raise InputError("name", f"{name!r} is told of no segment", f"allowed: {', '.join(known)}")
         return max(self.segments, key=lambda one: float(getattr(one, name)))
@@ -168,7 +169,7 @@ class ControlEffort:
 
     def _rows(self, cut: bool) -> Iterator[tuple[str, ...]]:
         for one in self.shells:
-            for name, words, unit in _ROWS:
+            for name, words, unit in ROWS:
                 if (value := getattr(one, name)) is None:
                     continue
                 total = bool(one.segments) and name in _TOTALS

@@ -10,20 +10,12 @@ from typing import Any
 from coaxshell.model.places import shell_name
 from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.progress import Progress
-from coaxshell.response.effort import ControlEffort, control_effort
+from coaxshell.response.effort import ROWS, ControlEffort, control_effort
 from coaxshell.response.stations import StationMotion
 from coaxshell.response.summary_text import aligned
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.electrodes import Segment
 
-_ROWS = (
-    ("voltage", "largest voltage", "V"),
-    ("field", "largest field", "V/m"),
-    ("charge", "largest charge", "C/m^2"),
-    ("current", "largest current", "A/m^2"),
-    ("real_power", "largest real power", "W/m"),
-    ("apparent_power", "largest apparent power", "VA/m"),
-)
 _TOTALS = (("real_power", "largest real power", "W"), ("apparent_power", "largest apparent power", "VA"), ("energy", "energy given", "J"))
 
 
@@ -85,7 +77,7 @@ class SpatialEffort:
         """Return the aligned table."""
         rows = [("shell", "effort", "value", "limit", "share", "z [m]")]
         for place, shell in enumerate(self.each[0].shells):
-            for name, words, unit in _ROWS:
+            for name, words, unit in ROWS[:-1]:  # energy is told over the whole length
                 found = [(getattr(one.shells[place], name), z) for one, z in zip(self.each, self.stations, strict=True)]
                 if any(value is None for value, _ in found):
                     continue

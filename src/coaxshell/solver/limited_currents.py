@@ -15,7 +15,6 @@ Q the charge of strain per volt. Each step is one of limited voltages whose limi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -25,7 +24,6 @@ from coaxshell.model.places import shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.circle import peak_on_circle
-from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.actuation import voltage_asked
@@ -33,8 +31,7 @@ from coaxshell.solver.electrode_loops import ElectrodeLoops, times
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.electrodes import segment_length, segment_mean
 from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.limited_step import LimitedStep
-from coaxshell.solver.limited_voltages import BLOCK, at_points, driven_alone, inverted_weights, require_fine
+from coaxshell.solver.limited_voltages import LimitedMarch, at_points, driven_alone, inverted_weights, require_fine
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -92,48 +89,6 @@ def warnings_of(solved: SolvedSpectra) -> list[str]:
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class CurrentMarch:
-    """Constants of a march.
-
-    Attributes
-    ----------
-    patterns : Patterns
-    limits : ndarray, shape (walls, points)
-        I dt/C, V.
-    weights : ndarray, shape (walls, walls, patterns, T)
-        Of K.
-    """
-
-    patterns: Patterns
-    limits: FloatArray
-    weights: FloatArray
-
-    def lack(self, asked: FloatArray, progress: Progress | None = None) -> tuple[FloatArray, int]:
-        """Return delta, (walls, patterns, T), from alpha_0, and the iterations of all steps."""
-        steps = asked.shape[-1]
-        found, sums, history = np.zeros_like(asked), HistorySum(KernelTable(self.weights), 1), History()
-        present, given, iterations = self.weights[..., 0], np.zeros(asked.shape[:2]), 0
-        step = LimitedStep(self.patterns, self.limits, present)
-        for start in range(0, steps, BLOCK):
-            block = slice(start, min(start + BLOCK, steps))
-            size = block.stop - start
-            known = asked[..., block].copy()
-            if history.step:
-                known += sums.forcing(history, size)[:, 0]
-            for n in range(size):
-                delta, taken = step.solve(known[..., n] - given)
-                iterations += taken
-                given = known[..., n] + delta + np.einsum("ijq,jq->iq", present, delta)
-                if taken:
-                    found[..., start + n] = delta
-                    known[..., n + 1 :] += np.einsum("ijqt,jq->iqt", self.weights[..., 1 : size - n], delta)
-            history, _ = sums.push(history, found[:, None, :, block])
-            if progress is not None:
-                progress(block.stop / steps, "currents at their limit")
-        return found, iterations
-
-
 def _kernel(structure: StructureSpectra, patterns: Patterns, s: ComplexArray) -> ComplexArray:
     """Return K at some nodes, (walls, walls, patterns, nodes)."""
     problem, modes = structure.problem, structure.modes
@@ -169,7 +124,7 @@ def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, 
     steps = np.abs(np.diff(at_points(patterns, linear), axis=-1, prepend=0.0))
     if (steps <= limits[..., None] * (1.0 + 1e-9)).all():
         return None
-    march = CurrentMarch(patterns, limits, inverted_weights(structure, partial(_kernel, structure, patterns)))
+    march = LimitedMarch(patterns, limits, inverted_weights(structure, partial(_kernel, structure, patterns)), moving=True)
     require_fine(grid, march.weights)
     lack, iterations = march.lack(linear, progress)
     given = free + times(loops.inverse, grid.transform_linear(lack))

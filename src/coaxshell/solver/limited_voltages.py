@@ -54,17 +54,22 @@ class LimitedMarch:
         V; 0 on dead segments.
     weights : ndarray, shape (walls, walls, patterns, T)
         Of K.
+    moving : bool
+        Whether limits are those of a change since the step before, as of charges whose current is limited
+        (:mod:`coaxshell.solver.limited_currents`), instead of the voltage's own.
     """
 
     patterns: Patterns
     limits: FloatArray
     weights: FloatArray
+    moving: bool = False
 
     def lack(self, asked: FloatArray, progress: Progress | None = None) -> tuple[FloatArray, int]:
         """Return delta, (walls, patterns, T), from what is asked for without limits, and the iterations of all steps."""
         steps = asked.shape[-1]
         found, sums, history = np.zeros_like(asked), HistorySum(KernelTable(self.weights), 1), History()
-        step, iterations = LimitedStep(self.patterns, self.limits, self.weights[..., 0]), 0
+        present, before, iterations = self.weights[..., 0], np.zeros(asked.shape[:2]), 0
+        step, words = LimitedStep(self.patterns, self.limits, present), "currents" if self.moving else "voltages"
         for start in range(0, steps, BLOCK):
             block = slice(start, min(start + BLOCK, steps))
             size = block.stop - start
@@ -72,14 +77,16 @@ class LimitedMarch:
             if history.step:
                 known += sums.forcing(history, size)[:, 0]
             for n in range(size):
-                delta, taken = step.solve(known[..., n])
+                delta, taken = step.solve(known[..., n] - before if self.moving else known[..., n])
                 iterations += taken
+                if self.moving:
+                    before = known[..., n] + delta + np.einsum("ijq,jq->iq", present, delta)
                 if taken:
                     found[..., start + n] = delta
                     known[..., n + 1 :] += np.einsum("ijqt,jq->iqt", self.weights[..., 1 : size - n], delta)
             history, _ = sums.push(history, found[:, None, :, block])
             if progress is not None:
-                progress(block.stop / steps, "voltages at their limit")
+                progress(block.stop / steps, f"{words} at their limit")
         return found, iterations
 
 
