@@ -19,7 +19,7 @@ import coaxshell as cx
 from coaxshell.apps.studio.links import fragment
 
 WITHOUT_NETWORK = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
-PATIENCE = 300_000
+PATIENCE = 60_000
 """Milliseconds."""
 AT_REST = "!window.coaxshell?.state?.job && Boolean(window.coaxshell?.state?.runs?.current)"
 
@@ -85,16 +85,21 @@ def space(target: Path) -> None:
 
 
 def designs(target: Path) -> None:
-    """Two gains compared: what differs, the stress over time, the largest magnitudes."""
-    with page_of(cx.presets.load("electrodes"), {"duration": 3.0, "time_step": 1e-2, "modes": 24}, 1280, 1700) as page:
+    """Three designs compared, a law for each shell: what differs, the stress over time, the largest magnitudes."""
+    laws = [cx.PDControl(proportional=0, derivative=2, transducers="electrodes", shells=[shell]) for shell in ("inner", "outer")]
+    system = cx.presets.load("electrodes-hybrid").replace(control=laws)
+    changes = (("equal gains", None, ""), ("more inside", "control[0].derivative", "6"), ("lighter absorbers", "absorbers.mass", "5 kg/m"))
+    with page_of(system, {"duration": 4.0, "time_step": 5e-3, "modes": 60}, 1280, 1700) as page:
         page.locator("#tab-designs").click()
-        for name, gain in (("gentle", "2"), ("strong", "10")):
-            field = page.locator('input[type="text"][data-path="control.derivative"]')
-            field.fill(gain)
-            field.press("Enter")
-            rest(page)
+        page.evaluate("for (const part of document.querySelectorAll('#form details')) part.open = true")
+        for name, path, text in changes:
+            if path is not None:
+                field = page.locator(f'input[type="text"][data-path="{path}"]')
+                field.fill(text)
+                field.press("Enter")
+                rest(page)
             page.locator("#design-name").fill(name)
             page.get_by_role("button", name="Keep this design").click()
-        rest(page, "document.getElementById('designs-plot').data?.length === 2")
+        rest(page, "document.getElementById('designs-plot').data?.length === 3")
         page.wait_for_timeout(8000)  # until what was told of the last one is gone
-        photograph(page.locator("#designs"), target, height=1010)
+        photograph(page.locator("#designs"), target, height=1030)
