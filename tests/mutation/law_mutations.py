@@ -14,6 +14,14 @@ LAWS = (
         "solver/test_seen.py solver/test_line_absorbers.py",
     ),
     Mutation(
+        "lattice-surfaces",
+        "solver/interface/seen.py",
+        "(self._lattice, held, *(",
+        "(self._lattice, *(",
+        "kernels of a lattice between some shells are not those between others",
+        "solver/test_seen.py",
+    ),
+    Mutation(
         "lattice-kernels",
         "solver/kernels.py",
         "weights + of_kind @ exponential_weights(decays[:, None], grid) if leads else weights",

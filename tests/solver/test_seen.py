@@ -78,6 +78,16 @@ def test_kernels_of_a_lattice_are_shared_by_sets(structure: StructureSpectra) ->
     assert as_seen(structure, first).kernels is as_seen(structure, second).kernels
 
 
+def test_kernels_of_a_lattice_are_those_between_the_shells_that_it_holds() -> None:
+    bare = cx.presets.load("bare")
+    inner, outer = bare.shells
+    system = bare.replace(shells=[inner, inner.replace(radius=0.75), outer], fluids=[bare.exterior] * 4)
+    three = StructureSpectra(dimensionless(system), LaplaceGrid(0.05, 20), Modes.up_to(15))
+    for gap in (0, 1):  # the second lattice finds what is kept of the first
+        whole, few, _ = marched(three, cx.absorber_ring(9, inner_shell=gap, **CUBIC).absorbers)
+        assert_close(few.force, whole.force, 1e-9)
+
+
 def test_a_lattice_is_told_from_angles_that_are_none() -> None:
     assert lattice_of(np.array([5.0, 95.0, 185.0]), 10) == 4
     assert lattice_of(np.array([5.0, 95.1, 185.0]), 10) == 0

@@ -103,7 +103,8 @@ class StructureOfClasses(SeenStructure):
     def kernels(self) -> KernelTable:
         """Step weights of the velocities of each class of orders, (surfaces, surfaces, classes, T)."""
         means = None if self.absorbers.footprint is None else self.absorbers.means(self.problem, self.modes)[:, 0]
-        known, key = self.units.classes, (self._lattice, *(() if means is None else (self._held_by_side, means.tobytes())))
+        held = tuple(np.unique(self.of_orders.surface).tolist())  # no others have kernels
+        known, key = self.units.classes, (self._lattice, held, *(() if means is None else (self._held_by_side, means.tobytes())))
         if key not in known:
             while len(known) >= _KEPT:
                 known.pop(next(iter(known)))
