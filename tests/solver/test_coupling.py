@@ -1,4 +1,4 @@
-"""The tridiagonal elimination against the dense system written out from shells and fluids, loads on any shell."""
+"""The tridiagonal elimination against the dense system written out from shells and fluids: loads on any shell, the determinant."""
 
 from __future__ import annotations
 
@@ -60,6 +60,15 @@ def test_against_the_dense_system(problem: Problem, loaded: int) -> None:
             expected = np.linalg.solve(matrix, load)
             found = [part[m, n] for pair in zip(v, w, strict=True) for part in pair]
             np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13 * abs(expected).max())
+
+
+def test_determinant(problem: Problem) -> None:
+    # V_i eliminated with its own pivot K_vv + m s^2: the dense determinant is that of what remains times all pivots.
+    found = ModalSystem(problem, S, Modes(ORDERS)).determinant()
+    for m in range(ORDERS.size):
+        pivots = [shell.stiffness(Modes(np.array([float(m)]))).vv[0] + shell.mass * S * S for shell in problem.shells]
+        expected = [np.linalg.det(dense(problem, m, s)) for s in S]
+        np.testing.assert_allclose(found[m] * np.prod(pivots, axis=0), expected, rtol=1e-11)
 
 
 def test_maxwell_betti(problem: Problem) -> None:
