@@ -122,8 +122,8 @@ ELECTRODES = (
     Mutation(
         "axial-rank-one",
         "structure/axial_feedback.py",
-        "first = self.vv * push.u - self.uv * push.v",
-        "first = self.vv * push.u",
+        "(self.vv * push.u - self.uv * push.v) * inverse",
+        "(self.vv * push.u) * inverse",
         "the determinant of U, V and W of walls with electrodes",
         "structure/test_axial_electrodes.py",
     ),

@@ -185,7 +185,6 @@ def test_bad_input_is_told_before_anything_is_computed(control, said):
 def test_where_segments_are_not_known_it_is_said():
     system = cut(segments=4)
     for call, said in [
-        (lambda: cx.simulate(system, **RUN, dimensions=3), "dimensions=2"),
         (lambda: cx.simulate(system, **RUN, engine="direct"), "direct engine"),
         (
             lambda: cx.simulate(
@@ -194,7 +193,6 @@ def test_where_segments_are_not_known_it_is_said():
             "elastic wall",
         ),
         (lambda: cx.frequency_response(system, 1000.0, "stress", shell=0, angle=0.0), "at a frequency"),
-        (lambda: cx.stability_margins(system, modes=12, dimensions=3), "axial wavenumbers"),
         (lambda: cx.gradient(system, metric="inner.rms_stress", variables=["control.derivative"], **RUN), "backwards"),
         (lambda: system.with_overrides({"shells[0].layers[0].role": "sensor"}), "reads or pushes alone"),
     ]:

@@ -21,7 +21,7 @@ from coaxshell.response.energy.electrodes import on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
 from coaxshell.response.modal import amplitudes, orders
-from coaxshell.response.voltages import demanded_voltage, time_derivative
+from coaxshell.response.voltages import cut_voltage, demanded_voltage, time_derivative
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
@@ -82,6 +82,8 @@ def of_segments(motion: WallMotion, shell: int) -> OfSegments | None:
 
 
 def _of_segments(motion: WallMotion, shell: int, wall: SegmentedWall) -> OfSegments:
+    if motion.solution.along is not None:
+        return _segments_at_station(motion.solution, shell, wall)
     whole = _whole(motion)
     charges = wall.charges(whole.modes)
     assert whole.voltage is not None
@@ -103,13 +105,32 @@ def _electrical(motion: WallMotion, shell: int) -> Electrical:
 
 def _at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> Electrical:
     """Return what actuators hold and take at a station along the axis, from the fields there; the current by differences."""
+    voltage = demanded_voltage(solution, shell)
+    strained, capacitance = _held_at_station(solution, shell, wall)
+    return Electrical(voltage, *_charged(solution, strained + capacitance * voltage))
+
+
+def _segments_at_station(solution: ModalSolution, shell: int, wall: SegmentedWall) -> OfSegments:
+    """Return the same of each segment, per length along the axis there."""
+    cut, voltage = wall.segments, cut_voltage(solution, shell)
+    assert voltage is not None
+    strained, capacitance = _held_at_station(solution, shell, wall)
+    width = 2.0 * np.pi * wall.radius * cut.covered / cut.count * solution.problem.scales.length
+    return OfSegments(cut, width, voltage.voltage, *_charged(solution, cut.means(strained) + capacitance * voltage.voltage))
+
+
+def _held_at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> tuple[FloatArray, float]:
+    """Return the charge of all actuators without that of their voltage, (parities, M + 1, T), and their capacitance, dimensionless."""
     solution.need_every_instant("a current")
-    scales, voltage = solution.problem.scales, demanded_voltage(solution, shell)
-    total = np.zeros_like(voltage)
-    for moved, capacitance in wall.charges_of_fields(orders(solution)):
-        total += amplitudes(solution, shell, moved) + capacitance * voltage
-    charge = total * (scales.pressure * scales.length)
-    return Electrical(voltage, charge, time_derivative(charge, solution.settings.time_step * scales.time))
+    held = wall.charges_of_fields(orders(solution))
+    return sum((amplitudes(solution, shell, moved) for moved, _ in held), np.zeros(1)), sum(capacitance for _, capacitance in held)
+
+
+def _charged(solution: ModalSolution, charge: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a charge in C/m^2 and its current, A/m^2."""
+    scales = solution.problem.scales
+    charge = charge * (scales.pressure * scales.length)
+    return charge, time_derivative(charge, solution.settings.time_step * scales.time)
 
 
 def _whole(motion: WallMotion) -> Motion:

@@ -17,10 +17,9 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress, ShareDone
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.stability import require_stable_waves
-from coaxshell.solver.dimensions import require_loops_alone
 from coaxshell.solver.margins import Loop, LoopMargins, loops, margins_of
 from coaxshell.solver.scaling import Problem, dimensionless
-from coaxshell.solver.segmented_margins import segmented_loops
+from coaxshell.solver.segmented_margins import CutLoop, segmented_loops
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.stability import require_stable
 from coaxshell.solver.tied_stability import require_stable_ties
@@ -91,7 +90,7 @@ def worst_loops(system: System, settings: Settings, progress: Progress | None = 
         return _worst_waves(system, settings, progress)
     problem, modes = _problem(system, settings)
     if segments_of(system) is not None:
-        return _worst_patterns(problem, modes, _least(settings))
+        return _worst_patterns(problem, modes, _least(settings), progress)
     all_loops = loops(problem, modes, _least(settings), _part(progress, 0.0, _FOLLOWED))
     margins = {}
     for number, (shell, loop) in enumerate(all_loops.items()):
@@ -101,18 +100,23 @@ def worst_loops(system: System, settings: Settings, progress: Progress | None = 
     return labelled(problem, modes, margins), worst
 
 
-def _worst_patterns(problem: Problem, modes: Modes, least: float) -> tuple[xr.Dataset, list[LoopResponse]]:
+def _worst_patterns(problem: Problem, modes: Modes, least: float, progress: Progress | None) -> tuple[xr.Dataset, list[LoopResponse]]:
     """Return the margins of segments by their patterns, and L of the loop of each wall that stands the least delay."""
-    found = segmented_loops(problem, modes, least)
+    found = segmented_loops(problem, modes, least, _part(progress, 0.0, 1.0))
     margins = {shell: cut.margins for shell, cut in found.items()}
-    told = labelled(problem, Modes(next(iter(margins.values())).orders), margins)
+    told = _of_patterns(labelled(problem, Modes(next(iter(margins.values())).orders), margins), problem)
+    return told, [_worst_of_cut(problem, shell, cut) for shell, cut in found.items()]
+
+
+def _of_patterns(told: xr.Dataset, problem: Problem) -> xr.Dataset:
+    """Return margins whose orders are told to be patterns."""
     told["order"].attrs |= {"long_name": "pattern q of the segments, with the orders N - q, N + q, ... tied to it"}
-    told.attrs["segments"] = segments_of(problem.system)
-    worst = []
-    for shell, cut in found.items():
-        row = int(margins_of(cut.patterns, *cut.loop).delay.argmin())
-        worst.append(_of_order(problem, shell, row, cut.loop)._replace(order=int(cut.patterns[row])))
-    return told, worst
+    return told.assign_attrs(segments=segments_of(problem.system))
+
+
+def _worst_of_cut(problem: Problem, shell: int, cut: CutLoop) -> LoopResponse:
+    row = int(margins_of(cut.patterns, *cut.loop).delay.argmin())
+    return _of_order(problem, shell, row, cut.loop)._replace(order=int(cut.patterns[row]))
 
 
 def labelled(problem: Problem, modes: Modes, margins: dict[int, LoopMargins]) -> xr.Dataset:
@@ -161,27 +165,41 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
     highest = settings.axial_modes or float(orders.max_order)
     sampling = AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, orders.max_order, highest)
     require_stable_waves(problem, sampling, settings.duration)
-    found: dict[str, FloatArray] = {}
+    found: dict[str, dict[int, FloatArray]] = {}
     worst: dict[int, LoopResponse] = {}
+    cut = segments_of(system)
+    if cut is not None:
+        orders = Modes.up_to(cut // 2)
+    count = len(sampling.modes)
     for place, modes in enumerate(sampling.modes):
-        each = loops(problem, modes, _least(settings), _part(progress, place / len(sampling.modes), (place + 1) / len(sampling.modes)))
-        for row, (shell, loop) in enumerate(each.items()):
-            margins = margins_of(modes.orders, *loop)
+        each = _of_wave(problem, modes, _least(settings), _part(progress, place / count, (place + 1) / count))
+        for shell, (margins, response) in each.items():
             for name in _VARIABLES:
-                whole = found.setdefault(name, np.full((len(each), len(sampling.modes), orders.count), np.nan))
-                whole[row, place, : modes.count] = _entry(margins, name, problem)
-            known = found["delay_margin"][row]
+                known = found.setdefault(name, {}).setdefault(shell, np.full((count, orders.count), np.nan))
+                known[place, : margins.orders.size] = _entry(margins, name, problem)
+            known = found["delay_margin"][shell]
             if shell not in worst or margins.delay.min() * problem.scales.time <= np.nanmin(known):
-                k = float(modes.wavenumber) / problem.scales.length
-                worst[shell] = _of_order(problem, shell, int(margins.delay.argmin()), loop)._replace(wavenumber=k)
+                worst[shell] = response._replace(wavenumber=float(modes.wavenumber) / problem.scales.length)
+    values = {name: np.stack([each[shell] for shell in worst]) for name, each in found.items()}
     told = {"units": "1/m", "long_name": "axial wavenumber k"}
     axis = xr.Variable("wavenumber", sampling.wavenumbers / problem.scales.length, told)
-    return _dataset(problem, list(worst), orders.orders, ("shell", "wavenumber", "order"), found, wavenumber=axis), list(worst.values())
+    margins_told = _dataset(problem, list(worst), orders.orders, ("shell", "wavenumber", "order"), values, wavenumber=axis)
+    return margins_told if cut is None else _of_patterns(margins_told, problem), list(worst.values())
+
+
+def _of_wave(problem: Problem, modes: Modes, least: float, told: ShareDone) -> dict[int, tuple[LoopMargins, LoopResponse]]:
+    """Return the margins of each loop at one axial wavenumber, and L of what stands the least delay."""
+    if segments_of(problem.system) is not None:
+        cuts = segmented_loops(problem, modes, least, told)
+        return {shell: (cut.margins, _worst_of_cut(problem, shell, cut)) for shell, cut in cuts.items()}
+    found = {}
+    for shell, loop in loops(problem, modes, least, told).items():
+        margins = margins_of(modes.orders, *loop)
+        found[shell] = margins, _of_order(problem, shell, int(margins.delay.argmin()), loop)
+    return found
 
 
 def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
-    if settings.dimensions == 3:
-        require_loops_alone(system, "the sum over axial wavenumbers", "use dimensions=2, or leave {} out")
     if not isinstance(settings.modes, int):
         raise InputError("modes", f"{settings.modes!r} is not allowed here", "give the highest order")
     problem = dimensionless(system, settings.dimensions, settings)

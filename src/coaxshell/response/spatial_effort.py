@@ -10,7 +10,7 @@ from typing import Any
 from coaxshell.model.places import shell_name
 from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.progress import Progress
-from coaxshell.response.effort import ROWS, ControlEffort, control_effort
+from coaxshell.response.effort import ROWS, ControlEffort, ShellEffort, control_effort
 from coaxshell.response.stations import StationMotion
 from coaxshell.response.summary_text import aligned
 from coaxshell.solver.axial.solution import SpatialSolution
@@ -36,6 +36,13 @@ class LengthEffort:
     real_power: float
     apparent_power: float
     energy: float
+
+
+def _row(shell: ShellEffort, words: str, unit: str, value: float, station: float, limited: str | None) -> tuple[str, ...]:
+    """Return a row of what is largest over the stations, against the limit of a name."""
+    limit = None if limited is None else shell.limits.get(limited)
+    share = ("", "") if limit is None else (engineering(limit, unit), f"{100.0 * value / limit:.3g} %")
+    return shell.shell, words, engineering(value, unit), *share, f"{station:g}"
 
 
 @dataclass(frozen=True)
@@ -78,13 +85,15 @@ class SpatialEffort:
         rows = [("shell", "effort", "value", "limit", "share", "z [m]")]
         for place, shell in enumerate(self.each[0].shells):
             for name, words, unit in ROWS[:-1]:  # energy is told over the whole length
+                total = bool(shell.segments) and name.endswith("power")
                 found = [(getattr(one.shells[place], name), z) for one, z in zip(self.each, self.stations, strict=True)]
                 if any(value is None for value, _ in found):
                     continue
-                value, station = max(found)
-                limit = shell.limits.get(name)
-                share = ("", "") if limit is None else (engineering(limit, unit), f"{100.0 * value / limit:.3g} %")
-                rows.append((shell.shell, words, engineering(value, unit), *share, f"{station:g}"))
+                rows.append(_row(shell, f"{words}, all segments" if total else words, unit, *max(found), None if total else name))
+                if total:  # limits are those of one amplifier
+                    worst = [(getattr(one.shells[place].worst(name), name), z) for one, z in zip(self.each, self.stations, strict=True)]
+                    words = "largest voltage times current" if name == "apparent_power" else words
+                    rows.append(_row(shell, f"{words}, one segment", unit, *max(worst), name))
         for one in self.over_length:
             for name, words, unit in _TOTALS:
                 per = f"{unit}/m" if self.extent.startswith("per") else unit

@@ -148,6 +148,10 @@ class ModalSystem:
                 answer[i] = answer[i] - self._inward[i] * answer[i + 1]
         return answer
 
+    def compliance(self) -> ComplexArray:
+        """Return C_ij, W of shell i per normal load on shell j, shape (shells, shells, orders, nodes)."""
+        return np.stack([np.stack(self.solve(j, 1.0)) for j in range(len(self.shells))], axis=1)
+
     def solve_outside(self, pressure: ComplexArray) -> list[ComplexArray]:
         """Return W of every shell under a pressure on the surface that the exterior fluid wets: r_out/R of it loads the outermost shell."""
         last = len(self.shells) - 1

@@ -198,7 +198,7 @@ class Problem:
         """Whether feedback runs from wall to wall or from segment to segment, so that it ties walls or orders to each other."""
         return any((isinstance(wall, TiedWall) or wall.electrode_segments is not None) and wall.gains is not None for wall in self.shells)
 
-    @property
+    @cached_property
     def open_loop(self) -> Problem:
         """The problem without feedback."""
         return replace(self, shells=tuple(shell.with_gains(None) for shell in self.shells))

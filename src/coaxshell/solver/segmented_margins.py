@@ -16,6 +16,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.progress import ShareDone
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.margins import FURTHER, Loop, LoopMargins, followed, margins_of
@@ -44,15 +45,18 @@ class CutLoop(NamedTuple):
     margins: LoopMargins
 
 
-def segmented_loops(problem: Problem, modes: Modes, least: float) -> dict[int, CutLoop]:
-    """Return the loops of each wall that feeds anything back, by its number, on Re s = *least* or a little more."""
+def segmented_loops(problem: Problem, modes: Modes, least: float, told: ShareDone = lambda _: None) -> dict[int, CutLoop]:
+    """Return the loops of each wall that feeds anything back, by its number, on Re s = *least* or a little more.
+
+    *told* hears the share of the nodes that are done, and may end it by an exception.
+    """
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     nodes = contour._replace(fades=FURTHER * contour.fades).nodes
     walls = controlled(problem)
     patterns = patterns_of(problem, walls, modes.orders, 1)
     shown = patterns.numbers.orders[: _count(patterns)]
     found = {}
-    values = _values(problem, modes, patterns, nodes)
+    values = _values(problem, modes, patterns, nodes, told)
     for place, shell in enumerate(walls):
         if not values[place].any():
             continue
@@ -68,13 +72,14 @@ def _count(patterns: Patterns) -> int:
     return int(np.argmax(patterns.numbers.orders)) + 1
 
 
-def _values(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexArray) -> list[ComplexArray]:
+def _values(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexArray, told: ShareDone) -> list[ComplexArray]:
     """Return L of each wall under control, (loops, nodes) each."""
     found: list[list[ComplexArray]] = []
     for start in range(0, nodes.size, _BLOCK):
         loops = _at(problem, modes, patterns, nodes[start : start + _BLOCK])
         walls = range(len(loops.law))
         found.append([_eigenvalues(loops, i) if patterns.dead else _alone(loops, i) for i in walls])
+        told(min(1.0, (start + _BLOCK) / nodes.size))
     whole = [np.concatenate(each, axis=-1) for each in zip(*found, strict=True)]
     return [followed(one[:, None])[:, 0] for one in whole] if patterns.dead else whole
 

@@ -31,6 +31,7 @@ from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import Contour, along_alone, remedy
 from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
+from coaxshell.structure.shell_model import Gain
 
 _BLOCK = 512
 _SPACING = 0.8
@@ -49,7 +50,7 @@ class PatternPoles(NamedTuple):
     ratio: ComplexArray
 
 
-def collocated(problem: Problem, max_order: int) -> bool:
+def collocated(problem: Problem, max_order: int, wavenumber: float = 0.0) -> bool:
     """Return whether no motion of the walls can take energy from their laws' gains.
 
     Every wall is pushed by what it reads, its drive is its reading times -c in all orders, and with A its circumference c A K is symmetric
@@ -57,11 +58,11 @@ def collocated(problem: Problem, max_order: int) -> bool:
     """
     if problem.two_faced:
         return False  # what an elastic wall reads of the strain along it is its push but for parts of h/R
-    modes, shells, factors = Modes.up_to(max_order), controlled(problem), []
+    modes, shells, factors = Modes.up_to(max_order, wavenumber), controlled(problem), []
     shares = shares_of(problem, shells)
     for i in shells:
         wall = problem.shells[i]
-        push, read = (np.stack(gain[:2]) for gain in (wall.drive(modes), wall.sensor_gain(modes)))
+        push, read = (_parts(gain, modes) for gain in (wall.drive(modes), wall.sensor_gain(modes)))
         factor = float((push * read).sum() / max((read * read).sum(), 1e-300))
         if factor >= 0.0 or not np.allclose(push, factor * read, rtol=1e-9, atol=1e-9 * np.abs(push).max()):
             return False
@@ -71,6 +72,12 @@ def collocated(problem: Problem, max_order: int) -> bool:
         return False
     lowest = np.linalg.eigvalsh(weighted)[0]
     return bool(lowest >= -1e-12 * np.abs(weighted).max())
+
+
+def _parts(gain: Gain, modes: Modes) -> FloatArray:
+    """Return a gain per unit V, W and U, where there is an axial wavenumber, (2 or 3, orders)."""
+    axial = [] if modes.two_dimensional else [np.zeros_like(gain.w) if gain.u is None else gain.u]
+    return np.stack([gain.v, gain.w, *axial])
 
 
 def never_gives(problem: Problem, contour: Contour, max_order: int) -> bool:
@@ -104,11 +111,11 @@ def _factors(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArr
     return np.concatenate(found, axis=1), bool(patterns.dead)
 
 
-def growing(problem: Problem, max_order: int, least: float) -> PatternPoles | None:
-    """Return the patterns with poles that grow by more than a rate per transit; None if there can be none."""
-    modes = Modes.up_to(max_order)
+def growing(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> PatternPoles | None:
+    """Return the patterns with poles that grow, at an axial wavenumber, by more than a rate per transit; None if there can be none."""
+    modes = Modes.up_to(max_order, wavenumber)
     contour = Contour.of(problem, modes, least)
-    if collocated(problem, max_order) and never_gives(problem, contour, max_order):
+    if collocated(problem, max_order, wavenumber) and never_gives(problem, contour, max_order):
         return None
     return counted(along_alone(problem, modes), modes, contour)
 
@@ -142,9 +149,9 @@ class PatternGrowth(NamedTuple):
     frequency: float
 
 
-def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least: float) -> PatternGrowth:
+def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least: float, wavenumber: float = 0.0) -> PatternGrowth:
     """Return the fastest growth: its rate is enclosed by contours, from the last of which Newton's method finds the pole beside it."""
-    modes, low, high = Modes.up_to(max_order), least, 4.0 * least
+    modes, low, high = Modes.up_to(max_order, wavenumber), least, 4.0 * least
     problem = along_alone(problem, modes)
     while (beyond := counted(problem, modes, Contour.of(problem, modes, high))) is not None:
         found, low, high = beyond, high, 4.0 * high
@@ -181,14 +188,18 @@ def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: 
     return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
 
 
-def require_stable_ties(problem: Problem, max_order: int, duration: float) -> None:
-    """Raise InputError if segments are not resolved, or if loops that are tied would grow by a factor e within the duration."""
-    require_resolved(problem, max_order)
-    found = growing(problem, max_order, 1.0 / duration)
+def require_stable_ties(problem: Problem, max_order: int, duration: float, wavenumber: float = 0.0) -> None:
+    """Raise InputError if loops that are tied would grow by a factor e within the duration, or if a plane run does not resolve segments.
+
+    At an axial *wavenumber* above 0 patterns have the orders that the wave has, which may be none.
+    """
+    if wavenumber == 0.0:
+        require_resolved(problem, max_order)
+    found = growing(problem, max_order, 1.0 / duration, wavenumber)
     if found is None:
         return
     cut, laws = segments_of(problem.system), laws_of(problem.system)
-    fastest = fastest_growth(problem, max_order, found, 1.0 / duration)
+    fastest = fastest_growth(problem, max_order, found, 1.0 / duration, wavenumber)
     turns = fastest.frequency if not fastest.frequency < 1e-9 * fastest.rate else 0.0  # rounding of a real pole
     hertz = turns / (2.0 * np.pi * problem.scales.time)
     if laws[0].dead:
@@ -203,7 +214,8 @@ def require_stable_ties(problem: Problem, max_order: int, duration: float) -> No
             where += f"{fastest.pattern} with {others}, ..."
     entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
     told = f"by e^({fastest.rate:.3g} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
-    raise InputError(entries, f"{value} makes the closed loop unstable: {where} {told}", remedy(problem))
+    at = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
+    raise InputError(entries, f"{value} makes the closed loop unstable{at}: {where} {told}", remedy(problem))
 
 
 def _guilty(control: PDControl | Feedback) -> tuple[str, str]:

@@ -4,6 +4,8 @@ With V eliminated a voltage of order m on wall j is a normal load f_j = P_w + P_
 
     W_i = C_ij f_j u_j,      V_i = r_i W_i + (P_v/A_vv) u_i,      phi_i = (S_w + S_v r_i) W_i + (S_v P_v/A_vv) u_i.
 
+At an axial wavenumber U is eliminated with V: f has P_u U/W too, and in the place of P_v/A_vv stands what a voltage moves of both.
+
 Where walls have two faces voltages are no loads on a surface: :mod:`coaxshell.solver.faced_voltages`.
 """
 
@@ -47,12 +49,15 @@ class VoltageResponse:
         P_v/A_vv: V per volt where W is held.
     read : ndarray, shape (controlled, controlled, orders, nodes)
         Volts read on one wall per volt on another.
+    slid_axially : ndarray or None
+        U per volt where W is held, of the shape of ``slid``; None where nothing moves along the axis.
     """
 
     shells: tuple[int, ...]
     load: ComplexArray
     slid: ComplexArray
     read: ComplexArray
+    slid_axially: ComplexArray | None = None
 
     @classmethod
     def of(
@@ -63,26 +68,33 @@ class VoltageResponse:
         compliance: ComplexArray,
         ratio: Sequence[ComplexArray],
         reading: Callable[[ShellModel, Modes], Gain] = sensed_of,
+        axial: Sequence[ComplexArray | None] | None = None,
     ) -> VoltageResponse:
-        """Return it from the compliance C_ij (shells, shells, orders, nodes) and V/W of each wall, without feedback.
+        """Return it from the compliance C_ij (shells, shells, orders, nodes), V/W and U/W of each wall, without feedback.
 
         What is read is that of the sensors, or another *reading* of each wall.
         """
         shells = controlled(problem)
-        walls = [problem.shells[i] for i in shells]
-        shape = (modes.count, s.size)
-        slid = np.stack([np.broadcast_to(wall.driven_along(modes, s), shape) for wall in walls])
-        load = np.stack(
-            [np.broadcast_to(wall.drive(modes).columns.recovered(ratio[i]), shape) for wall, i in zip(walls, shells, strict=True)]
-        )
+        walls, shape = [problem.shells[i] for i in shells], (modes.count, s.size)
+        per_w = [(ratio[i], None if axial is None else axial[i]) for i in shells]
+        slides = [_slid(wall, modes, s) for wall in walls]
+        slid = np.stack([np.broadcast_to(v, shape) for v, _ in slides])
+        drives = [wall.drive(modes).columns.recovered(*each) for wall, each in zip(walls, per_w, strict=True)]
+        load = np.stack([np.broadcast_to(one, shape) for one in drives])
         gains = [reading(wall, modes).columns for wall in walls]
-        sensed = np.stack([gain.recovered(ratio[i]) for gain, i in zip(gains, shells, strict=True)])
+        sensed = np.stack([gain.recovered(*each) for gain, each in zip(gains, per_w, strict=True)])
         read = np.empty((len(shells), len(shells), *load.shape[1:]), np.complex128)
         for a, i in enumerate(shells):
             for b, j in enumerate(shells):
                 np.multiply(sensed[a] * load[b], compliance[i, j], out=read[a, b])
             read[a, a] += gains[a].v * slid[a]
-        return cls(shells, load, slid, read)
+        if modes.two_dimensional:
+            return cls(shells, load, slid, read)
+        axially = np.stack([np.zeros(shape, np.complex128) if u is None else np.broadcast_to(u, shape) for _, u in slides])
+        for a, gain in enumerate(gains):
+            if gain.u is not None:
+                read[a, a] += gain.u * axially[a]
+        return cls(shells, load, slid, read, axially)
 
     @classmethod
     def of_faces(cls, shells: tuple[int, ...], read: ComplexArray) -> VoltageResponse:
@@ -104,9 +116,24 @@ class VoltageResponse:
             shells = controlled(controls)
             return cls.of_faces(shells, readings_per_volt(passive, shells, modes, s))
         system = ModalSystem(passive, s, modes)
-        count = len(passive.shells)
-        compliance = np.stack([np.stack(system.solve(j, 1.0)) for j in range(count)], axis=1)
-        return cls.of(controls, modes, s, compliance, [wall.tangential for wall in system.shells], reading)
+        return cls.of_system(system, controls, system.compliance(), reading)
+
+    @classmethod
+    def of_system(
+        cls,
+        system: ModalSystem,
+        controls: Problem,
+        compliance: ComplexArray,
+        reading: Callable[[ShellModel, Modes], Gain] = sensed_of,
+    ) -> VoltageResponse:
+        """Return it from walls and fluids without feedback, at their modes and nodes."""
+        tangential, axial = [wall.tangential for wall in system.shells], [wall.axial for wall in system.shells]
+        return cls.of(controls, system.modes, system.s, compliance, tangential, reading, axial)
+
+
+def _slid(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[ComplexArray | float, ComplexArray | None]:
+    """Return V and U per volt of a wall whose W is held."""
+    return wall.driven_along_both(modes, s) if isinstance(wall, ElectrodedWall) else (wall.driven_along(modes, s), None)
 
 
 def controlled(problem: Problem) -> tuple[int, ...]:

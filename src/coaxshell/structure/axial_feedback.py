@@ -52,13 +52,17 @@ class FedBack(NamedTuple):
         uu, vv, uv = (self.uu / s).real, (self.vv / s).real, 0.5 * (self.uv / s + np.conj(self.vu / s))
         return np.asarray(0.5 * (uu + vv) - np.hypot(0.5 * (uu - vv), np.abs(uv)))
 
+    def driven_along(self, push: Gain) -> tuple[ComplexArray, ComplexArray]:
+        """Return B^-1 P_a as V and U per volt while W is held, P_a the parts of P along the wall."""
+        assert push.u is not None
+        inverse = np.reciprocal(self._determinant)
+        return (self.uu * push.v - self.vu * push.u) * inverse, (self.vv * push.u - self.uv * push.v) * inverse
+
     def answered_along(self, push: Gain, read: Gain) -> ComplexArray:
         """Return S_a B^-1 P_a, of the parts of P and S along the wall: what a unit gain takes off det B over det B."""
-        assert push.u is not None
         assert read.u is not None
-        first = self.vv * push.u - self.uv * push.v
-        second = self.uu * push.v - self.vu * push.u
-        return np.asarray((read.u * first + read.v * second) / self._determinant)
+        tangential, axial = self.driven_along(push)
+        return np.asarray(read.v * tangential + read.u * axial)
 
     @property
     def _determinant(self) -> ComplexArray:

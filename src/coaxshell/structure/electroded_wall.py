@@ -97,7 +97,9 @@ class ElectrodedWall(ThinWall):
             return np.asarray(opened)
         law, push, read = self.gains.stiffening(modes.orders, frequency), self.drive(modes), self.sensor_gain(modes)
         products = sum(a * b for a, b in zip(_parts(push), _parts(read), strict=True))
-        return np.asarray(opened + 0.5 * (np.abs(law) * _length(push) * _length(read) - law * products))  # of the symmetric part of -H P S'
+        return np.asarray(
+            opened + 0.5 * (np.abs(law) * length_of(push) * length_of(read) - law * products)
+        )  # of the symmetric part of -H P S'
 
     def _stiffness_along(self, modes: Modes) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return K_uu, K_uv and K_vv at an axial wavenumber with open sensors and the symmetric part of proportional feedback."""
@@ -163,11 +165,17 @@ class ElectrodedWall(ThinWall):
         along = self.mass * s * s + np.where(modes.column == 0, 1.0, self.dynamic_stiffness(modes, s).vv)
         return np.asarray(self.drive(modes).columns.v / along)
 
+    def driven_along_both(self, modes: Modes, s: ComplexArray) -> tuple[ComplexArray, ComplexArray | None]:
+        """Return V and U per volt while W is held; None for U where nothing moves along the axis."""
+        if modes.two_dimensional:
+            return self.driven_along(modes, s), None
+        return self._fed_back(modes, s, 0.0).driven_along(self.drive(modes).columns)
+
     def _feedback_size(self, modes: Modes) -> FloatArray:
         """Return |P||S|/M of each order, times the weight that the law gives it; 0 without feedback."""
         if self.gains is None:
             return np.zeros_like(modes.orders)
-        size = _length(self.drive(modes)) * _length(self.sensor_gain(modes)) / self.mass
+        size = length_of(self.drive(modes)) * length_of(self.sensor_gain(modes)) / self.mass
         return np.asarray(size * np.abs(self.gains.weight(modes.orders)))
 
     def feedback_frequency(self, modes: Modes) -> float:
@@ -278,7 +286,7 @@ def _sum(one: Gain, other: Gain | None) -> Gain:
     return Gain(one.v + other.v, one.w + other.w, None if one.u is None or other.u is None else one.u + other.u)
 
 
-def _length(gain: Gain) -> FloatArray:
+def length_of(gain: Gain) -> FloatArray:
     """Return the length of a gain as a vector."""
     return np.hypot(gain.v, gain.w) if gain.u is None else np.hypot(np.hypot(gain.v, gain.w), gain.u)
 

@@ -34,7 +34,7 @@ class SegmentedWall(TiedWall):
     def _spread(self, modes: Modes) -> FloatArray:
         """Return the sum of r_m |P| |S|/M over all orders of the pattern of each order."""
         orders = np.arange(0.0, modes.orders.max() + 1.0)
-        total = self.segments.loop_shares(orders, 1) @ self._size(Modes(orders))
+        total = self.segments.loop_shares(orders, 1) @ self._size(Modes(orders, modes.wavenumber))
         pattern = np.abs(modes.orders - self.segments.count * np.rint(modes.orders / self.segments.count))
         return np.asarray(total[pattern.astype(int)])
 

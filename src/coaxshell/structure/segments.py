@@ -86,12 +86,13 @@ class Segments:
         return np.tensordot(self.waves(orders, modal.shape[0]), modal, 2)
 
     def values(self, modal: Values) -> Values:
-        """Return u_k, (N, ...), from the u_m that it makes, (parities, M + 1, ...), M >= N/2: each pattern shows in its own order."""
+        """Return u_k, (N, ...), from the u_m that it makes, (parities, M + 1, ...): each pattern shows in its own order, or not."""
         parities, even = modal.shape[0], self.count // 2 + 1
         numbers = self.numbers(parities).astype(int)
         parity = np.where(np.arange(numbers.size) < even, 0, 1)
         own = self.loads(np.arange(float(even)), parities)[parity, numbers, np.arange(numbers.size)]
-        return np.tensordot(self.patterns(parities) / own, modal[parity, numbers], 1)
+        shown = numbers < modal.shape[1]
+        return np.tensordot((self.patterns(parities) / own)[:, shown], modal[parity[shown], numbers[shown]], 1)
 
     def loop_shares(self, orders: FloatArray, parities: int) -> FloatArray:
         """Return r_m of each order in each pattern, shape (patterns, orders); no pattern moves another one."""

@@ -13,8 +13,8 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
-from coaxshell.structure.shell_model import Leading, WallOperator
+from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall, length_of
+from coaxshell.structure.shell_model import Gain, Leading, WallOperator
 
 
 class Read(NamedTuple):
@@ -67,11 +67,16 @@ class TiedWall(ElectrodedWall):
         stiffening = np.maximum(self.gains.stiffening(modes.orders, alone), 0.0)
         return np.asarray(np.sqrt(alone**2 + stiffening * self._spread(modes)))
 
+    def shown_voltages(self, modes: Modes, s: ComplexArray) -> tuple[Gain, ...]:
+        """Return those of its layers and what it reads per unit (V, W, U), and 0 for what it gives, which is no matter of it alone."""
+        found, read = tuple(gain.columns for gain in self.potential_gains(modes)), self.sensor_gain(modes).columns
+        return found if self.gains is None else (*found, read, read.times(0.0))
+
     def _size(self, modes: Modes) -> FloatArray:
         """Return |P| times the sum of |k||S| of all that it reads, over M, of each order."""
         own = [Read(0, 1.0, self)] if self.reads is None else self.reads
-        read = sum((abs(one.factor) * np.hypot(*one.wall.sensor_gain(modes)[:2]) for one in own), np.zeros_like(modes.orders))
-        return np.asarray(np.hypot(*self.drive(modes)[:2]) * read / self.mass)
+        read = sum((abs(one.factor) * length_of(one.wall.sensor_gain(modes)) for one in own), np.zeros_like(modes.orders))
+        return np.asarray(length_of(self.drive(modes)) * read / self.mass)
 
     def _spread(self, modes: Modes) -> FloatArray:
         """Return the most that an order is fed back to itself, over M."""

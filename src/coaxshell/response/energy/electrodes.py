@@ -33,7 +33,7 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
         volts, held_by = driven_at(motion, i, wall)
         moved = [one for one, _ in held_by]
         if isinstance(wall, SegmentedWall):
-            volts, moved, area = on_segments(wall, volts, moved)
+            volts, moved, area = on_segments(wall, volts, moved, motion.around)
         history = grid.invert(volts)
         for strained, (_, capacitance) in zip(moved, charges, strict=True):
             current = s * (strained + capacitance * volts)
@@ -54,15 +54,19 @@ def driven_at(motion: Motion, shell: int, wall: ShellModel) -> tuple[ComplexArra
     return volts, [(_combined(charge, v, w, u), capacitance) for charge, capacitance in wall.charges(motion.modes)]
 
 
-def on_segments(wall: SegmentedWall, volts: ComplexArray, moved: list[ComplexArray]) -> tuple[ComplexArray, list[ComplexArray], FloatArray]:
-    """Return voltages and charges in orders as those of the segments, (1, N, nodes) each, and the width of each over a, (N,).
+def on_segments(
+    wall: SegmentedWall, volts: ComplexArray, moved: list[ComplexArray], around: int = 2
+) -> tuple[ComplexArray, list[ComplexArray], FloatArray]:
+    """Return voltages and charges in orders as those of the segments, and the width of each over a, (N,).
 
-    Orders end at M, and the voltage of a segment does not: the field under it is that of what its amplifier gives, not of its orders.
+    Of parities *around* the circle, (1, N, nodes) each; (2, N, nodes) where those of the axis stand beside them. Orders end at M, and the
+    voltage of a segment does not: the field under it is that of what its amplifier gives, not of its orders.
     """
     cut = wall.segments
-    voltage = cut.values(volts)  # of dead ones too: after a march they are 0 but for its error, which the motion has felt
     width = np.full(cut.count, 2.0 * np.pi * wall.radius * cut.covered / cut.count)
-    return voltage[None], [cut.means(one)[None] for one in moved], width
+    parts = [slice(first, first + around) for first in range(0, len(volts), around)]
+    voltage = np.stack([cut.values(volts[part]) for part in parts])  # of dead ones too: after a march they are 0 but for its error,
+    return voltage, [np.stack([cut.means(one[part]) for part in parts]) for one in moved], width  # which the motion has felt
 
 
 def _combined(gain: Gain, tangential: ComplexArray, normal: ComplexArray, axial: ComplexArray | None) -> ComplexArray:

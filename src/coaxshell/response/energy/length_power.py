@@ -15,12 +15,13 @@ import numpy as np
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
-from coaxshell.response.energy.electrodes import driven_at
+from coaxshell.response.energy.electrodes import driven_at, on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.whole_length import along_the_length
 from coaxshell.solver.axial.motion import wave_motions
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.structure.electroded_wall import ElectrodedWall
+from coaxshell.structure.segmented_wall import SegmentedWall
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,15 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
     grid = length.grid
     products = {i: np.zeros((3, grid.time.size)) for i in walls}
     for j, wave in enumerate(wave_motions(problem, length.sampling, grid, length.forces)):
-        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident)
+        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident, voltage=wave.voltage)
         for i, wall in walls.items():
             volts, charges = driven_at(motion, i, wall)
-            current = sum((moved + capacitance * volts for moved, capacitance in charges), np.zeros_like(volts)) * grid.nodes
-            u, c, weight = grid.invert(volts), grid.invert(current), wave.length * wall.radius * motion.circle
+            moved, weight = [one for one, _ in charges], wall.radius * motion.circle
+            if isinstance(wall, SegmentedWall):
+                volts, moved, weight = on_segments(wall, volts, moved, wave.around)
+            held = sum(capacitance for _, capacitance in charges)
+            current = (sum(moved, np.zeros_like(volts)) + held * volts) * grid.nodes
+            u, c, weight = grid.invert(volts), grid.invert(current), wave.length * weight
             products[i] += [np.einsum("m,hmt,hmt->t", weight, a, b) for a, b in ((u, c), (u, u), (c, c))]
         if progress is not None:
             progress((j + 1.0) / length.count, f"axial wavenumber {j + 1:,} of {length.count:,}")

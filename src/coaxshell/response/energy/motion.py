@@ -56,6 +56,8 @@ class Motion:
     usual_power : ndarray, shape (shells,), or None
         Of a motion that is one of many: all :meth:`power` of each wall in such a one on average. What is left out of a motion is measured
         by it where the motion has less.
+    around : int
+        How many parities there are of the circle, for each of the axis; all where there is none of the axis.
     """
 
     problem: Problem
@@ -71,6 +73,7 @@ class Motion:
     voltage: ComplexArray | None = None
     solid: SolidSpectra | FacedMotion | None = None
     usual_power: FloatArray | None = None
+    around: int = 2
 
     @classmethod
     def of(cls, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> Motion:

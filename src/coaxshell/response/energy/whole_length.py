@@ -74,7 +74,8 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     power = np.zeros(len(problem.shells))
     for j, wave in enumerate(wave_motions(problem, sampling, grid, forces)):
         moved = wave.normal, wave.tangential, wave.axial
-        motion = Motion(problem, grid, wave.modes, *moved, every * settings.refinement, wave.incident, solid=wave.solid)
+        known = every * settings.refinement, wave.incident
+        motion = Motion(problem, grid, wave.modes, *moved, *known, solid=wave.solid, voltage=wave.voltage, around=wave.around)
         power += [wave.length * motion.power(wall).sum() for wall in range(power.size)]
         if not uniform:
             motion = replace(motion, usual_power=_ALIKE * power / (count * wave.length))

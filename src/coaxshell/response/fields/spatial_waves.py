@@ -31,7 +31,8 @@ from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, faste
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import forces_of
 from coaxshell.solver.axial.sums import amplitudes_of
-from coaxshell.solver.excitation import source_parities, superposed
+from coaxshell.solver.axial.tied_wave import motion_parities
+from coaxshell.solver.excitation import superposed
 from coaxshell.solver.scaling import Problem
 
 _PAIRS = 16 * 1024
@@ -111,7 +112,7 @@ class SpatialWaves:
     @property
     def parities(self) -> int:
         """How many parities the motion around the circle has."""
-        return max(source_parities(self.problem), 1 if self.forces is None else self.forces.parities)
+        return max(motion_parities(self.problem), 1 if self.forces is None else self.forces.parities)
 
     def sets(self, block: slice) -> list[WaveSet]:
         """Return all waves at a slice of the nodes."""

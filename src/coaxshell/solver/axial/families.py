@@ -32,7 +32,8 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities, superposed
+from coaxshell.solver.axial.tied_wave import motion_parities
+from coaxshell.solver.excitation import SourceGroup, source_groups, superposed
 from coaxshell.solver.scaling import Problem
 
 
@@ -111,7 +112,7 @@ def wave_sets(
     forces : WallForces, optional
         At the same nodes.
     """
-    a, top, parities = problem.scales.length, sampling.max_order, source_parities(problem)
+    a, top, parities = problem.scales.length, sampling.max_order, motion_parities(problem)
     spherical: dict[float, list[SourceGroup]] = {}
     uniform: list[SourceGroup] = []
     sets: list[WaveSet] = []

@@ -53,6 +53,8 @@ def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, force
 
 def squares_of(problem: Problem, grid: LaplaceGrid, modes: Modes, family: Family) -> FloatArray:
     """Return |W|^2 and the strains' squares at the sampled nodes added up, shape (shells, 2, orders)."""
+    if problem.tied:
+        problem = problem.open_loop  # a sample of orders has not all that are tied
     w, v, u = amplitudes_of(problem, WaveSet([modes], [family]), 0, grid, NODES)[0][:3]
     m, k = modes.orders[:, None], np.asarray(modes.wavenumber)
     strain = np.abs(m * v - w) ** 2 + np.abs(k * u) ** 2

@@ -29,8 +29,9 @@ from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.sums import amplitudes_of
-from coaxshell.solver.excitation import incident_of, source_parities
+from coaxshell.solver.axial.sums import amplitudes_of, given_voltages
+from coaxshell.solver.axial.tied_wave import motion_parities
+from coaxshell.solver.excitation import incident_of
 from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import FacedMotion
@@ -53,6 +54,8 @@ class WaveMotion:
         Transforms of W, V and U.
     solid : FacedMotion or None
         What the faces do, where they move differently.
+    voltage : ndarray or None
+        Transforms of the actuators' voltages, (shells, parities, orders, nodes), where feedback ties walls or orders to each other.
     """
 
     modes: Modes
@@ -66,6 +69,7 @@ class WaveMotion:
     _problem: Problem
     _grid: LaplaceGrid
     solid: FacedMotion | None = None
+    voltage: ComplexArray | None = None
 
     @property
     def around(self) -> int:
@@ -74,7 +78,7 @@ class WaveMotion:
 
     def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return modal pressure and slope dp/dr on the outermost surface as if nothing were there, each (parities, orders, nodes)."""
-        parities = source_parities(self._problem)
+        parities = motion_parities(self._problem)
         sources = [i for i, family in enumerate(self._families) if family.forces is None]
         found = [np.stack(incident_of(self._families[i].groups, parities, self._grid, basis)) for i in sources]
         pressure, slope = _superposed(self._shares[sources], found, self._around)
@@ -109,7 +113,7 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
     forces : WallForces, optional
         Of absorbers, at these wavenumbers and nodes.
     """
-    origin, around = np.zeros(1), source_parities(problem)
+    origin, around = np.zeros(1), motion_parities(problem)
     around = around if forces is None else max(around, forces.parities)
     blocks = node_blocks(grid, sampling.max_order)
     per_block = [
@@ -124,7 +128,10 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         def work(which: int, j: int = j, shares: FloatArray = shares) -> ComplexArray:
             solve = motions_and_faces if problem.two_faced else amplitudes_of
             found = solve(problem, per_block[which], j, grid, blocks[which])
-            return _superposed(shares, [amplitude[: 7 if problem.two_faced else 3] for amplitude in found], around)
+            if problem.tied:
+                modes, s = per_block[which].modes[j], grid.nodes[blocks[which]]
+                found = [np.concatenate([one[:3], given_voltages(problem, modes, s, one)[None]]) for one in found]
+            return _superposed(shares, [amplitude[: 7 if problem.two_faced else 4 if problem.tied else 3] for amplitude in found], around)
 
         make_shapes(problem, [modes])
         with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
@@ -133,7 +140,8 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
         solid = FacedMotion(motion[3:5], motion[5:7]) if problem.two_faced else None
-        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], waves.families, shares, around, problem, grid, solid)
+        known = waves.families, shares, around, problem, grid, solid, motion[3] if problem.tied else None
+        yield WaveMotion(modes, length, motion[0], motion[1], motion[2], *known)
 
 
 def _one_set(sets: list[WaveSet]) -> WaveSet:

@@ -12,9 +12,11 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.electrode_patterns import segments_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution, is_whole
+from coaxshell.solver.voltage_response import controlled
 from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.shell_model import FIELDS, SOLID_STRESSES
 
@@ -131,7 +133,20 @@ class SpatialSolution:
             self.timings,
             control_voltage=given,
             along=motion,
+            segment_voltage=None if given is None else on_segments(self.problem, given),
         )
+
+
+def on_segments(problem: Problem, given: FloatArray) -> FloatArray | None:
+    """Return the voltages of the segments of all shells, V, (shells, N, T), from those in orders; None where electrodes are whole."""
+    cut = segments_of(problem, controlled(problem))
+    if not cut:
+        return None
+    found = np.zeros((len(problem.shells), cut[0].count, given.shape[-1]))
+    for segments, i in zip(cut, controlled(problem), strict=True):
+        found[i] = segments.values(given[i])
+        found[i, list(segments.dead)] = 0.0
+    return found
 
 
 def control_voltage(problem: Problem, potentials: Sequence[FloatArray], rates: Sequence[FloatArray]) -> FloatArray | None:

@@ -2,6 +2,7 @@
 
 A wave (m, k) is a system by itself. Walls that stay passive with their feedback cannot make one grow (:mod:`coaxshell.solver.passivity`),
 which is asked at a sample of wavenumbers; poles of those in doubt are counted at fewer, as they move with k as smoothly as with the order.
+Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import require_stable
+from coaxshell.solver.tied_stability import require_stable_ties
 
 ASKED, CHECKED = 24, 16
 """Wavenumbers at which passivity is asked, and at which poles are counted, at most: a tenth of what a run takes."""
@@ -23,6 +25,10 @@ ASKED, CHECKED = 24, 16
 def require_stable_waves(problem: Problem, sampling: AxialSampling, duration: float) -> None:
     """Raise InputError, naming gain, order and wavenumber, if the closed loop is unstable at a wavenumber of a run."""
     if all(wall.gains is None for wall in problem.shells):
+        return
+    if problem.tied:
+        for modes in sample(sampling.modes):
+            require_stable_ties(problem, modes.max_order, duration, float(modes.wavenumber))
         return
     for modes in sample(doubtful_waves(problem, sample(sampling.modes, ASKED), 1.0 / duration)):
         require_stable(problem, modes.max_order, duration, wavenumber=float(modes.wavenumber))

@@ -11,14 +11,15 @@ import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.faced import READ, faced_amplitudes
 from coaxshell.solver.axial.families import Family, WaveSet, outside_loads, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
 from coaxshell.solver.coupling import ModalSystem
-from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
 
 TOGETHER = 4
@@ -44,7 +45,7 @@ def station_sums(
     those left out that are zero at all stations; and "squares", (2, shells, 2, M + 1): mean squares along the axis of W and of the
     strains, |m V - W|^2 + |k U|^2, parities and nodes added up, under the sources [0] and under the forces of absorbers [1].
     """
-    s, parities = grid.nodes[block], source_parities(problem)
+    s, parities = grid.nodes[block], motion_parities(problem)
     parities = parities if forces is None else max(parities, forces.parities)
     shape = (stations.size, len(problem.shells), parities, sampling.max_order + 1, s.size)
     fields: dict[str, ComplexArray] = {}
@@ -85,8 +86,23 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
     """
     if problem.two_faced:
         return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
+    if problem.tied:
+        tied = TiedWave(problem, grid.nodes[block], waves.modes[j])
+        return [_tied_motions(problem, tied, family, grid, block) for family in waves.families]
     system = ModalSystem(problem, grid.nodes[block], waves.modes[j])
     return [motions_of(problem, system, family, grid, block) for family in waves.families]
+
+
+def _tied_motions(problem: Problem, tied: TiedWave, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
+    """Return the same as :func:`motions_of` where feedback ties walls or orders to each other."""
+    free = np.stack([np.stack(each) for each in normals_of(problem, tied.bare, family, grid, block)], axis=1)
+    moved = tied.driven(free)
+    motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
+    potentials = np.array(_potentials(problem, tied.bare, piezoelectric_layers(problem), *motion))
+    for i, wall in enumerate(problem.shells):
+        if wall.shows_control:
+            potentials[wall.shown_potentials - 1, i] = moved.voltage[i]
+    return np.concatenate([np.stack(moved[:3]), potentials])
 
 
 def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
@@ -107,6 +123,19 @@ def normals_of(problem: Problem, system: ModalSystem, family: Family, grid: Lapl
         each = [system.solve_outside(on_outermost[parity])] if on_outermost else []
         each += [system.solve(surface, pressures[parity]) for surface, pressures in forces.items()]
         found.append([np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)])
+    return found
+
+
+def given_voltages(problem: Problem, modes: Modes, s: ComplexArray, amplitudes: ComplexArray) -> ComplexArray:
+    """Return the voltages of all actuators, (shells, parities, orders, nodes), from what walls are read for; 0 of walls without."""
+    w, v, u = amplitudes[:3]
+    found: ComplexArray = np.zeros_like(w)
+    for i, wall in enumerate(problem.shells):
+        if wall.shows_control:
+            found[i] = amplitudes[2 + wall.shown_potentials, i]
+        elif wall.gains is not None:
+            read = wall.sensor_gain(modes).columns
+            found[i] = wall.gains.at(s, modes) * (read.v * v[i] + read.w * w[i] + (0.0 if read.u is None else read.u * u[i]))
     return found
 
 

@@ -1,0 +1,82 @@
+"""Feedback that ties walls or orders to each other, in one wave along the axis (theory manual, "Segments").
+
+Electrodes vary freely along the axis, so that each wavenumber is a system of loops by itself: those of
+:mod:`coaxshell.solver.electrode_loops`, of the orders that the wave has. The motion without feedback gives the readings, these the
+voltages, and the voltages move the walls besides,
+
+    W_i = W0_i + C_ij f_j u_j,      (V, U)_i = (r_v, r_u)_i W_i + B_i^-1 P_i u_i,
+
+B the stiffness of U and V on each other, P their load per volt (:mod:`coaxshell.structure.axial_feedback`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_patterns import patterns_of, segments_of
+from coaxshell.solver.excitation import source_parities
+from coaxshell.solver.scaling import Problem
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all
+
+
+class Driven(NamedTuple):
+    """Motion of all walls with their feedback and the voltages of their actuators, each (shells, parities, orders, nodes)."""
+
+    normal: ComplexArray
+    tangential: ComplexArray
+    axial: ComplexArray
+    voltage: ComplexArray
+
+
+def motion_parities(problem: Problem) -> int:
+    """Return how many parities around the circle walls move in under their sources: both where dead segments tie them."""
+    dead = any(one.dead for one in segments_of(problem, controlled(problem)))
+    return 2 if dead else source_parities(problem)
+
+
+class TiedWave:
+    """The loops of one wave.
+
+    Parameters
+    ----------
+    problem : Problem
+    s : ndarray, shape (nodes,)
+    modes : Modes
+        All orders from 0 to the highest where electrodes are cut.
+
+    Attributes
+    ----------
+    bare : ModalSystem
+        Walls and fluids without feedback.
+    """
+
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes) -> None:
+        self._problem, self.bare = problem, ModalSystem(problem.open_loop, s, modes)
+        self._compliance = self.bare.compliance()
+        self._response = VoltageResponse.of_system(self.bare, problem, self._compliance)
+        patterns = patterns_of(problem, self._response.shells, modes.orders, motion_parities(problem))
+        self._loops = ElectrodeLoops.of(problem, self._response, patterns, s)
+
+    def driven(self, normal: ComplexArray) -> Driven:
+        """Return what walls do with feedback that do W, (shells, parities, orders, nodes), without it."""
+        loops, response, modes = self._loops, self._response, self.bare.modes
+        ratios = [(wall.tangential, wall.axial) for wall in self.bare.shells]
+        sensed = [self._problem.shells[i].sensor_gain(modes).columns.recovered(*ratios[i]) for i in response.shells]
+        readings = np.stack([gain * normal[i] for gain, i in zip(sensed, response.shells, strict=True)])
+        voltage = loops.patterns.in_orders(loops.voltages(loops.patterns.readings(readings)))[:, : normal.shape[1]]
+        moved = normal.copy()
+        for load, volts, j in zip(response.load, voltage, response.shells, strict=True):
+            moved += self._compliance[:, j, None] * (load * volts)
+        tangential = np.stack([wall.tangential * w for wall, w in zip(self.bare.shells, moved, strict=True)])
+        axial = np.stack(self.bare.axial(list(moved)))
+        for place, i in enumerate(response.shells):
+            tangential[i] += response.slid[place] * voltage[place]
+            if response.slid_axially is not None:
+                axial[i] += response.slid_axially[place] * voltage[place]
+        return Driven(moved, tangential, axial, of_all(self._problem, response, voltage))
