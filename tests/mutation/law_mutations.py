@@ -93,4 +93,20 @@ LAWS = (
         "what one side of an unequal absorber does to the other",
         "solver/test_laws_of_absorbers.py",
     ),
+    Mutation(
+        "law-along-the-axis",
+        "solver/axial/line_laws.py",
+        "after = 2.0 * mean - seed.stretch",
+        "after = mean",
+        "over what a law of a line goes in a step",
+        "solver/test_laws_along_the_axis.py",
+    ),
+    Mutation(
+        "law-heat-of-a-line",
+        "response/energy/lines.py",
+        "lost, damped = np.cumsum(done) - by_laws, np.cumsum(damped)",
+        "lost, damped = np.cumsum(done), np.cumsum(damped)",
+        "what laws of lines lose is what they took less what they hold",
+        "solver/test_laws_along_the_axis.py",
+    ),
 )

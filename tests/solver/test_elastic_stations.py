@@ -198,10 +198,6 @@ def test_blocks_elsewhere_find_the_same(monkeypatch):
     ("changed", "message"),
     [
         ({"source": cx.PlaneWave(pulse=SLOW, inclination=20.0)}, r"source\.inclination: 20 degrees: .* pressure waves in the .* run ahead"),
-        (
-            {"absorbers": [cx.Absorber(mass=5.0, linear_stiffness=1e8, inner_shell=1, inertance=1.0)]},
-            "absorbers: line absorbers with laws, inertance, or a mass on one shell alone are solved in two dimensions",
-        ),
     ],
 )
 def test_what_is_not_solved_is_refused(changed, message):

@@ -124,7 +124,7 @@ def absorbers(solved: SolvedSpectra, refinement: int) -> list[str]:
     if not solved.marched or links.count == 0:
         return []  # solved exactly, or none
     if solved.laws is not None:
-        return _of_laws(solved.laws.angle, step, refinement)
+        return swinging_on_laws(solved.laws.angle, step, refinement)
     points: InterfacePoints | PointsAlone
     if solved.problem.two_faced:
         points, present = InterfacePoints(solved.problem, links, solved.modes), _masses(solved.problem, step, solved.modes)
@@ -154,7 +154,7 @@ def _masses(problem: Problem, step: float, modes: Modes) -> FloatArray:
     return np.asarray(np.diag(mobility)[:, :, None] * np.ones(modes.count))
 
 
-def _of_laws(angle: float, step: float, refinement: int) -> list[str]:
+def swinging_on_laws(angle: float, step: float, refinement: int) -> list[str]:
     """Return the warning about laws of links on which something swings by more than the step resolves; *angle* in radians a step."""
     if angle <= RESOLVED_ANGLE:
         return []

@@ -1,6 +1,7 @@
 """Energy of line absorbers over an axial period, and what their dampers turn into heat (unit rho_e c_e^2 a^3).
 
-Springs of third order have no energy of single axial wavenumbers: it is taken point by point, and integrated along the period.
+Springs of third order have no energy of single axial wavenumbers: it is taken point by point, and integrated along the period. So is that
+of links of any law, which are followed step by step through the stretches that the run found.
 """
 
 from __future__ import annotations
@@ -11,9 +12,11 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.absorbers import AbsorberEnergy
+from coaxshell.solver.axial.line_laws import laws_along, of_means
 from coaxshell.solver.axial.line_solve import LineSolution
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.motion import WaveMotion
+from coaxshell.solver.interface.absorbers import link_impedance
 from coaxshell.solver.interface.link_motion import LinkMotion, motion_by_law
 
 
@@ -61,6 +64,8 @@ def lines_energy(walls: WallsAtLines, kept: slice, length: float) -> AbsorberEne
     """
     layout, grid, series = walls.layout, walls.solution.grid, walls.layout.series
     absorbers, count = layout.absorbers, layout.absorbers.count
+    if absorbers.elements is not None:
+        return _energy_of_laws(walls, kept, length)
     instants = grid.time.size
     powers, energies = np.zeros((2, instants)), np.zeros((2, np.arange(instants)[kept].size))
 
@@ -84,6 +89,46 @@ def lines_energy(walls: WallsAtLines, kept: slice, length: float) -> AbsorberEne
                 powers[1] += share @ ((links.force[:, side] - spring) * parting)
     taken = integrate.cumulative_simpson(powers, dx=grid.time_step, initial=0.0, axis=-1)[:, kept]
     return AbsorberEnergy(energies[0], energies[1], taken[0], taken[1] - taken[0])
+
+
+def _energy_of_laws(walls: WallsAtLines, kept: slice, length: float) -> AbsorberEnergy:
+    """Return the energies of links that have laws, or differ, followed step by step; the defect is that of the work on the moving ends."""
+    layout, step, instants = walls.layout, walls.solution.grid.time_step, walls.solution.grid.time.size
+    absorbers, told = layout.absorbers, walls.solution.laws
+    assert absorbers.elements is not None
+    stretch, velocity = _stretches(walls)
+    each = length * np.multiply.outer(layout.series.weights, absorbers.multiplicity)  # share of every absorber at every point
+    share = np.tile(each, (1, 2))
+    damping, stiffness = (np.tile(x, 2) * absorbers.elements.present for x in (absorbers.damping, absorbers.linear))
+    laws = laws_along(layout.series, absorbers, step, None if told is None else told.compliance)
+    state, before = laws.at_rest(), np.zeros_like(share)
+    kinetic, stored, by_laws, damped, done, power = np.zeros((6, instants))
+    for n in range(1, instants):
+        parts = stretch, velocity, walls.solution.force, walls.velocity
+        after, speed, force, moving = (layout.series.values(np.ascontiguousarray(x[..., n])) for x in parts)
+        done[n] = np.sum(share.ravel() * laws.force(after.ravel(), state).value * (after - before).ravel())
+        state = laws.advance(after.ravel(), state)
+        by_laws[n] = share.ravel() @ laws.stored(state)
+        stored[n] = by_laws[n] + 0.5 * np.sum(share * stiffness * after**2)
+        damped[n] = np.sum(share * damping * (after - before) ** 2) / step
+        kinetic[n] = 0.5 * np.sum(each * absorbers.mass * speed**2)
+        power[n] = -np.sum(share * absorbers.held.ravel() * force * moving)
+        before = after
+    lost, damped = np.cumsum(done) - by_laws, np.cumsum(damped)
+    work = integrate.cumulative_simpson(power, dx=step, initial=0.0)
+    defect = work - kinetic - stored - damped - lost
+    return AbsorberEnergy(*(history[kept] for history in (kinetic, stored, damped, defect, lost)))
+
+
+def _stretches(walls: WallsAtLines) -> tuple[FloatArray, FloatArray]:
+    """Return the amplitudes of D (waves, 2N, axial parities, T) and of dq/dt (waves, N, axial parities, T), of links that have laws."""
+    solution, grid = walls.solution, walls.solution.grid
+    if solution.laws is not None:
+        return solution.laws.stretch, of_means(np.diff(solution.displacement, axis=-1, prepend=0.0) / grid.time_step)
+    assert solution.exact is not None
+    force, mass = solution.exact
+    z = link_impedance(walls.layout.absorbers, grid.nodes).T[:, None]
+    return grid.invert(np.divide(force, z, out=np.zeros_like(force), where=z != 0.0)), grid.invert(mass * grid.nodes)
 
 
 def _impedance(layout: LineLayout, grid: LaplaceGrid, point: int) -> float:

@@ -61,14 +61,14 @@ class LineForces:
         nearest = round(modes.wavenumber / self.layout.sampling.spacing)
         force = self.force[min(nearest, len(self.force) - 1), :, int(odd)]
         absorbers = self.layout.absorbers
-        shares, held = problem.point_force_shares(absorbers, modes), absorbers.footprint is not None
-        means = absorbers.means(problem, modes) if held else np.ones((2, absorbers.count, 1))
+        shares, weighed = problem.point_force_shares(absorbers, modes), absorbers.footprint is not None or absorbers.elements is not None
+        means = absorbers.means(problem, modes) * absorbers.held[:, :, None] if weighed else np.ones((2, absorbers.count, 1))
         found: dict[int, list[ComplexArray]] = {}
         for side in (0, 1):
             for number in np.unique(absorbers.surfaces[side]):
                 surface, chosen = int(number), np.flatnonzero(absorbers.surfaces[side] == number)
                 columns = np.ascontiguousarray(force[chosen + side * absorbers.count]).view(np.float64)
-                spread = [(share[chosen] * means[side, chosen]).T if held else share[chosen].T for share in shares]
+                spread = [(share[chosen] * means[side, chosen]).T if weighed else share[chosen].T for share in shares]
                 loads = [(each @ columns).view(np.complex128) / problem.surfaces[surface].radius for each in spread]
                 before = found.get(surface)
                 found[surface] = loads if before is None else [a + b for a, b in zip(before, loads, strict=True)]

@@ -5,12 +5,13 @@ What is linear within a block of steps is found for each wavenumber by itself. T
 
     D = D_known + R n(D),        n(D) = k_nl D^3 at every z (less the stiffness that was lent to the linear problem),
 
-R diagonal in the wavenumbers, n in the points of the period (:mod:`coaxshell.solver.axial.series`).
+R diagonal in the wavenumbers, n in the points of the period (:mod:`coaxshell.solver.axial.series`). Links of any other law are marched
+in the means over the steps (:mod:`coaxshell.solver.axial.line_laws`), between which all that is linear holds as between the instants.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,10 +19,12 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.axial.line_laws import LawSeed, LineLawHistories, LineLaws, means_of, of_means
 from coaxshell.solver.axial.line_newton import LineSolver, Seed
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.interface.block_response import LinkConstants, block_response, block_toeplitz
 from coaxshell.solver.interface.newton import ConvergenceError
+from coaxshell.solver.links.histories import at_instants
 
 _LONGEST_BLOCK = 32
 _BLOCK_UNKNOWNS = 128
@@ -63,11 +66,14 @@ class LineMarch:
         Of the masses.
     moved : ndarray, shape (waves, 2N, axial parities, T)
         Displacement that the forces give to the walls at the lines.
+    laws : LineLawHistories or None
+        What links of any law did.
     """
 
     force: FloatArray
     displacement: FloatArray
     moved: FloatArray
+    laws: LineLawHistories | None = None
 
 
 @dataclass(frozen=True)
@@ -82,7 +88,7 @@ class _Plan:
     force_of_input: FloatArray
     mass_velocity_of_input: FloatArray
     integral: FloatArray
-    solver: LineSolver
+    solver: LineSolver | LineLaws
 
 
 @dataclass(frozen=True)
@@ -95,7 +101,7 @@ class _State:
     mass_displacement: FloatArray
     mass_velocity: FloatArray
     history: History
-    seed: Seed
+    seed: Seed | LawSeed
 
 
 def march_lines(layout: LineLayout, motion: LineMotion, progress: Progress | None = None) -> LineMarch:
@@ -106,7 +112,10 @@ def march_lines(layout: LineLayout, motion: LineMotion, progress: Progress | Non
     InputError
         If a step does not converge.
     """
-    plan = _plan(layout, motion)
+    plan, linear = _plan(layout, motion), motion
+    if isinstance(plan.solver, LineLaws):
+        moved_by_sources, velocity = means_of(motion.displacement, motion.time_step)
+        linear = replace(motion, displacement=moved_by_sources, velocity=velocity)
     waves, n, parities, steps = len(layout.sampling.modes), layout.absorbers.count, layout.axial_parities, motion.steps
     force, mass, moved = (np.zeros((waves, points, parities, steps)) for points in (2 * n, n, 2 * n))
     walls, masses = np.zeros((3, waves, 2 * n, parities)), np.zeros((2, waves, n, parities))
@@ -114,12 +123,19 @@ def march_lines(layout: LineLayout, motion: LineMotion, progress: Progress | Non
     for first in range(1, steps, plan.length):
         block = slice(first, min(first + plan.length, steps))
         try:
-            state, force[..., block], mass[..., block], moved[..., block] = _march_block(plan, state, motion, block)
+            state, force[..., block], mass[..., block], moved[..., block] = _march_block(plan, state, linear, block)
         except ConvergenceError:
             raise _did_not_converge(plan, motion.time_step) from None
         if progress is not None:
             progress(block.stop / steps, "march of the line absorbers")
-    return LineMarch(force, mass, moved)
+    if not (isinstance(state.seed, LawSeed) and isinstance(plan.solver, LineLaws)):
+        return LineMarch(force, mass, moved)
+    mass, moved = of_means(mass), of_means(moved)
+    free = motion.displacement.copy()
+    free[..., 0] = 0.0
+    stretch = np.tile(mass, (1, 2, 1, 1)) - free - moved
+    histories = LineLawHistories(force, stretch, 2.0 * float(np.sqrt(state.seed.stiffest)), plan.solver.compliance)
+    return LineMarch(at_instants(force), mass, moved, histories)
 
 
 def block_steps(count: int) -> int:
@@ -139,6 +155,12 @@ def _plan(layout: LineLayout, motion: LineMotion) -> _Plan:
     nothing = np.zeros((length, 2 * absorbers.count, 0))
     answers = [block_response(links, kernel, nothing) for kernel in kernels]
     rows = np.stack([block_toeplitz(answer.stretch) for answer in answers])
+    lent = np.tile(links.auxiliary_stiffness, 2)
+    solver = (
+        LineLaws(layout.series, rows, absorbers, lent, motion.time_step)
+        if absorbers.of_any_law
+        else LineSolver(layout.series, rows, np.tile(absorbers.cubic, 2), lent)
+    )
     flat = motion.weights.reshape(*motion.weights.shape[:2], -1, motion.steps)
     return _Plan(
         layout,
@@ -149,7 +171,7 @@ def _plan(layout: LineLayout, motion: LineMotion) -> _Plan:
         np.stack([block_toeplitz(answer.force) for answer in answers]),
         np.stack([block_toeplitz(answer.mass_velocity) for answer in answers]),
         links.half_step * (2.0 * np.tri(length, k=-1) + np.eye(length)),
-        LineSolver(layout.series, rows, np.tile(absorbers.cubic, 2), np.tile(links.auxiliary_stiffness, 2)),
+        solver,
     )
 
 
@@ -172,7 +194,7 @@ def _march_block(plan: _Plan, state: _State, motion: LineMotion, block: slice) -
     size = count * 2 * n
     inputs = drive.reshape(waves, size, parities)
     known = free_stretch.reshape(waves, size, parities) + plan.rows[:, :size, :size] @ inputs
-    nonlinear_part, seed = plan.solver.solve(known, count, state.seed)
+    nonlinear_part, seed = _solved(plan.solver, known, count, state.seed)
     inputs = inputs + nonlinear_part
     force = (plan.force_of_input[:, :size, :size] @ inputs).reshape(waves, count, 2 * n, parities)
     u = (plan.mass_velocity_of_input[:, : count * n, :size] @ inputs).reshape(waves, count, n, parities)
@@ -182,6 +204,14 @@ def _march_block(plan: _Plan, state: _State, motion: LineMotion, block: slice) -
     moved = free_w + _integrated(integral, own_v)
     after = _State(force[:, -1], moved[:, -1], excited[:, -1] + own_v[:, -1], q[:, -1], free_u[:, 0] + u[:, -1], history, seed)
     return after, np.moveaxis(force, 1, -1), np.moveaxis(q, 1, -1), np.moveaxis(moved, 1, -1)
+
+
+def _solved(solver: LineSolver | LineLaws, known: FloatArray, count: int, seed: Seed | LawSeed) -> tuple[FloatArray, Seed | LawSeed]:
+    if isinstance(solver, LineLaws):
+        assert isinstance(seed, LawSeed)
+        return solver.solve(known, count, seed)
+    assert isinstance(seed, Seed)
+    return solver.solve(known, count, seed)
 
 
 def _both(force: FloatArray) -> FloatArray:
@@ -213,6 +243,9 @@ def _pressure(plan: _Plan, force: FloatArray) -> FloatArray:
 
 
 def _did_not_converge(plan: _Plan, time_step: float) -> InputError:
+    if isinstance(plan.solver, LineLaws):
+        found = f"steps of {time_step:g} (time_step/refinement) are too coarse for the laws of the absorbers: their forces did not converge"
+        return InputError("time_step", found, "use a quarter of time_step, or four times the refinement")
     if plan.links.auxiliary_stiffness.any():
         remedy = "give them a linear stiffness, however small, such as 1 kN/m^2, or a mass"
         return InputError(

@@ -54,7 +54,7 @@ def _changed(layout: LineLayout, links: AbsorberSet, grid: LaplaceGrid, sets: li
         normal = np.asarray(beside.under(family, grid, NODES))
         each = (layout.squares[j] * np.array(share[: layout.axial_parities])) ** 2
         squares += np.multiply.outer(each, (np.abs(normal) ** 2).sum(axis=0)).swapaxes(0, 1)
-    means, sides = links.means(problem, sample.modes), links.surfaces
+    means, sides = links.means(problem, sample.modes) * links.held[:, :, None], links.surfaces
     phase = np.exp(2j * np.pi * np.random.default_rng(j).random(force.shape)).reshape(2, links.count, *force.shape[1:])
     acting = force.reshape(phase.shape)
     found = np.empty((2, *phase.shape), np.complex128)

@@ -15,11 +15,13 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver.axial.blocks import BlockMap, Found
 from coaxshell.solver.axial.line_forces import LineForces, line_forces
+from coaxshell.solver.axial.line_laws import LineLawHistories
 from coaxshell.solver.axial.line_march import LineMarch, LineMotion, march_lines
 from coaxshell.solver.axial.line_structure import line_answers, line_kernels, wave_blocks
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.orders_left_out import with_tangent
 from coaxshell.solver.step_error import SHARES
 
@@ -45,7 +47,9 @@ class LineSolution:
     exact : tuple of ndarray, or None
         Transforms of force and displacement, where they were not marched.
     tangent : AbsorberSet
-        The absorbers carried, cubic springs by their mean tangent over all times and the whole axis.
+        The absorbers carried, cubic springs by their mean tangent over all times and the whole axis, other laws by what fits them best.
+    laws : LineLawHistories or None
+        What links of any law did in the march.
     """
 
     forces: LineForces
@@ -55,6 +59,7 @@ class LineSolution:
     tangent: AbsorberSet
     error: float = 0.0
     exact: tuple[ComplexArray, ComplexArray] | None = None
+    laws: LineLawHistories | None = None
 
     def with_waves(self, sampling: AxialSampling) -> LineSolution:
         """Return the same by a sampling of the same waves, whose modes keep nothing."""
@@ -85,10 +90,12 @@ def solve_lines(layout: LineLayout, grid: LaplaceGrid, on: BlockMap, progress: P
     found = _mapped(layout, grid, line_kernels, on, progress)
     motion = LineMotion(found["displacement"], found["velocity"], found["weights"], grid.time_step)
     result = march_lines(layout, motion, progress)
-    spectra = grid.transform_linear(result.force)
-    error = _march_error(layout, motion, result.moved)
-    tangent = _mean_tangent(layout, motion, result)
-    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, tangent, error)
+    error, laws = _march_error(layout, motion, result.moved), result.laws
+    if laws is None:
+        spectra, tangent = grid.transform_linear(result.force), _mean_tangent(layout, motion, result)
+    else:
+        spectra, tangent = middles_transform(grid, laws.force), laws.best_springs(layout.absorbers, grid.time_step)
+    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, tangent, error, laws=laws)
 
 
 def _mean_tangent(layout: LineLayout, motion: LineMotion, result: LineMarch) -> AbsorberSet:

@@ -19,7 +19,7 @@ from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.surfaces import SurfaceWave
 from coaxshell.solver.faced_forces import step_weights, trapezoidal_nodes
-from coaxshell.solver.interface.absorbers import admittance
+from coaxshell.solver.interface.absorbers import point_law, side_admittance
 from coaxshell.solver.kernels import velocity_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
 from coaxshell.solver.scaling import Problem
@@ -84,19 +84,15 @@ def line_answers(layout: LineLayout, grid: LaplaceGrid, waves: slice) -> Found:
         Transforms of "force", (waves, 2N, axial parities, nodes), and of the masses' "displacement", (waves, N, axial parities, nodes).
     """
     absorbers, count = layout.absorbers, layout.absorbers.count
-    own, other, mass = admittance(absorbers, grid.nodes)
-    law = np.zeros((grid.nodes.size, 2 * count, 2 * count), np.complex128)
-    index = np.arange(count)
-    for side in (0, 1):
-        law[:, side * count + index, side * count + index] = own
-        law[:, side * count + index, (1 - side) * count + index] = other
+    sides, law = side_admittance(absorbers, grid.nodes), point_law(absorbers, grid.nodes)
     forces, displacements = [], []
     for j in range(waves.start, waves.stop):
         motion, compliance = wave_answers(layout, grid, j)
         receptance = layout.points.receptance(layout.folded(compliance))
         walls = np.linalg.solve(np.eye(2 * count) + receptance @ law, np.moveaxis(motion, -1, 0))
         forces.append(np.moveaxis(-(law @ walls), 0, -1))
-        displacements.append(np.moveaxis(mass[:, :, None] * (walls[:, :count] + walls[:, count:]), 0, -1))
+        masses = sides.inner_share[:, :, None] * walls[:, :count] + sides.outer_share[:, :, None] * walls[:, count:]
+        displacements.append(np.moveaxis(masses, 0, -1))
         tell_share((j + 1 - waves.start) / (waves.stop - waves.start))
     return {"force": np.stack(forces), "displacement": np.stack(displacements)}
 

@@ -5,7 +5,7 @@ An absorber at theta_n is a continuum of oscillators side by side. With its prop
     f_j(z) = c dD_j/dt + k_l D_j + k_nl D_j^3,    D_j = q(z) - w_j(theta_n, z),    m d2q/dt2 = -f_0 - f_1,
 
 so that what is linear in it is the same at every axial wavenumber: the interface of two dimensions once for each of them. Only the cubes
-couple wavenumbers.
+couple wavenumbers, or other laws that are not linear; a law remembers at every z what it went through there.
 
 Where all angles lie on a lattice, theta_0 + 360 n/N degrees, cos m(theta_a - theta_b) is the same for all orders m = +-l (mod N): their
 compliances are added up beforehand, and N/2 classes l take the place of the orders.
@@ -77,7 +77,7 @@ class LineLayout:
 
     def felt(self, modes: Modes) -> FloatArray:
         """Return what the points feel of the orders of a wavenumber, h_m cos m theta_n, h_m sin m theta_n, (parities, 2N, orders)."""
-        shapes = np.tile(self.absorbers.shapes(modes), (1, 2, 1))
+        shapes = np.tile(self.absorbers.shapes(modes), (1, 2, 1)) * self.absorbers.held.reshape(-1, 1)
         if self.absorbers.footprint is None:
             return shapes
         return np.asarray(shapes * self.absorbers.means(self.problem, modes).reshape(2 * self.absorbers.count, -1))
@@ -155,9 +155,6 @@ def require_lines_alone(problem: Problem, settings: Settings) -> None:
     system = problem.system
     if not system.absorber_list:
         return
-    if absorber_set(problem, system.absorber_list, 2).elements is not None:
-        found = "line absorbers with laws, inertance, or a mass on one shell alone are solved in two dimensions"
-        raise InputError("absorbers", found, f"use dimensions=2, or {_row(problem, settings)}")
     if system.point_absorbers:
         raise InputError("absorbers", "line absorbers and point absorbers are not solved together", _row(problem, settings))
     for number, geometry in enumerate(problem.sources):

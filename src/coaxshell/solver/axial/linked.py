@@ -19,7 +19,7 @@ from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PairClasses, PointLayout, class_shares, pair_classes, point_receptance, point_sums
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.faced_forces import step_weights, trapezoidal_nodes
-from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, side_admittance
+from coaxshell.solver.interface.absorbers import AbsorberSet, PointsAlone, point_law, side_admittance
 from coaxshell.solver.interface.link_motion import LinkMotion, exact_motion, marched_motion, motion_of_laws
 from coaxshell.solver.kernels import exponential_weights, initial_decay
 from coaxshell.solver.links.any_law import march_interface
@@ -222,17 +222,6 @@ def solve_points(structure: PointStructure, progress: Progress | None = None) ->
     felt = carried if absorbers.elements is None else carried * absorbers.held.reshape(-1, 1)
     forces = PointForces(layout.points, layout.of_every(felt), layout.parities)
     return PointSolution(forces, sides, moved[absorbers.member], error, structure, carried, displacement, laws)
-
-
-def point_law(absorbers: AbsorberSet, nodes: ComplexArray) -> ComplexArray:
-    """Return Y of linear absorbers at Laplace nodes, f = -Y w, shape (nodes, 2N, 2N), inner sides first."""
-    count, index = absorbers.count, np.arange(absorbers.count)
-    sides = side_admittance(absorbers, nodes)
-    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
-    for a in (0, 1):
-        law[:, a * count + index, a * count + index] = sides[a]
-        law[:, a * count + index, (1 - a) * count + index] = sides.other
-    return law
 
 
 def _exact(structure: PointStructure) -> tuple[ComplexArray, ComplexArray]:

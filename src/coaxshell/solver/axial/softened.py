@@ -19,14 +19,14 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial.families import WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
-from coaxshell.solver.axial.linked import PointSolution, PointStructure, point_law
+from coaxshell.solver.axial.linked import PointSolution, PointStructure
 from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PointLayout
 from coaxshell.solver.axial.samples import Sample, samples_of, spherical_samples
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import amplitudes_of, mean_squares
 from coaxshell.solver.axial.surfaces import SurfaceWave
-from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.absorbers import AbsorberSet, point_law
 from coaxshell.solver.orders_left_out import mean_tangent
 from coaxshell.solver.sampled_orders import NODES
 from coaxshell.solver.scaling import Problem

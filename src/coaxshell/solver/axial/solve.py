@@ -93,6 +93,8 @@ def solve_spatial(
     stopwatch.lap("error estimates")
     warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
     warnings += checks.ideal_loop(problem, settings)
+    if linked is not None and linked.laws is not None:
+        warnings += checks.swinging_on_laws(linked.laws.angle, grid.time_step, settings.refinement)
     solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
     solution = replace(solution, warnings=(*warnings, *checks.actuators(*(solution.at(i) for i in range(len(settings.stations))))))
     if linked is not None:

@@ -269,6 +269,17 @@ def side_admittance(absorbers: AbsorberSet, s: ComplexArray) -> SideAdmittance:
     return SideAdmittance(inner - inner * shares[0], outer - outer * shares[1], -inner * shares[1], *shares)
 
 
+def point_law(absorbers: AbsorberSet, nodes: ComplexArray) -> ComplexArray:
+    """Return Y of linear absorbers at Laplace nodes, f = -Y w, shape (nodes, 2N, 2N), inner sides first."""
+    count, index = absorbers.count, np.arange(absorbers.count)
+    sides = side_admittance(absorbers, nodes)
+    law = np.zeros((nodes.size, 2 * count, 2 * count), np.complex128)
+    for a in (0, 1):
+        law[:, a * count + index, a * count + index] = sides[a]
+        law[:, a * count + index, (1 - a) * count + index] = sides.other
+    return law
+
+
 class InterfacePoints:
     """The 2N places at which absorbers hold surfaces of walls, and the maps between them and the modes.
 
