@@ -19,7 +19,8 @@ LINE = cx.LineShock(distance=3.0, peak_pressure=25e3, decay_time=0.13e-3, angle=
 COMMON = {"mass": 20.0, "damping": 1e4, "linear_stiffness": 1e8}
 MIXED = ("elastic", "thin")
 STOP = cx.laws.Gap(clearance=2e-6, stiffness=1e9, restitution=0.6)
-SLIDER = cx.laws.Friction(force=300.0, stiffness=1e9)
+HELD = 1e9
+SLIDER = cx.laws.Friction(force=300.0, stiffness=HELD)
 BRANCH = cx.laws.Maxwell(stiffness=2e8, relaxation_time=1e-4)
 DRY = cx.laws.Friction(force=300.0, static_force=400.0)
 LAWS: list[dict[str, Any]] = [
@@ -76,7 +77,7 @@ def test_on_one_shell_and_between_a_shell_and_a_core(links: str) -> None:
 def law_of(share: float) -> cx.laws.Sides:
     """Return a law of a line on so many metres of it."""
     stop = STOP.model_copy(update={"stiffness": share * STOP.stiffness})
-    slider = SLIDER.model_copy(update={"force": share * SLIDER.force, "stiffness": share * SLIDER.stiffness})
+    slider = SLIDER.model_copy(update={"force": share * SLIDER.force, "stiffness": share * HELD})
     branch = BRANCH.model_copy(update={"stiffness": share * BRANCH.stiffness})
     table = cx.laws.Table(stretch=(-1e-3, 0.0, 1e-3), force=(-5e4 * share, 0.0, 2e5 * share))
     return cx.laws.Sides(inner=cx.laws.Parallel(laws=(stop, slider)), outer=cx.laws.Parallel(laws=(branch, table)))
