@@ -61,6 +61,20 @@ def test_velocities_and_accelerations_come_if_they_are_asked_for(client):
     assert solve(client, system, who="rates", revision=9, histories="some").status_code == 400
 
 
+def test_bars_may_come_after_the_curves(client):
+    """They take as long as a slider's run; the curves are the same, and kept without them they do not stand for those with."""
+    system = {**described("absorbers"), "name": "bars later"}
+    header, arrays = decoded(solve(client, system, who="bars", revision=0, bars="later").content)
+    assert header["bars"] is None
+    later = client.get(f"/api/runs/{header['run']}/bars").json()
+    whole, same = decoded(solve(client, system, who="bars", revision=1).content)
+    assert later == {"run": header["run"], "bars": whole["bars"]}
+    assert {bar["name"] for bar in whole["bars"]} >= {"stress_head", "absorber_force"}
+    assert header["shells"] == whole["shells"]
+    assert all(np.array_equal(same[name], arrays[name]) for name in arrays)
+    assert solve(client, system, who="bars", revision=2, bars="never").status_code == 400
+
+
 def test_other_absorbers_on_a_structure_already_prepared_give_the_same_numbers(client):
     system = described("absorbers")
     solved(client, system)

@@ -64,7 +64,8 @@ def until(page, expression, argument=None):
 
 
 def run_of(page, slot="current"):
-    """Return arrays, bars, resolution and system of a run on the page."""
+    """Return arrays, bars, resolution and system of a run on the page; its bars come after its curves."""
+    until(page, f"window.coaxshell.state.runs.{slot}?.withBars")
     found = page.evaluate(RUN, slot)
     arrays = found["arrays"].items()
     found["arrays"] = {name: unpacked(one["values"], one["kind"]).astype(float).reshape(one["shape"]) for name, one in arrays}
@@ -87,7 +88,7 @@ def rest(page):
     until(
         page,
         "() => { const {state} = window.coaxshell; const run = state.runs.current;"
-        " return run && JSON.stringify(run.system) === JSON.stringify(state.system); }",
+        " return run?.withBars && JSON.stringify(run.system) === JSON.stringify(state.system); }",
     )
 
 

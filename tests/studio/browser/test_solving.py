@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
@@ -61,6 +62,31 @@ def test_a_slider_changes_the_curves_to_the_library_s_numbers(small_page):
     assert_same_stress(page, system)
     times = page.evaluate("window.coaxshell.times")
     assert len(times) >= 2
+
+
+LINES = """() => [...document.querySelectorAll('#curves .scatterlayer .trace')].map(one => {
+  const {trace} = one.__data__[0], d = one.querySelector('.js-line').getAttribute('d');
+  const {[trace.yaxis.replace('y', 'yaxis')]: axis} = document.getElementById('curves')._fullLayout;
+  return trace.name === 'current' && d.slice(1).split('L').map(place => axis.p2l(Number(place.split(',')[1])));
+}).filter(Boolean)"""
+"""What the lines of the current system mean on their axes."""
+
+
+def test_lines_that_a_slider_moves_are_those_that_plotly_draws_at_rest(open_page, server):
+    page = open_preset(open_page, server, SMALL)
+    before = page.evaluate(LINES)
+    page.evaluate(
+        "() => { window.pictures = 0; document.getElementById('curves').on('plotly_afterplot', () => { window.pictures += 1; }); }"
+    )
+    page.locator('input[type="range"][data-path="absorbers.mass"]').press("ArrowRight")
+    until(page, f"JSON.stringify(({LINES})()) !== {json.dumps(json.dumps(before, separators=(',', ':')))}")
+    moved, pictures = page.evaluate(f"[({LINES})(), window.pictures]")
+    until(page, "window.pictures > 0")
+    drawn = page.evaluate(LINES)
+    assert pictures == 0
+    assert len(moved) == len(drawn) == 4
+    assert_allclose(moved, drawn, rtol=0, atol=4e-4 * np.abs(drawn).max())  # a hundredth of a pixel, to which both are rounded
+    assert np.abs(np.subtract(moved, before)).max() > 2e-3 * np.abs(drawn).max()
 
 
 def test_a_typed_quantity_is_read_with_its_unit_and_can_be_undone(small_page):

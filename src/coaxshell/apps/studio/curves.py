@@ -18,6 +18,7 @@ from coaxshell.response.peaks import Peak
 from coaxshell.response.quantities import QUANTITIES, Quantity, Where, columns
 from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.tables import quantities_of
+from coaxshell.response.voltages import actuator_limit
 from coaxshell.response.wall_motion import WallMotion
 
 _ABSORBER_FORCE = {"absorber_force": ("absorber force, inward", "N/m")}
@@ -47,25 +48,28 @@ def rates() -> set[str]:
     return {quantity.name for quantity in columns() if quantity.rate}
 
 
-def curves(response: Response, seconds: float, *, with_rates: bool = True) -> Packed:
-    """Return header and arrays of a run as docs/studio-api.md says, those of velocities and accelerations if wanted."""
-    # Without peaks of velocities and accelerations, errors and warnings, which a slider would wait for.
-    summary = summarise(response.solution, judged=False)
+def curves(response: Response, seconds: float, *, with_rates: bool = True, with_bars: bool = True) -> Packed:
+    """Return header and arrays of a run as docs/studio-api.md says, with bars, and velocities and accelerations, if wanted."""
     absorbers = absorbers_of(response, response.system.absorber_list)
     left_out = [] if with_rates else sorted(rates())
-    header = {**header_of(response, summary, seconds), "absorbers": absorbers, "bars": bars_of(response, summary), "left_out": left_out}
+    header = {
+        **header_of(response, seconds),
+        "absorbers": absorbers,
+        "bars": bars_alone(response) if with_bars else None,
+        "left_out": left_out,
+    }
     return packed(header, {"time": Item(response.time, "transits"), **_histories(response, absorbers, with_rates)})
 
 
-def header_of(response: Response, summary: Summary, seconds: float) -> dict[str, Any]:
+def header_of(response: Response, seconds: float) -> dict[str, Any]:
     """Return what the headers of all runs have: resolution and shells."""
     system, count = response.system, len(response.system.shells)
-    highest = {shell.name: shell.actuator_limit for shell in summary.shells}
+    walls = response.solution.problem.shells
     return {
         "ok": True,
         "resolution": limits.table_of(response.settings),
         "seconds": seconds,
-        "transit_time_seconds": summary.transit_time,
+        "transit_time_seconds": system.transit_time,
         "name": system.name,
         "shells": [
             {
@@ -73,7 +77,7 @@ def header_of(response: Response, summary: Summary, seconds: float) -> dict[str,
                 "name": shell_name(index, count),
                 "radius": shell.radius,
                 "rigid": isinstance(shell, RigidShell),
-                "actuator_limit": highest.get(shell_name(index, count)),
+                "actuator_limit": actuator_limit(response.solution, index).volts if walls[index].has("actuator") else None,
             }
             for index, shell in enumerate(system.shells)
         ],
@@ -142,6 +146,14 @@ def _nearest(listed: Sequence[Absorber | PointAbsorber], head: float, inner_shel
         return min(numbers, key=lambda n: round(abs((listed[n].angle - angle + 180.0) % 360.0 - 180.0), 9))
 
     return nearest(head), nearest(head + 180.0)
+
+
+def bars_alone(response: Response) -> list[dict[str, Any]]:
+    """Return the bars of a run of two dimensions.
+
+    Without peaks of velocities and accelerations, errors and warnings, which take longer; they take as long as a slider's run.
+    """
+    return bars_of(response, summarise(response.solution, judged=False))
 
 
 def bars_of(response: Response, summary: Summary, dimensions: int = 2) -> list[dict[str, Any]]:

@@ -21,7 +21,7 @@ from coaxshell.model import System
 from coaxshell.solver.settings import Settings
 
 MOST_REVISION = 2**53
-HISTORIES = ("all", "without rates")
+HISTORIES, BARS = ("all", "without rates"), ("now", "later")
 T = TypeVar("T")
 
 
@@ -102,7 +102,7 @@ async def solve(request: Request) -> Response:
     """Answer with the curves of a system, or 204 when a newer revision has come."""
     studio, data = studio_of(request), await bodies.read_table(request)
     client, name = bodies.name_of(data, "client"), bodies.name_of(data, "slot")
-    revision, with_rates = bodies.whole_of(data, "revision", 0, MOST_REVISION), bodies.one_of(data, "histories", HISTORIES, "all") == "all"
+    revision, parts = bodies.whole_of(data, "revision", 0, MOST_REVISION), _parts(data)
     slot = studio.slot(client, name)
     if revision < slot.revision:
         return Response(status_code=204)
@@ -112,12 +112,13 @@ async def solve(request: Request) -> Response:
         if revision < slot.revision:
             return Response(status_code=204)
         run = studio.run_of(*pair)
-        content = studio.curves.get(run.name) or (None if with_rates else studio.curves.get((run.name, "without rates")))
+        kept_as = run.name if all(parts) else (run.name, *parts)
+        content = studio.curves.get(run.name) or studio.curves.get(kept_as)
         if content is None:
             # What still waits for this slot gives way; what runs already is finished, so that a slider that never rests is answered.
-            slot.work = work = studio.workers.submit(worker.solve, *run.pair, with_rates, place=run.place, instead_of=slot.work)
+            slot.work = work = studio.workers.submit(worker.solve, *run.pair, *parts, place=run.place, instead_of=slot.work)
             content = await work.future
-            studio.curves.put(run.name if with_rates else (run.name, "without rates"), content)
+            studio.curves.put(kept_as, content)
     except InputError as error:
         return JSONResponse(refusals.told(error))
     except asyncio.CancelledError:
@@ -129,6 +130,11 @@ async def solve(request: Request) -> Response:
         return Response(status_code=204)
     slot.answered = revision
     return arrays.answer(content, client=client, slot=name, revision=revision, run=run.name)
+
+
+def _parts(data: dict[str, Any]) -> tuple[bool, bool]:
+    """Return whether velocities and accelerations, and bars, are wanted together with the other curves."""
+    return bodies.one_of(data, "histories", HISTORIES, "all") == "all", bodies.one_of(data, "bars", BARS, "now") == "now"
 
 
 async def run(request: Request) -> Response:
@@ -146,15 +152,25 @@ async def of_run(run: Run, content: Any) -> Response:
         raise RefusedError.of(error) from None
 
 
+async def bars(request: Request) -> Response:
+    """Answer with the peaks of a run, which a slider's curves do not wait for."""
+    return await _told(request, worker.bars, "bars")
+
+
 async def judgement(request: Request) -> Response:
     """Answer with the estimated errors and the warnings of a run, which its curves do not wait for."""
+    return await _told(request, worker.judge)
+
+
+async def _told(request: Request, task: Callable[..., Any], name: str | None = None) -> Response:
+    """Answer with what a worker tells of a run: a table, or what stands under a name."""
     studio = studio_of(request)
     found = studio.run(request.path_params["run"])
     try:
-        told = await studio.workers.submit(worker.judge, *found.pair, place=found.place).future
+        told = await studio.workers.submit(task, *found.pair, place=found.place).future
     except InputError as error:
         raise RefusedError.of(error) from None
-    return JSONResponse({"run": found.name, **told})
+    return JSONResponse({"run": found.name, **(told if name is None else {name: told})})
 
 
 FIELD_INSTEAD = "use two dimensions here, or response.pressure(...) of a run in Python"
@@ -270,6 +286,7 @@ def routes() -> list[BaseRoute]:
         Route("/api/link/open", open_link, methods=["POST"]),
         Route("/api/upload", upload, methods=["POST"]),
         Route("/api/runs/{run}", run),
+        Route("/api/runs/{run}/bars", bars),
         Route("/api/runs/{run}/judgement", judgement),
         Route("/api/runs/{run}/energy", energy),
         Route("/api/runs/{run}/costs", costs),

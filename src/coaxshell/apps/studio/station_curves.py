@@ -18,7 +18,7 @@ def station_curves(response: SpatialResponse, seconds: float) -> Packed:
     absorbers = {**absorbers_of(response, response.system.absorber_list or points), "z": [point.z for point in points]}
     unit = "N" if points else "N/m"
     header = {
-        **header_of(response, summary.each[0], seconds),
+        **header_of(response, seconds),
         **judgement(response),
         "judged": True,
         "stations": list(summary.stations),

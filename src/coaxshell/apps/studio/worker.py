@@ -159,6 +159,19 @@ def judge(system: System, settings: Settings) -> dict[str, Any]:
     return told
 
 
+def bars(system: System, settings: Settings) -> list[dict[str, Any]]:
+    """Return the bars of a run, as they stand in the header of its curves."""
+    from coaxshell.apps.studio.curves import bars_alone
+    from coaxshell.apps.studio.station_curves import station_curves
+    from coaxshell.response.spatial import SpatialResponse
+
+    response = answer(system, settings)
+    if isinstance(response, SpatialResponse):
+        found: list[dict[str, Any]] = station_curves(response, 0.0).header["bars"]
+        return found
+    return bars_alone(response)
+
+
 def structure(system: System, settings: Settings) -> PreparedSystem:
     """Return all of a system but its absorbers, prepared: kept, or made and kept."""
     prepared = _at_hand(system, settings)
@@ -184,8 +197,8 @@ def _structure(system: System, settings: Settings) -> PreparedSystem:
     return prepare(system, settings=settings, retunable=live, progress=report)
 
 
-def solve(system: System, settings: Settings, with_rates: bool = True) -> Any:
-    """Return the curves of a run, those of velocities and accelerations if wanted."""
+def solve(system: System, settings: Settings, with_rates: bool = True, with_bars: bool = True) -> Any:
+    """Return the curves of a run, with bars, and velocities and accelerations, if wanted."""
     from coaxshell.apps.studio.curves import curves
     from coaxshell.apps.studio.station_curves import station_curves
     from coaxshell.response.spatial import SpatialResponse
@@ -193,4 +206,6 @@ def solve(system: System, settings: Settings, with_rates: bool = True) -> Any:
     start = time.perf_counter()
     response = answer(system, settings)
     seconds = time.perf_counter() - start
-    return station_curves(response, seconds) if isinstance(response, SpatialResponse) else curves(response, seconds, with_rates=with_rates)
+    if isinstance(response, SpatialResponse):
+        return station_curves(response, seconds)
+    return curves(response, seconds, with_rates=with_rates, with_bars=with_bars)

@@ -18,7 +18,8 @@ export const UNITS = {
   ms: { name: "ms", of: (run) => 1e3 * run.transit_time_seconds },
 };
 const ORDER = ["bare", "pinned", "current"]; // drawn one over the other
-let drawn = null, clicked = () => {};
+const REST = 300; // ms without another picture after which plotly makes it anew
+let drawn = null, resting = 0, clicked = () => {};
 
 export const onTime = (watcher) => { clicked = watcher; };
 
@@ -44,7 +45,54 @@ export function frame(more = {}) {
   return { style, axis, layout };
 }
 
-export function draw(runs, quantity, which, unit = "transits", station = null) {
+// Draw what is shown. While a slider moves only the lines of the current run do: they are drawn anew on the axes that there are, and all of
+// the picture once the slider rests, which takes plotly a hundred milliseconds.
+export function draw(...shown) {
+  clearTimeout(resting);
+  if (moved(...shown)) resting = setTimeout(() => whole(...shown), REST);
+  else whole(...shown);
+}
+
+// Write the lines of the current run anew where nothing else differs from the picture and they fit on its axes; tell whether.
+function moved(runs, quantity, which, unit = "transits", station = null) {
+  const { current } = runs, { picture } = drawn ?? {}, box = by("curves");
+  if (!picture || !current || current.full || picture.key !== keyOf(runs, quantity, which, unit, station)) return false;
+  const lines = picture.lines.filter(({ run }) => run === "current"), histories = lines.map(({ panel }) => history(current, quantity.name, panel));
+  const [low, high] = ends([...histories, ...picture.others]), room = picture.high - picture.low;
+  if (histories.some((values, i) => values?.length !== lines[i].length) || low < picture.low || high > picture.high || high - low < 0.7 * room) return false;
+  const nodes = new Map([...box.querySelectorAll(".scatterlayer .trace")].map((node) => [node.__data__?.[0]?.trace.index, node.querySelector(".js-line")]));
+  if (lines.some(({ number }) => !nodes.get(number))) return false;
+  lines.forEach(({ number, axes: [x, y] }, i) => {
+    const values = scaled(histories[i], picture.factor), times = box.data[number].x, { [x]: across, [y]: up } = box._fullLayout;
+    box.data[number].y = values;
+    nodes.get(number).setAttribute("d", pathOf(times, values, across, up));
+  });
+  describe(runs, quantity, station, picture.unit);
+  return true;
+}
+
+// The path of a line on plotly's linear axes, in hundredths of a pixel.
+function pathOf(times, values, across, up) {
+  const x = pixels(across), y = pixels(up), points = [];
+  for (let i = 0; i < values.length; i++) points.push(`${x(times[i])},${y(values[i])}`);
+  return `M${points.join("L")}`;
+}
+
+// From a value to its place along an axis, by both ends of its range: plotly's own l2p is rounded, too much so for the length of a unit.
+function pixels({ range: [from, to], l2p }) {
+  const first = l2p(from), each = (l2p(to) - first) / (to - from);
+  return (value) => Math.round(100 * (first + each * (value - from))) / 100;
+}
+
+// What a picture shows besides the values of the current run.
+let others = { bare: null, pinned: null, number: 0 };
+function keyOf({ bare = null, pinned = null, current }, quantity, which, unit, station) {
+  if (bare !== others.bare || pinned !== others.pinned) others = { bare, pinned, number: others.number + 1 };
+  const { length, [length - 1]: last } = current.arrays.time.values;
+  return [others.number, quantity.name, which, unit, station, length, last, UNITS[unit].of(current), document.documentElement.dataset.theme].join("|");
+}
+
+function whole(runs, quantity, which, unit = "transits", station = null) {
   const current = runs.current ?? runs.bare;
   if (!current || !window.Plotly) return;
   const wanted = panels(current, quantity.name, which).map((panel) => ({ ...panel, station }));
@@ -55,7 +103,7 @@ export function draw(runs, quantity, which, unit = "transits", station = null) {
   const { style, axis, layout } = frame(), { name, of } = UNITS[unit];
   const times = Object.fromEntries(ORDER.filter((key) => runs[key]).map((key) => [key, scaled(runs[key].arrays.time.values, 1 / of(runs[key]))]));
   layout.uirevision = `${quantity.name}${which}${unit}${station}`;
-  const traces = [];
+  const traces = [], lines = [];
   wanted.forEach((panel, i) => {
     const n = i ? String(i + 1) : "", gapX = 0.05, gapY = 0.15;
     const width = (1 - gapX * (columns - 1)) / columns, height = (1 - gapY * (rows - 1)) / rows;
@@ -67,6 +115,7 @@ export function draw(runs, quantity, which, unit = "transits", station = null) {
     for (const key of ORDER) {
       const values = history(runs[key], quantity.name, panel);
       if (!values) continue;
+      lines.push({ run: key, panel, length: values.length, number: traces.length, axes: [`xaxis${n}`, `yaxis${n}`] });
       traces.push({ type: "scatter", mode: "lines", name: RUNS[key].name, x: times[key], y: scaled(values, scale.factor), xaxis: `x${n}`, yaxis: `y${n}`,
         line: { color: colour(RUNS[key].colour), width: RUNS[key].width, dash: RUNS[key].dash, simplify: false }, hovertemplate: `%{y:.4~g} ${scale.unit}` });
     }
@@ -75,9 +124,16 @@ export function draw(runs, quantity, which, unit = "transits", station = null) {
   const box = by("curves");
   window.Plotly.react(box, traces, layout, SETTINGS);
   if (!drawn) box.on("plotly_click", ({ points }) => clicked(points[0].x / drawn.transit));
-  drawn = { wanted, key: quantity.name, transit: of(current) };
-  box.setAttribute("role", "group");
-  box.setAttribute("aria-label", `${quantity.label} against time${station === null ? "" : ` at ${placeText(station)}`}: ${wanted.map((p) => `${p.title} up to ${show(largest(history(current, quantity.name, p)), unitOf)}`).join("; ")}`);
+  const still = lines.filter(({ run }) => run !== "current").map(({ run, panel }) => history(runs[run], quantity.name, panel));
+  const picture = runs.current && { key: keyOf(runs, quantity, which, unit, station), lines, others: still, low: low - margin, high: high + margin, factor: scale.factor, unit: unitOf };
+  drawn = { wanted, transit: of(current), picture };
+  describe(runs, quantity, station, unitOf);
+}
+
+function describe(runs, quantity, station, unit) {
+  const run = runs.current ?? runs.bare, peak = (panel) => `${panel.title} up to ${show(largest(history(run, quantity.name, panel)), unit)}`;
+  by("curves").setAttribute("role", "group");
+  by("curves").setAttribute("aria-label", `${quantity.label} against time${station === null ? "" : ` at ${placeText(station)}`}: ${drawn.wanted.map(peak).join("; ")}`);
 }
 
 function history(run, name, { shell, end, station }) {

@@ -5,16 +5,28 @@ import { finished } from "./events.js";
 
 const PATIENCE = 900; // ms without a change before full resolution starts
 const PAUSE = 150; // and before errors and warnings are asked for
+const OFTEN = 400; // ms between bars while a slider moves: they take as long as a run
 const QUIET = 350; // ms without a change before a preview in three dimensions starts
 let revision = 0;
 export const sent = { rates: false }; // whether velocities and accelerations are, whose transforms a slider would wait for
 export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
+// The curves of a run are drawn now: only those of a preview after a change are timed.
+export function drawn(result) {
+  if (result?.since === undefined) return;
+  times.push(performance.now() - result.since);
+  delete result.since;
+}
+
+// Whether two runs have as many shells, and of the same kinds.
+const alike = (one, other) => one.shells?.map(({ rigid }) => rigid).join() === other.shells.map(({ rigid }) => rigid).join();
+
 export class Slot {
-  // `name` of the slot; `show(result)` draws, `judged(result)` if errors and warnings shall follow, `problem(problems)` of the description, `progress(job or null)`,
+  // `name` of the slot; `show(result)` draws, `measured(result)` tells that there are newer bars, `judged(result)` if errors and warnings
+  // shall follow, `problem(problems)` of the description, `progress(job or null)`,
   // `fail(error, full)` of anything else; `full` tells that only full resolution failed.
   constructor(name, tell) {
-    Object.assign(this, { name, tell, wanted: null, busy: false, shown: 0, full: null, timer: 0, result: null });
+    Object.assign(this, { name, tell, wanted: null, busy: false, shown: 0, full: null, timer: 0, result: null, asked: 0, measured: 0 });
   }
 
   // Ask for a system; the newest wish wins. One request is on its way at a time: a drag gets every answer that there is time for.
@@ -31,7 +43,7 @@ export class Slot {
     this.busy = true;
     try {
       const { system, resolution } = wish;
-      const answer = await request("/api/solve", { body: { client, slot: this.name, revision: wish.revision, system, resolution, histories: sent.rates ? "all" : "without rates" } });
+      const answer = await request("/api/solve", { body: { client, slot: this.name, revision: wish.revision, system, resolution, histories: sent.rates ? "all" : "without rates", bars: "later" } });
       if (this.wanted.revision === wish.revision || (answer && this.shown < wish.revision)) this.take(wish, answer);
     } catch (error) {
       if (this.wanted.revision === wish.revision) { this.shown = wish.revision; this.tell.fail(error); }
@@ -46,21 +58,36 @@ export class Slot {
     this.shown = wish.revision;
     if (!answer.ok) {
       this.stopFull();
+      if (this.result) this.measure(this.result, true); // it stays
       // What is too much for a preview may be asked for in full, whose limits have been looked at before.
       if (wish.full && answer.problem.where === "resolution" && this.wanted.revision === wish.revision) return this.refine();
       return this.tell.problem(answer.problems ?? [answer.problem], wish);
     }
     this.keep(wish, answer, false);
-    if (this.name === "current") times.push(performance.now() - wish.since);
     if (wish.full && this.wanted.revision === wish.revision) this.timer = setTimeout(() => this.refine(), PATIENCE);
   }
 
   keep(wish, answer, full) {
-    const { estimates = null, warnings = [] } = this.result ?? {}; // of the one before, as long as there are none of this one
-    const result = { estimates, warnings, judged: false, ...answer, full, revision: wish.revision, system: wish.system };
+    const before = this.result ?? {}, { estimates = null, warnings = [] } = before; // of the one before, as long as there are none of this one
+    const bars = answer.bars ?? (alike(before, answer) ? before.bars : []);
+    const result = { estimates, warnings, judged: false, ...answer, bars, withBars: Boolean(answer.bars), full, revision: wish.revision, system: wish.system };
+    if (this.name === "current" && !full) result.since = wish.since;
     this.result = result;
     this.tell.show(result);
+    this.measure(result);
     if (this.tell.judged && !result.judged) setTimeout(() => this.judge(result), full ? 0 : PAUSE);
+  }
+
+  // Bars of a run whose curves came without: at once where it rests, of a few runs on the way while a slider moves.
+  async measure(result, stays = false) {
+    const rests = stays || this.wanted.revision === result.revision;
+    if (result.withBars || (!rests && performance.now() - this.asked < OFTEN)) return;
+    this.asked = performance.now();
+    const told = await request(`/api/runs/${result.run}/bars`).catch(() => null), now = this.result;
+    if (!told || now.withBars || this.measured > result.revision || !alike(now, result)) return;
+    this.measured = result.revision;
+    Object.assign(now, { bars: told.bars, withBars: now === result });
+    this.tell.measured?.(now);
   }
 
   async judge(result) {

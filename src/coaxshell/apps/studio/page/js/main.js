@@ -12,7 +12,7 @@ import * as guide from "./guide.js";
 import * as handles from "./handles.js";
 import * as link from "./link.js";
 import * as loops from "./loops.js";
-import { Slot, sent, times } from "./live.js";
+import { Slot, drawn, sent, times } from "./live.js";
 import * as past from "./past.js";
 import { read, written } from "./paths.js";
 import * as peaks from "./peaks.js";
@@ -32,10 +32,10 @@ const page = { world: null, system: null, resolution: null, problems: [], runs: 
 
 const PANELS = [stressed, spectra, loops];
 const slots = {
-  current: new Slot("current", { show: (result) => take("current", result), judged: () => peaks.drawJudgement(page.runs.current), problem: (problems) => refuse(problems), fail, progress: (job) => progress("current", job) }),
+  current: new Slot("current", { show: (result) => take("current", result), measured, judged: () => peaks.drawJudgement(page.runs.current), problem: (problems) => refuse(problems), fail, progress: (job) => progress("current", job) }),
   // A refusal of these is the current one's too, told there; what they showed last stays beside what it showed last.
-  bare: new Slot("bare", { show: (result) => take("bare", result), problem: () => {}, fail: () => { page.bareKey = ""; }, progress: (job) => progress("bare", job) }),
-  pinned: new Slot("pinned", { show: (result) => take("pinned", result), problem: () => drop("pinned"), fail: () => {} }),
+  bare: new Slot("bare", { show: (result) => take("bare", result), measured, problem: () => {}, fail: () => { page.bareKey = ""; }, progress: (job) => progress("bare", job) }),
+  pinned: new Slot("pinned", { show: (result) => take("pinned", result), measured, problem: () => drop("pinned"), fail: () => {} }),
 };
 
 // ---- what is asked
@@ -93,9 +93,9 @@ async function change(path, value, { live = false } = {}) {
   else if (ofResolution) page.resolution = { ...page.resolution, [path.slice(11)]: value };
   else page.system = written(page.system, path, value);
   if (live && !page.problems.length) {
+    solve(since); // the server is at it while the page is brought up to date
     form.refresh(forForm());
     section.draw(page.system);
-    solve(since);
     return keepLink();
   }
   const whole = typeof value === "object" || value === undefined || path === "resolution.dimensions" || (!ofResolution && !read(page.system, path));
@@ -286,6 +286,11 @@ function progress(slot, told) {
   say();
 }
 
+// Bars come after the curves: those who show any draw them anew.
+function measured() {
+  if (["peaks", "control"].includes(tabs.shown())) drawTab(tabs.shown());
+}
+
 let drawing = 0;
 function drawRuns() {
   cancelAnimationFrame(drawing);
@@ -294,6 +299,7 @@ function drawRuns() {
     shellsShown();
     curves.legend(page.runs);
     curves.draw(page.runs, quantityShown(), whichShells(), page.unit, space.stationShown(page.runs.current, page.station));
+    drawn(page.runs.current);
     drawTab(tabs.shown());
     guide.look();
     by("pin").textContent = page.runs.pinned ? "Unpin" : "Pin";

@@ -5,9 +5,15 @@ import { placeText } from "./space.js";
 import { inComparison, percent, show } from "./units.js";
 import { capital, inWords, shellPhrase } from "./words.js";
 
+let shown = []; // of which runs the bars are, and over how long
+
 export function draw(runs) {
   const { current } = runs;
   if (!current) return;
+  by("peaks").classList.toggle("unmeasured", !current.withBars);
+  const now = [runs.current, runs.bare, runs.pinned].map((run) => run?.bars).concat(current.resolution.duration, current.transit_time_seconds);
+  if (!current.withBars && now.every((one, i) => one === shown[i])) return drawJudgement(current); // those of the run before, until its own come
+  shown = now;
   const others = ["bare", "pinned"].filter((key) => runs[key]);
   const table = el("table", { class: "peaks" },
     el("caption", {}, `Largest magnitudes ${current.stations ? "over all stations and " : ""}over ${show(current.resolution.duration, "")} transits (${show(current.resolution.duration * current.transit_time_seconds, "s")})`),
