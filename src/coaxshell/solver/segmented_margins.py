@@ -25,6 +25,8 @@ from coaxshell.solver.stability import Contour, along_alone
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 128
+_ROUNDING = 1e-9
+"""Of the largest loop of a wall: what is smaller everywhere is none, as of a pattern whose orders are not there."""
 
 
 class CutLoop(NamedTuple):
@@ -58,9 +60,10 @@ def segmented_loops(problem: Problem, modes: Modes, least: float, told: ShareDon
     found = {}
     values = _values(problem, modes, patterns, nodes, told)
     for place, shell in enumerate(walls):
-        if not values[place].any():
+        size = np.abs(values[place]).max(axis=1, keepdims=True)
+        if not size.any():
             continue
-        loop = Loop(nodes, values[place])
+        loop = Loop(nodes, np.where(size > _ROUNDING * size.max(), values[place], 0.0))
         each = margins_of(np.arange(float(len(loop.values))), *loop)
         numbers = _resembled(problem, modes, patterns, place, loop, each) if patterns.dead else shown
         found[shell] = CutLoop(loop, numbers, _by_pattern(each, numbers, shown))
