@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import queue
 import shutil
@@ -12,8 +13,21 @@ import threading
 from urllib.parse import urlsplit
 
 import pytest
-from page_reading import PATIENCE, until, without_drawing
+from asking import SMALL
+from page_reading import PATIENCE, rest, until, without_drawing
 from playwright.sync_api import sync_playwright
+
+import coaxshell as cx
+from coaxshell.apps.studio.links import fragment
+
+LINKS = itertools.count()
+"""Tells links apart, so that a test knows when the page has opened its own."""
+
+OF_ITS_OWN = """([slots, wanted]) => slots.every(slot => {
+  const run = window.coaxshell.state.runs[slot];
+  return run?.full && Object.entries(wanted).every(([name, value]) => run.resolution[name] === value);
+})"""
+"""Whether the runs on the page have the resolution of the link, and no finer one follows."""
 
 FLAGS = [
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
@@ -39,6 +53,11 @@ class Server:
     @property
     def port(self) -> int:
         return urlsplit(self.address).port
+
+    @property
+    def origin(self) -> str:
+        """Return the address of a page that has been opened, without the key that opens one."""
+        return f"http://127.0.0.1:{self.port}"
 
     def stop(self) -> None:
         """End it as Ctrl-C would."""
@@ -145,6 +164,10 @@ def kept_page(browser):
     context.close()
 
 
+ELSEWHERE = "/page/icon.svg"
+"""Where the kept page waits: of the same origin, or Chromium would give its next page a process of its own."""
+
+
 @pytest.fixture
 def open_page(browser, kept_page, server, watched):
     """Give what opens the page as one who comes for the first time and waits for its first answer; the second one has a window apart."""
@@ -161,6 +184,8 @@ def open_page(browser, kept_page, server, watched):
             context.set_default_timeout(1e3 * PATIENCE)
             page = context.new_page()
         opened.append(page)
+        if page is kept_page and not page.url.endswith(ELSEWHERE):
+            leave(page, server)
         watched.watch(page)
         if not drawing:
             without_drawing(page)
@@ -176,9 +201,46 @@ def open_page(browser, kept_page, server, watched):
             page.context.close()
             continue
         page.unroute_all()
-        page.mouse.move(0, 0)
+        leave(page, server)
+
+
+def leave(page, server) -> None:
+    """Forget all that a page has kept, and let it wait elsewhere."""
+    page.mouse.move(0, 0)
+    if page.url.startswith(server.origin):
         page.evaluate("() => { localStorage.clear(); sessionStorage.clear(); }")
-        page.goto(f"{server.address}/page/icon.svg")  # of the same origin, or Chromium would give its next page a process of its own
+    page.goto(f"{server.origin}{ELSEWHERE}")
+
+
+@pytest.fixture
+def linked_page(kept_page, server, watched):
+    """Give what opens a preset by a link on the page that the test before has left, which is not loaded anew.
+
+    Loading it takes 2 to 3 seconds of a processor, following a link in it a tenth of that. What the test before has pinned, chosen or
+    kept stays, so this is for tests that say what they start from.
+    """
+    page = kept_page
+
+    def start(resolution=SMALL, preset="absorbers", *, width=1280, height=720, theme="light"):
+        page.set_viewport_size({"width": width, "height": height})
+        page.emulate_media(color_scheme=theme)
+        watched.watch(page)
+        system = preset if isinstance(preset, cx.System) else cx.presets.load(preset)
+        mark = f"link {next(LINKS)}"
+        view = {"tab": "peaks", "unit": "transits", "from": mark}
+        held = {"v": 1, "system": system.model_dump(mode="json"), "resolution": resolution, "view": view}
+        here = page.url.startswith(f"{server.origin}/#")
+        page.goto(f"{f'{server.origin}/' if here else server.address}#{fragment(held)}")
+        until(page, "mark => window.coaxshell?.state.from === mark", mark)
+        rest(page)
+        slots = ["current", "bare"] if system.absorber_list or system.control else ["current"]
+        until(page, OF_ITS_OWN, [slots, {name: resolution[name] for name in ("modes", "time_step", "duration")}])
+        return page
+
+    yield start
+    watched.leave(page)
+    page.unroute_all()
+    page.mouse.move(0, 0)
 
 
 @pytest.fixture

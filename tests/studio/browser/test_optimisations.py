@@ -26,12 +26,15 @@ def studies(open_page, server):
     """Give what opens the page at a small resolution with the optimisation's form."""
 
     def start(**options):
-        page = open_preset(open_page, server, SMALL, **options)
-        page.locator("#tab-studies").click()
-        page.get_by_role("radio", name="Optimise").check(force=True)
-        return page
+        return with_form(open_preset(open_page, server, SMALL, **options))
 
     return start
+
+
+def with_form(page):
+    page.locator("#tab-studies").click()
+    page.get_by_role("radio", name="Optimise").check(force=True)
+    return page
 
 
 def fill(page, **entries):
@@ -60,8 +63,9 @@ def number(text):
     return float(text.replace("\u2212", "-").replace("\u202f", " ").split()[0])
 
 
-def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(studies):
-    page = studies()
+@pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["adopted", "taken home"])
+def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(linked_page, whole):
+    page = with_form(linked_page())
     describe(page)
     page.get_by_role("button", name="Add a limit").click()
     fill(page, constraints__0__metric="absorbers.mass", constraints__0__value="200")
@@ -85,7 +89,7 @@ def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(studies):
     shown = dict(curves)["designs"]
     assert [value is None for value in shown] == [value is None for value in values]
     assert_allclose([1e3 * value for value in shown if value is not None], [value for value in values if value is not None], rtol=1e-12)
-    for theme in ("light", "dark"):
+    for theme in ("light", "dark")[: 1 + whole]:
         assert page.evaluate("document.documentElement.dataset.theme") == theme
         assert violations(page, "#more") == [], theme
         page.locator("#theme").click()
@@ -94,6 +98,8 @@ def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(studies):
     until(page, "window.coaxshell.state.system.name.endsWith('optimised')")
     rest(page)
     assert system_of(page) == ours.system
+    if not whole:
+        return
     run = run_of(page)
     stress = np.asarray(solved(ours.system, run["resolution"]).stress("inner", angle=[0, 180])).T
     assert_allclose(run["arrays"]["stress/0"], stress, rtol=0, atol=1e-7 * np.abs(stress).max())
@@ -108,6 +114,7 @@ def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(studies):
         assert saved.value.failure() is None
 
 
+@pytest.mark.slow
 def test_a_design_of_the_front_is_adopted_by_the_keyboard_on_a_phone(studies):
     page = studies(width=390, height=844)
     describe(page)
@@ -136,8 +143,9 @@ def test_a_design_of_the_front_is_adopted_by_the_keyboard_on_a_phone(studies):
     assert violations(page) == []
 
 
-def test_a_running_one_tells_its_best_and_can_be_cancelled(studies):
-    page = studies()
+@pytest.mark.slow
+def test_a_running_one_tells_its_best_and_can_be_cancelled(linked_page):
+    page = with_form(linked_page())
     describe(page, "2000")
     start(page)
     until(page, "/designs, best inner.peak stress [\\d.]+ \\w*Pa/.test(document.querySelector('#study-jobs .job .note')?.textContent)")
@@ -145,6 +153,7 @@ def test_a_running_one_tells_its_best_and_can_be_cancelled(studies):
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("each", ["mirror", "single"])
 def test_choices_absorbers_of_their_own_and_generations_are_the_library_s(studies, each):
     page = studies()
@@ -179,6 +188,7 @@ def test_choices_absorbers_of_their_own_and_generations_are_the_library_s(studie
     assert_allclose([1e3 * value for value in curves["designs"]], [one.objectives[0] for one in ours.history], rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_wrong_choices_and_generations_are_told_beside_them(studies):
     page = studies()
     for entries, field, words in (
@@ -195,7 +205,7 @@ def test_wrong_choices_and_generations_are_told_beside_them(studies):
 
 
 def test_what_is_wrong_is_told_beside_its_field(studies):
-    page = studies()
+    page = studies(drawing=False)
     assert [page.locator(f'[name="variables.0.{end}"]').input_value() for end in ("from", "to")] == ["1 kg/m", "100 kg/m"]
     describe(page)
     fill(page, variables__1__to="heavy")
@@ -205,7 +215,11 @@ def test_what_is_wrong_is_told_beside_its_field(studies):
     assert field.get_attribute("aria-invalid") == "true"
     assert page.evaluate("document.activeElement.name") == "variables.1.to"
     assert violations(page, "#studies") == []
-    fill(page, variables__1__to="1e8", evaluations="none")
+    fill(page, variables__1__to="1e8", population="2")
+    start(page)
+    until(page, "document.activeElement.name === 'population'")
+    assert "4 to" in page.locator("#optimise-problem").inner_text()
+    fill(page, population="6", evaluations="none")
     start(page)
     until(page, "document.activeElement.name === 'evaluations'")
     assert field.get_attribute("aria-invalid") is None
@@ -215,9 +229,13 @@ def test_what_is_wrong_is_told_beside_its_field(studies):
     assert "the limit is empty" in page.locator("#optimise-problem").inner_text()
 
 
-def test_the_study_file_is_shown(studies):
-    page = studies()
-    for kind, entry in (("Optimise", "objectives"), ("Sweep", "over")):
+KINDS = (("Optimise", "objectives"), ("Sweep", "over"))
+
+
+@pytest.mark.parametrize("kinds", [KINDS[:1], pytest.param(KINDS, marks=pytest.mark.slow)], ids=["optimise", "sweep too"])
+def test_the_study_file_is_shown(linked_page, kinds):
+    page = with_form(linked_page())
+    for kind, entry in kinds:
         page.get_by_role("radio", name=kind).check(force=True)
         page.locator("#study-file summary").click()
         until(page, "entry => document.getElementById('study-text').value.includes(entry)", entry)

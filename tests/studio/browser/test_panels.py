@@ -9,8 +9,8 @@ from page_reading import open_preset, until, violations
 import coaxshell as cx
 
 
-def test_stress_map_spectra_and_control(server, open_page):
-    page = open_preset(open_page, server, SMALL, preset="electrodes", theme="dark")
+def test_stress_map_spectra_and_control(linked_page):
+    page = linked_page(preset="electrodes", theme="dark")
     library = cx.simulate("electrodes", **SMALL)
     page.locator("#tab-stressed").click()
     until(page, "document.getElementById('stressed-plot')?.data?.length === 2")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 from asking import SMALL
-from page_reading import open_preset, until, violations
+from page_reading import open_preset, system_of, until, violations
 
+import coaxshell as cx
 from coaxshell.model.places import region_side, shell_name, shell_phrase
 
 TABS = ("peaks", "wave", "wall", "energy", "designs", "studies")
@@ -20,6 +21,7 @@ COLOURS = ["color-contrast", "link-in-text-block"]
 """The rules of axe-core's defaults that look at colours."""
 
 
+@pytest.mark.slow
 def test_axe_finds_nothing_wrong_in_either_theme(open_page, server):
     page = open_preset(open_page, server, SMALL, preset="hybrid")
     for theme, rules in (("light", None), ("dark", COLOURS)):  # what has no colour is the same in both
@@ -41,8 +43,14 @@ def test_axe_finds_nothing_wrong_in_either_theme(open_page, server):
         nothing_is_wrong("the whole page", None)
 
 
-def test_axe_finds_nothing_wrong_with_a_problem_shown_on_a_phone(open_page, server):
-    page = open_preset(open_page, server, SMALL, preset="hybrid", width=390, height=844)
+def test_axe_finds_nothing_wrong_on_a_dark_phone_with_a_problem_shown(linked_page):
+    page = linked_page(preset="hybrid", width=390, height=844, theme="dark")
+    until(page, DRAWN, "dark")
+    for tab in TABS:
+        page.locator(f"#tab-{tab}").click()
+        until(page, DRAWN, "dark")
+        assert violations(page, "#more") == [], tab
+    page.locator("#form details").evaluate_all("boxes => boxes.forEach(box => { box.open = true; })")
     field = page.locator('input[type="text"][data-path="absorbers.mass"]')
     field.fill("heavy")
     field.press("Enter")
@@ -50,17 +58,13 @@ def test_axe_finds_nothing_wrong_with_a_problem_shown_on_a_phone(open_page, serv
     assert violations(page) == []
 
 
-@pytest.fixture
-def page(open_page, server):
-    return open_preset(open_page, server, SMALL, preset="hybrid")
-
-
-def test_nothing_is_wider_than_the_window_and_the_tabs_move_by_arrow_keys(page):
+def test_nothing_is_wider_than_the_window_and_the_tabs_move_by_arrow_keys(linked_page):
+    page = linked_page(preset="hybrid")
     for width, height in ((1280, 720), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
         for tab in TABS:
             page.locator(f"#tab-{tab}").click()
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, tab
+            until(page, "width => document.documentElement.scrollWidth <= width", width)  # plots follow the window in a moment
     page.locator("#tab-peaks").focus()
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.activeElement.id") == "tab-wave"
@@ -68,13 +72,16 @@ def test_nothing_is_wider_than_the_window_and_the_tabs_move_by_arrow_keys(page):
     assert page.evaluate("document.activeElement.id") == "tab-studies"
 
 
-def test_the_theme_can_be_switched_and_is_kept(page):
+def test_the_theme_can_be_switched_and_is_kept(open_page):
+    page = open_page(wait=False, drawing=False)
+    until(page, "window.coaxshell?.state.system")
     assert page.evaluate("document.documentElement.dataset.theme") == "light"
     page.locator("#theme").click()
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
     page.reload()
-    until(page, "window.coaxshell?.state.runs.current")
+    until(page, "window.coaxshell?.state.system")
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    assert system_of(page) == cx.presets.load("hybrid"), "what a first page shows"
 
 
 NAMES = """async count => {
@@ -83,8 +90,8 @@ NAMES = """async count => {
 }"""
 
 
-def test_the_page_names_shells_and_fluids_as_the_library_does(open_page):
-    page = open_page(wait=False)
+def test_the_page_names_shells_and_fluids_as_the_library_does(linked_page):
+    page = linked_page()
     for count in (1, 2, 3, 12):
         library = [[name(i, count) for i in range(count)] for name in (shell_name, shell_phrase)]
         assert page.evaluate(NAMES, count) == [*library, [region_side(i, count) for i in range(count + 1)]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from asking import SMALL
 from numpy.testing import assert_allclose
 from page_reading import open_preset, rest, run_of, solved, system_of, until, violations
@@ -23,6 +24,7 @@ def choose(page, name, value):
     page.locator(f'[id="record-source.pulse-{name}"]').select_option(value)
 
 
+@pytest.mark.slow
 def test_a_record_is_pasted_opened_cut_and_solved(server, open_page, tmp_path):
     page = open_preset(open_page, server, SMALL, preset="absorbers")
     kind(page, "source", "Plane wave")
@@ -70,8 +72,8 @@ def test_a_record_is_pasted_opened_cut_and_solved(server, open_page, tmp_path):
     assert system_of(again) == system
 
 
-def test_a_text_that_is_no_record_is_told_in_words(server, open_page):
-    page = open_preset(open_page, server, SMALL, preset="absorbers")
+def test_a_text_that_is_no_record_is_told_in_words_and_one_is_read_cut_and_solved(linked_page):
+    page = linked_page()
     kind(page, "source", "Plane wave")
     until(page, "window.coaxshell.state.system.source.type === 'plane-wave'")
     kind(page, "source.pulse", "Sampled")
@@ -81,4 +83,16 @@ def test_a_text_that_is_no_record_is_told_in_words(server, open_page):
     page.get_by_role("button", name="Read", exact=True).click()
     page.locator(".record .problem").wait_for()
     assert "Not read. " in page.locator(".record .problem").inner_text()
-    assert violations(page) == []
+    assert violations(page, ".record") == []
+    page.locator(".record textarea").fill("t (ms), p (kPa)\n" + "\n".join(f"{0.01 * k:.2f}, {20 * 0.9**k:.6f}" for k in range(50)))
+    page.get_by_role("button", name="Read", exact=True).click()
+    until(page, f"{PULSE}.time.length === 50 && Math.abs({PULSE}.pressure[0] - 2e4) < 1")
+    field = page.locator('[data-path="source.pulse.start"]')
+    field.fill("0.1 ms")
+    field.press("Enter")
+    until(page, f"{PULSE}.start === 1e-4")
+    rest(page)
+    system, run = system_of(page), run_of(page)
+    assert_allclose(system.source.pulse.time[-1], 0.49e-3, rtol=1e-12)
+    stress = np.asarray(solved(system, run["resolution"]).stress("inner", angle=[0, 180])).T
+    assert_allclose(run["arrays"]["stress/0"], stress, rtol=0, atol=1e-7 * np.abs(stress).max())

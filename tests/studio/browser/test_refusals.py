@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from asking import SMALL
-from page_reading import open_preset, rest, until
+from page_reading import rest, until
 
 PROBLEM = {"where": "absorbers.mass", "problem": "is a sheep", "remedy": "give a goat"}
 TWO = {"ok": False, "problem": PROBLEM, "problems": [PROBLEM, {**PROBLEM, "where": "control"}]}
@@ -36,29 +35,34 @@ def change(page, path, text):
     return field
 
 
-def test_every_kind_of_refusal_is_words_in_their_place(server, open_page, watched):
+EACH = tuple((route, kind) for route in ROUTES for kind in KINDS)
+"""Every kind of refusal of every route; the small version has three, of which one has no words."""
+
+
+@pytest.mark.parametrize("asked", [EACH[1::6], pytest.param(EACH, marks=pytest.mark.slow)], ids=["some", "all"])
+def test_every_kind_of_refusal_is_words_in_their_place(linked_page, watched, asked):
     watched.forgiven += ["Failed to load resource", "422:", "429:", "500:", "502:"]
-    page = open_preset(open_page, server, SMALL, preset="hybrid")
-    masses = iter(range(20, 200))
-    for route in ROUTES:
-        for kind, (status, body) in KINDS.items():
-            page.route(f"**/api/{route}", answering(status, body))
-            change(page, "absorbers.mass", f"{next(masses)} kg/m")
-            words = "is a sheep" if body else "the server answered 502"
-            until(page, "words => document.getElementById('state').textContent.includes(words)", words)
-            shown = page.locator("body").inner_text()
-            assert "[object" not in shown, (route, kind)
-            assert "undefined" not in shown, (route, kind)
-            if body:
-                assert "is a sheep; give a goat" in page.locator("#field-problem").inner_text(), (route, kind)
-            assert page.evaluate("document.getElementById('curves').data.length") == 8, "the curves stay, the bare ones too"
-            page.unroute(f"**/api/{route}")
+    page = linked_page(preset="hybrid")
+    for mass, (route, kind) in enumerate(asked, 20):
+        status, body = KINDS[kind]
+        page.route(f"**/api/{route}", answering(status, body))
+        change(page, "absorbers.mass", f"{mass} kg/m")
+        words = "is a sheep" if body else "the server answered 502"
+        until(page, "words => document.getElementById('state').textContent.includes(words)", words)
+        shown = page.locator("body").inner_text()
+        assert "[object" not in shown, (route, kind)
+        assert "undefined" not in shown, (route, kind)
+        if body:
+            assert "is a sheep; give a goat" in page.locator("#field-problem").inner_text(), (route, kind)
+        assert page.evaluate("document.getElementById('curves').data.length") == 8, "the curves stay, the bare ones too"
+        page.unroute(f"**/api/{route}")
     change(page, "absorbers.mass", "10 kg/m")
     until(page, "!document.querySelector('#form .problem') && !document.documentElement.classList.contains('stale')")
 
 
-def test_wrong_entries_are_told_together_the_one_just_edited_first(server, open_page):
-    page = open_preset(open_page, server, SMALL, preset="hybrid")
+@pytest.mark.parametrize("mended", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["told", "mended"])
+def test_wrong_entries_are_told_together_the_one_just_edited_first(linked_page, mended):
+    page = linked_page(preset="hybrid")
     change(page, "absorbers.mass", "-3 kg/m")
     until(page, "document.querySelectorAll('#form [aria-invalid]').length === 1")
     change(page, "absorbers.damping", "heavy")
@@ -73,6 +77,8 @@ def test_wrong_entries_are_told_together_the_one_just_edited_first(server, open_
     assert page.evaluate(
         "window.coaxshell.state.runs.bare !== undefined && document.querySelector('.peaks .better, .peaks .worse') !== null"
     )
+    if not mended:
+        return
     change(page, "resolution.modes", "12")
     until(page, "document.querySelectorAll('#form [aria-invalid]').length === 2")
     change(page, "absorbers.mass", "3 kg/m")
@@ -90,8 +96,9 @@ def test_wrong_entries_are_told_together_the_one_just_edited_first(server, open_
     assert page.locator("#form .problem").count() == 0
 
 
-def test_changes_are_undone_and_redone_and_a_preset_chosen_again_starts_anew(server, open_page):
-    page = open_preset(open_page, server, SMALL, preset="hybrid")
+@pytest.mark.parametrize("presets", [0, pytest.param(2, marks=pytest.mark.slow)], ids=["undone", "begun anew"])
+def test_changes_are_undone_and_redone_and_a_preset_chosen_again_starts_anew(linked_page, presets):
+    page = linked_page(preset="hybrid")
     mass = "window.coaxshell.state.system.absorbers.mass"
     change(page, "absorbers.mass", "11 kg/m")
     until(page, f"{mass} === 11")
@@ -107,7 +114,7 @@ def test_changes_are_undone_and_redone_and_a_preset_chosen_again_starts_anew(ser
     page.locator("#redo").click()
     until(page, f"{mass} === 12")
     assert page.locator("#redo").is_disabled()
-    for _ in range(2):  # the second time it is the one that is shown
+    for _ in range(presets):  # the second time it is the one that is shown
         page.locator("#preset").select_option(label="absorbers")
         until(page, f"{mass} === 10 && window.coaxshell.state.system.control === null")
         assert page.locator("#preset option:checked").inner_text() == "absorbers"
@@ -134,9 +141,9 @@ PATH = """() => {
 }"""
 
 
-@pytest.mark.parametrize("unit", ["transits", "ms"])
-def test_the_curves_drawn_are_the_data(server, open_page, unit):
-    page = open_preset(open_page, server, {"duration": 2.0, "time_step": 0.004, "modes": 30}, preset="hybrid")
+@pytest.mark.parametrize("unit", ["transits", pytest.param("ms", marks=pytest.mark.slow)])
+def test_the_curves_drawn_are_the_data(linked_page, unit):
+    page = linked_page({"duration": 2.0, "time_step": 0.004, "modes": 30}, preset="hybrid")
     page.locator("#unit").select_option(unit)
     until(page, f"document.getElementById('curves').layout.xaxis2.title.text === 'time ({'ms' if unit == 'ms' else 'a/c'})'")
     found = page.evaluate(PATH)

@@ -60,7 +60,8 @@ def test_histories_and_walls_are_the_library_s_at_each_station(page):
     assert_allclose(drawn[1:] * scale, ours, rtol=0, atol=1e-5 * np.abs(ours).max())
 
 
-def test_cuts_and_energy_wait_until_asked_for_and_tell_their_cost(page):
+@pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["along", "all"])
+def test_cuts_and_energy_wait_until_asked_for_and_tell_their_cost(page, whole):
     page.locator("#tab-wave").press("Enter")
     until(page, r"/about [\d.]+.(s|min)/.test(document.getElementById('wave-ask').textContent)")
     page.locator("#wave-ask").press("Enter")
@@ -69,6 +70,12 @@ def test_cuts_and_energy_wait_until_asked_for_and_tell_their_cost(page):
     assert not page.locator("#wave-ask").is_visible()
     page.locator("#field-current").press("ArrowUp")
     assert "z = 0.05 (radii)" in page.locator("#wave-point").inner_text()
+    page.set_viewport_size({"width": 390, "height": 844})
+    until(page, "document.documentElement.scrollWidth <= 390")  # plots follow the window in a moment
+    assert violations(page, "#more") == []
+    if not whole:
+        return
+    page.set_viewport_size({"width": 1280, "height": 720})
     page.locator("#wave-cut").select_option(label="across, z = 0.5\u202fm")
     page.locator("#wave-ask").press("Enter")
     until(page, "document.getElementById('field-current').getAttribute('aria-label').endsWith('across, z = 0.5\\u202fm')")
@@ -89,6 +96,24 @@ def test_cuts_and_energy_wait_until_asked_for_and_tell_their_cost(page):
     assert not page.locator("#wave-cut").is_visible()
 
 
+def test_three_dimensions_are_chosen_and_told_their_cost(linked_page):
+    page = linked_page({**SPACE, "dimensions": 2, "stations": [0.0]}, preset="bare")
+    page.locator('details[data-group="dimensions"]').evaluate("box => { box.open = true; }")
+    page.locator('[data-path="resolution.dimensions"]').select_option("3")
+    until(page, "window.coaxshell.state.resolution.dimensions === 3")
+    until(page, "/full resolution takes about [\\d.]+.(s|min)/i.test(document.getElementById('cost')?.textContent)")
+    field = page.locator('[data-path="resolution.stations"]')
+    field.fill("0, 1 s")
+    field.press("Enter")
+    page.locator("#field-problem").wait_for()
+    assert "is not a length" in page.locator("#field-problem").inner_text()
+    field.fill("0, 40 cm")
+    field.press("Enter")
+    until(page, "window.coaxshell.state.runs.current?.stations?.length === 2")
+    assert page.evaluate("window.coaxshell.state.runs.current.stations") == [0.0, 0.4]
+
+
+@pytest.mark.slow
 def test_three_dimensions_are_chosen_by_keyboard_with_their_cost_and_can_be_stopped(open_page, server):
     page = open_page(linked(server, dimensions=2, stations=[0.0], modes=40, time_step=1e-3, duration=4.0), wait=False)
     until(page, "window.coaxshell?.state.runs.current")
@@ -116,7 +141,11 @@ def test_three_dimensions_are_chosen_by_keyboard_with_their_cost_and_can_be_stop
     assert not page.locator(".of-old").is_visible()
 
 
-@pytest.mark.parametrize("size", [(1280, 800, "dark"), (1920, 1080, "light"), (390, 844, "light")], ids=["dark", "wide", "phone"])
+SIZES = [(1280, 800, "dark"), (1920, 1080, "light"), (390, 844, "light")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", SIZES, ids=["dark", "wide", "phone"])
 def test_axe_finds_nothing_wrong_and_nothing_is_too_wide(open_page, server, size):
     width, height, theme = size
     page = open_page(linked(server), width=width, height=height, theme=theme, wait=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from asking import SMALL
 from numpy.testing import assert_allclose
 from page_reading import open_preset, until
@@ -19,13 +20,14 @@ ENTRIES = (
 
 def start(page, **entries):
     page.locator("#tab-studies").click()
+    page.get_by_role("radio", name="Sweep").check(force=True)
     page.locator("#sweep").wait_for()
     page.evaluate(ENTRIES, {name.rstrip("_"): str(value) for name, value in entries.items()})
     page.locator("#sweep button.main").click()
 
 
-def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(server, open_page):
-    page = open_preset(open_page, server, SMALL)
+def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(linked_page):
+    page = linked_page()
     start(page, path="absorbers.count", from_=10, to=14, count=3, scale="linear", metric="inner.peak_stress")
     until(page, "document.getElementById('study-plot')?.data?.length")
     shown = np.array(page.evaluate("Array.from(document.getElementById('study-plot').data[0].y)"), dtype=float)
@@ -37,8 +39,8 @@ def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(server, open_page)
     assert saved.value.failure() is None
 
 
-def test_a_sweep_can_be_cancelled(server, open_page):
-    page = open_preset(open_page, server, SECONDS, preset="hybrid")
+def test_a_sweep_can_be_cancelled(linked_page):
+    page = linked_page(SECONDS, preset="hybrid")
     start(page, path="absorbers.mass", from_=1, to=100, count=200, scale="linear", metric="inner.peak_stress")
     page.locator("#study-jobs").get_by_role("button", name="Cancel").first.click()
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
@@ -51,22 +53,25 @@ def again(page):
     page.locator("#tab-studies").click()
 
 
-def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page):
-    page = open_preset(open_page, server, SECONDS, preset="hybrid")
-    start(page, path="absorbers.mass", from_=2, to=90, count=30, scale="linear", metric="outer.peak_stress")
+@pytest.mark.parametrize("count", [6, pytest.param(30, marks=pytest.mark.slow)])
+def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page, count):
+    page = open_preset(open_page, server, SMALL if count == 6 else SECONDS, preset="hybrid")
+    start(page, path="absorbers.mass", from_=2, to=90, count=count, scale="linear", metric="outer.peak_stress")
     mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
     mine.wait_for()
     again(page)
     mine.wait_for()
-    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 30")
-    assert mine.get_attribute("data-state") == "done"
-    again(page)
+    if count > 6:
+        until(page, "count => document.getElementById('study-plot')?.data?.[0].x.length === count", count)
+        assert mine.get_attribute("data-state") == "done"
+        again(page)
     mine.get_by_role("button", name="Show").click()
-    until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 30")
+    until(page, "count => document.getElementById('study-plot')?.data?.[0].x.length === count", count)
+    assert mine.get_attribute("data-state") == "done"
 
 
-def test_a_plot_drawn_while_another_tab_is_shown_fits(server, open_page):
-    page = open_preset(open_page, server, SMALL)
+def test_a_plot_drawn_while_another_tab_is_shown_fits(linked_page):
+    page = linked_page()
     start(page, path="absorbers.mass", from_=2, to=60, count=8, scale="linear", metric="inner.rms_stress")
     page.locator("#tab-peaks").click()
     until(page, "document.getElementById('study-plot')?.data?.[0].x.length === 8")
@@ -75,8 +80,8 @@ def test_a_plot_drawn_while_another_tab_is_shown_fits(server, open_page):
     until(page, f"Math.abs({box} - {drawn}) <= 1")
 
 
-def test_an_impossible_sweep_is_told_in_words(server, open_page):
-    page = open_preset(open_page, server, SMALL)
+def test_an_impossible_sweep_is_told_in_words(linked_page):
+    page = linked_page()
     start(page, path="absorbers.mass", from_=-5, to=10, count=3, scale="log", metric="inner.peak_stress")
     page.locator("#sweep-problem").wait_for()
     assert page.locator("#sweep-problem").inner_text()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 from page_reading import PACKED, open_preset, run_of, system_of, unpacked, until
 
@@ -25,8 +26,8 @@ def pixels(page, name):
 SMALL = {"duration": 2.0, "time_step": 0.01, "modes": 20, "refinement": 1}
 
 
-def test_the_field_plays_and_its_values_are_the_library_s(server, open_page):
-    page = open_preset(open_page, server, SMALL)
+def test_the_field_plays_and_its_values_are_the_library_s(linked_page):
+    page = linked_page(SMALL)
     page.locator("#tab-wave").click()
     until(page, "document.getElementById('wave-time').textContent.includes('t =')")
     page.locator("#scrub").evaluate("input => { input.value = 1.0; input.dispatchEvent(new Event('input')); }")
@@ -61,9 +62,9 @@ def pascal(told, name):
     return float(value) * PREFIX[prefix]
 
 
-def test_what_the_shells_radiate_is_seen_beside_the_front(server, open_page):
+def test_what_the_shells_radiate_is_seen_beside_the_front(linked_page):
     """A hundredth of the largest pressure has a colour of its own, and the colours' bar says the same as the picture."""
-    page = open_preset(open_page, server, SMALL)
+    page = linked_page(SMALL)
     shades = page.evaluate(
         "import('/page/js/maps.js').then(({ words }) => [...words()].map((word) => [0, 8, 16].map((bits) => (word >> bits) & 255)))"
     )
@@ -72,6 +73,7 @@ def test_what_the_shells_radiate_is_seen_beside_the_front(server, open_page):
     assert np.abs(end - plain).max() > 150
 
 
+@pytest.mark.slow
 def test_all_panels_share_their_colours_and_a_pinned_run_has_one(server, open_page):
     page = open_preset(open_page, server, SMALL)
     page.locator("#pin").click()
