@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
@@ -111,8 +112,8 @@ def sharp_inverse() -> Callable[..., np.ndarray]:
     return invert
 
 
-TOGETHER = ("tests/studio/browser/", "tests/studio/", "tests/paper/")
-"""Places whose tests one process carries out alone, for servers, browsers and runs that they share take long to start."""
+TOGETHER = ("tests/studio/browser/", "tests/studio/", "tests/paper/", "tests/house/")
+"""Places whose tests one process carries out alone, for what they share takes long: servers, browsers, runs, all files parsed."""
 
 LONG = (
     "tests/studio/browser/",
@@ -150,8 +151,41 @@ def unit_of(nodeid: str) -> str:
     return next((place for place in TOGETHER if file.startswith(place)), file)
 
 
+def mark_slow_cases(items: list[pytest.Item], *, all_collected: bool) -> None:
+    """Mark the cases that ``slow_for(*cases)`` names as slow, and all but those that ``slow_except(*cases)`` names.
+
+    Raises
+    ------
+    pytest.UsageError
+        If a mark names a case that its test has not, or leaves none that always runs, where whole files were collected.
+    """
+    named: dict[str, set[str]] = {}
+    cases: dict[str, dict[str, bool]] = {}
+    for item in items:
+        asked = {mark.name: set(mark.args) for mark in item.iter_markers() if mark.name in ("slow_for", "slow_except")}
+        if not asked:
+            continue
+        case, test = item.callspec.id if hasattr(item, "callspec") else "", item.nodeid.partition("[")[0]
+        if slow := case in asked.get("slow_for", ()) or case not in asked.get("slow_except", {case}):
+            item.add_marker(pytest.mark.slow)
+        named[test] = set().union(*asked.values())
+        cases.setdefault(test, {})[case] = slow
+    if all_collected and (lost := {test: some for test, names in named.items() if (some := names - set(cases[test]))}):
+        raise pytest.UsageError(f"slow_for or slow_except names cases that are not there: {lost}")
+    if all_collected and (none := [test for test, of in cases.items() if all(of.values())]):
+        raise pytest.UsageError(f"no case is left that always runs: {none}")
+
+
+def pytest_collection_finish() -> None:
+    """Take what collection has made out of every later search for garbage: it stays to the end, and there is much of it."""
+    gc.collect()
+    gc.freeze()
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Put the longest units first where several processes share the tests."""
+    """Mark slow cases before any is left out; put the longest units first where several processes share the tests."""
+    mark_slow_cases(items, all_collected=not any("::" in argument for argument in config.args))
     if hasattr(config, "workerinput"):
         rank = {unit: number for number, unit in enumerate(LONG)}
         items.sort(key=lambda item: rank.get(unit_of(item.nodeid), len(rank)))

@@ -52,6 +52,7 @@ def expected(formula: object, axial: float, slowness: float = SLOWNESS) -> np.nd
     return np.array([[complex(formula(m, kappa(axial, slowness, complex(s)))) for s in S] for m in ORDERS])
 
 
+@pytest.mark.slow_for("9.0", "0.001")
 @pytest.mark.parametrize("axial", [0.0, 1e-3, 0.8, 9.0])
 def test_walls_of_every_region(axial: float) -> None:
     radial = RadialBasis(Modes(ORDERS, axial), S)
@@ -76,6 +77,7 @@ def test_walls_of_every_region(axial: float) -> None:
         np.testing.assert_allclose(field.pressure, reference, rtol=1e-9, atol=1e-13 * np.abs(reference).max())
 
 
+@pytest.mark.slow_for("3.0")
 @pytest.mark.parametrize("axial", [0.8, 3.0])
 def test_fields_away_from_walls(axial: float) -> None:
     radial = RadialBasis(Modes(ORDERS, axial), S)
@@ -85,6 +87,7 @@ def test_fields_away_from_walls(axial: float) -> None:
     np.testing.assert_allclose(outside.slope, expected(lambda m, x: k_slope(m, 2.5 * x) / k_slope(m, x), axial), rtol=1e-9, atol=1e-300)
 
 
+@pytest.mark.slow_for("3.0")
 @pytest.mark.parametrize("axial", [0.0, 0.8, 3.0])
 def test_loads_of_sources(axial: float) -> None:
     """Incident e^{-kappa(1 - x)} and K_0(kappa R)/K_0(kappa S) times cos kz, plus what a rigid cylinder scatters; by the Wronskian."""
@@ -116,6 +119,7 @@ def test_the_wavenumber_of_a_fluid() -> None:
     np.testing.assert_allclose(Modes(ORDERS, 3.0).gradient_squared(0.5), (ORDERS / 0.5) ** 2 + 9.0)
 
 
+@pytest.mark.slow_for("-30.0")
 @pytest.mark.parametrize("inclination", [0.0, 12.0, -30.0])
 def test_inclined_plane_waves(inclination: float) -> None:
     """Load at kappa = s cos alpha by the Wronskian; the incident orders sum to e^{-s(1 - x) cos alpha}, which the wave is at z = 0."""

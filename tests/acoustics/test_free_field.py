@@ -69,6 +69,7 @@ def test_plane_and_spherical_waves_are_the_closed_forms():
     assert spherical.pressure(0.0)[0] == pytest.approx(0.75, rel=1e-12)  # at the head, at t = 0
 
 
+@pytest.mark.slow_except("0-step")
 @pytest.mark.parametrize("pulse", PULSES[:2], ids=lambda pulse: pulse.type)
 @pytest.mark.parametrize("order", [0, 1])
 def test_the_line_source_by_an_independent_inversion(pulse, order):

@@ -80,6 +80,7 @@ def test_exterior_field(low):
     assert low.error(spectrum, lambda m, t: exterior(m, t, radius=1.7), [0.7], 0.05) < 1e-10
 
 
+@pytest.mark.slow
 def test_high_orders():
     high = Inversion(1e-4, 15000, HIGH)
     operator = annulus(high.at(RA, 1.0), high.at(RB, 1.0))

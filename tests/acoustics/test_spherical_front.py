@@ -102,6 +102,7 @@ def test_without_an_axial_wavenumber_it_is_a_line_source_of_another_history() ->
     np.testing.assert_allclose(load_of(4.0, modes, s), 3.0 * kve(0, 3.0 * s) * line, rtol=1e-11, atol=1e-300)
 
 
+@pytest.mark.slow
 def test_from_far_away_it_is_plane() -> None:
     """Of the sum over k at z = 0; the period grows with sqrt(S), so that images stay out: a stationary phase, smooth in the wavenumber."""
     modes, s = Modes.up_to(6), np.array([2.0 + 0j, 3.0 + 4.0j])

@@ -70,6 +70,7 @@ def test_figure_of_one_system(run, small):
     assert "stress at head" in outcome.out
 
 
+@pytest.mark.slow
 def test_one_shell_against_two(run, small):
     outcome = run("run", "iakovlev-filled", "--compare", "iakovlev-double", *small, "-q", "--figure", "one-two.png")
     assert outcome.code == 0, outcome.err
@@ -139,6 +140,7 @@ RING = "absorbers={count=3,mass=10,linear_stiffness=1e8}"
 GAINS = "control={proportional=-2e4,derivative=-150}"
 
 
+@pytest.mark.slow_for("active-control.derivative=150-words24")
 @pytest.mark.parametrize(
     ("scenario", "change", "words"),
     [

@@ -165,6 +165,7 @@ def test_module_and_exit_code():
     assert done.stderr.startswith("error: SCENARIO: there is no preset 'bear'")
 
 
+@pytest.mark.slow_for("2-130")
 @pytest.mark.skipif(os.name == "nt", reason="signals")
 @pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_ctrl_c_and_termination_leave_nothing_behind(tmp_path, sent, code):

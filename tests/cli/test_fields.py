@@ -36,6 +36,7 @@ def test_snapshots_of_a_saved_run(run, saved):
     assert outcome.out == "wrote snapshots.png\n"
 
 
+@pytest.mark.slow
 def test_snapshots_of_two_systems_by_name(run, small):
     outcome = run(
         "snapshots",
@@ -102,6 +103,7 @@ def test_export_for_paraview(run, saved):
     assert run(*arguments, "--force").code == 0
 
 
+@pytest.mark.slow_for("13")
 @pytest.mark.parametrize("number", ["4", "13", "14"])
 def test_figures_of_the_paper(run, saved, number):
     sources = ["--from", saved] * (1 if number == "4" else 2)
@@ -165,6 +167,7 @@ def test_what_does_not_fit_a_saved_run(refused, saved, arguments, words):
         assert word in message, message
 
 
+@pytest.mark.slow_for("animate", "export")
 @pytest.mark.parametrize("command", ["snapshots", "animate", "export"])
 def test_help_imports_nothing_heavy(command):
     code = (

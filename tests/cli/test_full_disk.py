@@ -43,6 +43,7 @@ def full(monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
 
 
+@pytest.mark.slow_for("pdf", "svg", "film")
 @pytest.mark.parametrize("writer", WRITERS)
 def test_the_old_result_is_kept_and_nothing_is_left(writer, run, full, tmp_path, monkeypatch):
     name, option, arguments = WRITERS[writer]

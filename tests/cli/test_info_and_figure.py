@@ -14,6 +14,7 @@ def test_info_tells_system_settings_versions_and_peaks(run, saved):
     assert outcome.err == "" or outcome.err.startswith("warning: ")
 
 
+@pytest.mark.slow_for("pdf", "png")
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_figure_from_a_saved_run(run, saved, suffix):
     outcome = run("figure", "3", "--from", saved, "--output", f"three.{suffix}")
@@ -22,10 +23,13 @@ def test_figure_from_a_saved_run(run, saved, suffix):
     assert f"wrote three.{suffix}" in outcome.out
 
 
-def test_figure_computes_what_it_needs(run, small):
+@pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["by name", "changed too"])
+def test_figure_computes_what_it_needs(run, small, whole):
     outcome = run("figure", "3", *small, "--quiet")
     assert outcome.code == 0, outcome.err
     assert outcome.files == ["figure-3.png"]
+    if not whole:
+        return
     assert run("figure", "3", "--preset", "iakovlev-filled", *small, "-s", "source.distance=4", "-o", "other.svg").code == 0
 
 

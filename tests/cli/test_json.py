@@ -184,6 +184,7 @@ def test_sweep_case_by_case(run, study, tmp_path):
     assert "wrote study.nc" in outcome.err
 
 
+@pytest.mark.slow
 def test_statistics(run, study, tmp_path):
     found = document(run("sensitivity", study(UNCERTAIN), "--workers", "1", "--json", "-q"))
     dataset = xr.load_dataset(tmp_path / "study.nc", engine="h5netcdf")

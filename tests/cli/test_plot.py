@@ -17,6 +17,7 @@ def hybrid():
     return cx.simulate("hybrid", modes=6, time_step=0.02, duration=1)
 
 
+@pytest.mark.slow_except("stress", "actuator_voltage", "relative_displacement")
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_every_quantity_at_every_angle(hybrid, quantity):
     if outputs.QUANTITIES[quantity].dimensions == 3:

@@ -10,6 +10,11 @@ from coaxshell.acoustics.response_functions import exterior, gap, interior
 SHORT = ("--duration", "1.2", "--time-step", "0.01")
 
 
+@pytest.mark.slow_for(
+    "gap --inner-radius 0.9 --modes 0,1,2,3,4,5,70-five.pdf",
+    "gap --radius 0.75-six.png",
+    "interior --inner-radius 0.3 --slowness 0.9-three.png",
+)
 @pytest.mark.parametrize(
     ("arguments", "file"),
     [

@@ -46,6 +46,7 @@ def test_draws_the_energy(run, small):
     assert "wrote energy.png" in outcome.out
 
 
+@pytest.mark.slow
 def test_draws_the_energy_over_the_whole_length(run, small):
     outcome = run("run", "bare", *small, "--dimensions", "3", "-q", "--energy", "energy.png")
     assert outcome.code == 0, outcome.err

@@ -35,6 +35,7 @@ def written(
     return code, out, err
 
 
+@pytest.mark.slow_except("ascii", "gbk", "latin-1")
 @pytest.mark.parametrize("encoding", ["cp932", "gbk", "cp949", "cp950", "cp874", "cp852", "cp866", "ascii", "latin-1", "cp037"])
 def test_any_encoding_of_the_output(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, encoding: str) -> None:
     system = cx.presets.load("hybrid").replace(name="中文 ñ Ω ☂")
@@ -53,6 +54,7 @@ def test_units_stay_legible(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "?" not in out
 
 
+@pytest.mark.slow_for("TextIOWrapper")
 @pytest.mark.parametrize("kind", [io.TextIOWrapper, Terminal])
 def test_names_do_not_command_the_terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, kind: type) -> None:
     name = "\x1b]0;owned\x07\x1b[2J\u202ereversed\x9b31m"

@@ -30,6 +30,7 @@ modes = 6
 """
 
 
+@pytest.mark.slow
 def test_a_study_file_is_the_python_call(run, study, tmp_path):
     outcome = run("sweep", study(), "--workers", "1", "--csv", "t.csv", "--figure", "f.png")
     assert outcome.code == 0, outcome.err

@@ -72,6 +72,7 @@ def test_a_solved_run_is_drawn_and_exported_too(run):
     assert run("export", "bare", *SPATIAL, "--to", "csv", "--output", "x.csv").code == 0
 
 
+@pytest.mark.slow
 def test_a_saved_run_is_filmed_and_opened_in_paraview(run, saved):
     assert run("snapshots", saved, "--section", "70 cm", "--times", "0.4", "--pixels", "16", "--output", "s.png").code == 0
     assert run("animate", saved, "--frames", "2", "--size", "16", "--output", "f.webp").code == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 import coaxshell as cx
 from coaxshell.response.synthesis import mean_square
@@ -68,6 +69,7 @@ class TestSmoothPulse(Decay):
         assert found[2] < 1e-7, found
 
 
+@pytest.mark.slow
 def test_the_papers_150_orders() -> None:
     # The outer shell's stress differs by 1.2e-3 from that of many more orders, the inner's by about 1e-4.
     for shell, expected in (("outer", 1.2e-3), ("inner", 9e-5)):

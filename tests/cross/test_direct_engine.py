@@ -10,6 +10,7 @@ from coaxshell.apps.verification.checks import engines
 CASES = engines.configurations()
 
 
+@pytest.mark.slow_for("saturated control", "unequal absorbers off the axis", "hybrid", "massless absorbers")
 @pytest.mark.parametrize("name", CASES)
 def test_direct_converges_to_spectral(name: str) -> None:
     rows = list(engines.judged(name, engines.errors(Bench(), CASES[name])))

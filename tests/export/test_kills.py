@@ -17,6 +17,11 @@ def kills(folder: Path, *writers: str) -> int:
     return int(outcome.stdout.splitlines()[-1])
 
 
+def test_a_killed_writer_leaves_whole_results(tmp_path: Path) -> None:
+    assert kills(tmp_path, "toml") >= 10
+
+
+@pytest.mark.slow
 def test_killed_writers_leave_whole_results(tmp_path: Path) -> None:
     assert kills(tmp_path, "save", "toml", "optimum") >= 40
 

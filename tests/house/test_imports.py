@@ -167,6 +167,7 @@ NOT_FOR_A_RUN = (
 )
 
 
+@pytest.mark.slow_for("command")
 @pytest.mark.parametrize(
     "work",
     [

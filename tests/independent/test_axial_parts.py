@@ -63,6 +63,7 @@ def test_other_pulses_are_refused():
         incident_sphere(cx.Step(pressure=1.0), 3.0, 1.0, (0,), np.zeros(1), TRANSIT, PRESSURE)
 
 
+@pytest.mark.slow
 def test_order_in_the_time_step():
     # Gauss's method of two stages: 4, in all three displacements.
     system = cx.presets.load("bare").replace(source=cx.SphericalWave(distance=3.0, pulse=PULSE))

@@ -51,6 +51,7 @@ def test_lopsided_layup(struck, distances):
     assert max(distances(system, 1e-3, 2e-3).values()) < 5e-7
 
 
+@pytest.mark.slow_for("charge sensor and bridge")
 @pytest.mark.parametrize(
     ("layers", "gains"),
     [

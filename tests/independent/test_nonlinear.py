@@ -63,6 +63,7 @@ def test_one_absorber_between_walls_with_electrodes(one, distances):
     assert max(distances(one.with_overrides({**roles, "control": control}), 4e-3, 4e-3, duration=1.0, modes=6).values()) < 1.6e-4
 
 
+@pytest.mark.slow
 def test_three_unequal_absorbers_off_the_axis(three, distances):
     # Measured 8.5e-7 or less.
     assert max(distances(three, 1e-3, 2e-3).values()) < 2e-6
@@ -85,6 +86,7 @@ def few_points(monkeypatch):
     monkeypatch.setattr("coaxshell.solver.interface.saturation._FEWEST_POINTS", 0)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_points")
 def test_saturated_control(saturated, distances):
     # Measured 1.1e-5 or less; the saturation changes the inner stress by 5e-2. Both clip the voltage at the same points.
@@ -104,6 +106,7 @@ class TestOrder:
     rate = 2.0
     steps = (8e-3, 4e-3, 2e-3)
 
+    @pytest.mark.slow_for("three", "hybrid")
     @pytest.mark.parametrize("name", ["one", "three", "hybrid"])
     def test_rate(self, name, request, distances):
         system = request.getfixturevalue(name)

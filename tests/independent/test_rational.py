@@ -37,6 +37,7 @@ def test_a_law_of_second_order(struck, distances, delay, changes):
     assert max(distances(system, 1e-3, 2e-3, duration=1.2, modes=3).values()) < 2e-7
 
 
+@pytest.mark.slow_for("limited segments, one dead")
 @pytest.mark.parametrize(
     ("changes", "modes", "within"),
     [
@@ -68,6 +69,7 @@ def test_an_unstable_loop_grows_as_the_check_says(struck):
         cx.simulate(system, duration=2.0, time_step=0.01, modes=3)
 
 
+@pytest.mark.slow_for("dead1-0.08")
 @pytest.mark.parametrize(("dead", "within"), [([], 0.03), ([1], 0.08)])
 def test_unstable_segments_grow_as_the_check_says(struck, dead, within):
     # Measured in time: e^(21.3 t) of the pattern 3, the pole: 21.6; with a dead segment 20.5, the rate enclosed from below: 19.0.

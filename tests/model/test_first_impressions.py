@@ -18,17 +18,12 @@ from coaxshell.model.base import Described
 HYBRID = cx.presets.load("hybrid")
 
 
+@pytest.mark.slow_for("export")
 @pytest.mark.parametrize("name", ["plotting", "export"])
 def test_rooms_named_in_the_readme_are_there_after_import(name: str) -> None:
     code = f"import sys, coaxshell as cx; assert 'coaxshell.{name}' not in sys.modules; print(cx.{name}.__name__, '{name}' in dir(cx))"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.split() == [f"coaxshell.{name}", "True"]
-
-
-def test_studies_and_the_paper_import_nothing_slow_before_it_is_used() -> None:
-    code = "import sys, coaxshell.studies, coaxshell.apps.paper; print({'scipy.stats', 'xarray', 'matplotlib'} & set(sys.modules))"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout.split() == ["set()"]
 
 
 @pytest.mark.parametrize(("name", "meant"), list(fluids.ALIASES.items()))

@@ -56,6 +56,7 @@ def test_fluids_are_named_and_found_by_name(count):
     assert region_number("nonsense", count) is None
 
 
+@pytest.mark.slow_for("12")
 @pytest.mark.parametrize("count", REGIONS)
 def test_responses_metrics_and_energies_share_the_names_of_fluids(count):
     system = nested(count)

@@ -32,6 +32,13 @@ def test_there_are_many_claims_with_names_places_and_criteria():
         assert claim.criterion
 
 
+@pytest.mark.slow_for(
+    "more-absorbers-lower-the-rms",
+    "more-absorbers-stop-helping",
+    "three-degrees-matter",
+    "outer-shell-barely-weakens-the-wave",
+    "inner-fields-differ-most-at-1",
+)
 @pytest.mark.parametrize("name", BY_NAME)
 def test_a_claim_gives_finite_numbers_a_verdict_and_a_reason(runs, name):
     finding = found(name, runs)
@@ -121,6 +128,7 @@ def test_runs_are_solved_once_and_read_back_alike(tmp_path):
     assert len(solved) == 5
 
 
+@pytest.mark.slow
 def test_runs_on_several_processes_are_those_in_turn(monkeypatch):
     from coaxshell.apps.paper import cases, known_runs
 

@@ -113,6 +113,7 @@ def test_warnings_name_their_run(drawn):
     assert any(text.startswith("k_p = -2e4, k_d = −150: outer shell") for text in drawn("11").warnings)
 
 
+@pytest.mark.slow_for("8", "10", "11", "2")
 @pytest.mark.parametrize("number", [n for n, recipe in FIGURES.items() if isinstance(recipe, StudyRecipe) and n != "9"] + ["12"])
 @pytest.mark.filterwarnings("ignore")
 def test_the_command_writes_every_figure(monkeypatch, tmp_path, number):

@@ -217,6 +217,7 @@ def test_reversed_diffraction_takes_the_load_from_a_rigid_head():
     assert abs(cancelled[5]) < 0.2
 
 
+@pytest.mark.slow_for("bare-radiation-sign-12")
 @pytest.mark.parametrize(("preset", "key", "modes"), [("active", "control-sign", 40), ("bare", "radiation-sign", 12)])
 def test_growth_is_that_of_a_root(preset, key, modes):
     system = cx.presets.load(preset)

@@ -45,6 +45,7 @@ def close(found, expected):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
 
 
+@pytest.mark.slow_for("10")
 @pytest.mark.parametrize("number", CASES)
 def test_stress_curves(drawn, direct, line, number):
     axes = drawn(number).figure.axes
@@ -56,6 +57,7 @@ def test_stress_curves(drawn, direct, line, number):
             close(line(ax, name), direct(system, shell, angle))
 
 
+@pytest.mark.slow_for("7")
 @pytest.mark.parametrize("number", ["5", "6", "7", "10"])
 def test_insets_show_the_largest_extremum(drawn, number):
     for ax in drawn(number).figure.axes[:2]:
@@ -80,6 +82,7 @@ def test_attachment_position_carries_the_sine_orders(drawn, direct, line):
             close(line(ax, str(angle)), direct(moved, shell, 0.0, "displacement", duration=2.0))
 
 
+@pytest.mark.slow
 def test_number_of_absorbers(tiny):
     figure = counts(fine=(0, 1, 2), coarse=(0, 10))([BARE], Runs(tiny), None).figure
     for index, (shell, chosen) in enumerate([(0, (0, 10)), (1, (0, 10)), (0, (0, 1, 2)), (1, (0, 1, 2))]):

@@ -50,6 +50,7 @@ def test_the_report_holds_every_number_and_picture(small):
         assert figure.axes
 
 
+@pytest.mark.slow
 def test_statements_about_histories_and_waves_are_judged_with_both():
     found = rows(judged_with_both(Settings(duration=4.0, time_step=2e-2, modes=12)))
     assert [row[0] for row in found] == [str(number) for number in range(6, 21)]

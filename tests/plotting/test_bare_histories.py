@@ -86,10 +86,12 @@ def test_rigid_core_is_left_out_and_only_rigid_is_refused(make_response):
         figure_bare_histories(make_response(rigid))
 
 
+@pytest.mark.slow
 def test_a_response_of_nothing_but_zeros_is_drawn(make_response):
     figure_bare_histories(make_response(presets.load("bare"), amplitude=0.0)).canvas.draw()
 
 
+@pytest.mark.slow_except(".png-\\x89PNG")
 @pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".pdf", b"%PDF"), (".svg", b"<?xml")])
 def test_saves_whole_and_repeatably(response, tmp_path, suffix, magic):
     contents = []

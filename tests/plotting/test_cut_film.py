@@ -82,6 +82,7 @@ def test_walls_along_the_axis_show_their_stress_where_it_is(response: SpatialRes
     assert np.ptp(picture[28, 29]) < 30  # its mirror image below is not the same place
 
 
+@pytest.mark.slow
 def test_a_film_of_a_plane_beside_both_cuts(response: SpatialResponse, flat: Response, tmp_path: Path) -> None:
     told: list[tuple[float, str]] = []
     path = save_film(

@@ -43,6 +43,7 @@ def test_both_cuts_show_the_pressure(response: SpatialResponse) -> None:
     assert "pressure (kPa)" in labels
 
 
+@pytest.mark.slow
 def test_one_station_leaves_shells_along_the_axis_as_lines() -> None:
     figure = figure_cuts(solved("bare", [0.0]), 1.0, view=SMALL)
     along = next(ax for ax in figure.axes if ax.get_ylabel() == "$z/a$")

@@ -16,6 +16,9 @@ def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
         evaluations=12,
         seed=1,
         workers=1,
+        modes=4,
+        duration=1.0,
+        time_step=0.02,
     )
     figure, ax = plt.subplots()
     plot_parallel(found, ax)

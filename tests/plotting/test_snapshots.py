@@ -112,6 +112,7 @@ def test_default_times_end_with_the_run(waves):
     assert len(images(figure)) == 2 * sum(time <= 5 for time in COMPARISON_TIMES) == 36
 
 
+@pytest.mark.slow_for("2-times2", "2-times1")
 @pytest.mark.parametrize("times", [(1.0,), (0.5, 1.0, 1.5, 2.0), (0.5, 1.0, 1.5, 2.0, 2.5)])
 @pytest.mark.parametrize("count", [1, 2])
 def test_no_two_panels_or_bars_overlap(waves, times, count):

@@ -13,6 +13,7 @@ LEAST = 0.01
 CHEAP = [name for name in ORACLES if name not in DEAR]
 
 
+@pytest.mark.slow_for("1")
 @pytest.mark.parametrize("seed", range(10))
 def test_a_few_systems(seed: int) -> None:
     study = Study()

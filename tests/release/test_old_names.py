@@ -10,6 +10,7 @@ import pytest
 from coaxshell._moved import MOVED
 
 
+@pytest.mark.slow_for("paper")
 @pytest.mark.parametrize("room", MOVED)
 def test_the_old_name_is_the_same_module_and_says_where_it_went(room: str) -> None:
     code = (
@@ -26,6 +27,7 @@ def test_the_old_name_is_the_same_module_and_says_where_it_went(room: str) -> No
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_modules_inside_are_the_same_objects() -> None:
     code = (
         "import warnings\nwarnings.simplefilter('ignore')\n"

@@ -104,6 +104,7 @@ def worst(balance: xr.Dataset) -> float:
     return float(np.abs(balance["closure_relative"]).max())
 
 
+@pytest.mark.slow_for("three shells, two sources, sine half", "saturated control")
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_it_closes_at_every_time(balanced: Callable[[str], xr.Dataset], name: str) -> None:
@@ -142,6 +143,7 @@ BROKEN: dict[str, tuple[str, Callable[[Problem], Problem]]] = {
 }
 
 
+@pytest.mark.slow_except("feedback", "cross stiffness", "bending stiffness")
 @pytest.mark.parametrize("name", BROKEN)
 def test_a_broken_factor_shows(solved: Callable[[str], Response], name: str) -> None:
     system, broken = BROKEN[name]
@@ -149,6 +151,7 @@ def test_a_broken_factor_shows(solved: Callable[[str], Response], name: str) -> 
     assert worst(energy(replace(solution, problem=broken(solution.problem)), spectra=spectra_of(solution))) > 2 * SYSTEMS[system][1]
 
 
+@pytest.mark.slow_except("change0")
 @pytest.mark.parametrize("change", [{"mass": 12}, {"linear_stiffness": 1.2e9}, {"damping": 1.2e5}])
 def test_a_broken_absorber_shows(
     solved: Callable[[str], Response], balanced: Callable[[str], xr.Dataset], change: dict[str, float]
@@ -189,12 +192,14 @@ def test_what_is_not_there_is_left_out(balanced: Callable[[str], xr.Dataset]) ->
     assert {"shell_kinetic", "interior_kinetic"} <= set(balanced("one shell").data_vars)
 
 
+@pytest.mark.slow
 def test_it_does_not_depend_on_how_often_it_is_taken(solved: Callable[[str], Response], balanced: Callable[[str], xr.Dataset]) -> None:
     often, seldom = balanced("bare preset"), solved("bare preset").energy(every=50)
     for name in ("gap_kinetic", "interior_compression", "outer_strain", "exterior_work"):
         np.testing.assert_allclose(often[name][::5], seldom[name], rtol=1e-9, atol=1e-14)
 
 
+@pytest.mark.slow
 def test_a_loaded_response_gives_the_same(solved: Callable[[str], Response], balanced: Callable[[str], xr.Dataset], tmp_path) -> None:
     response = solved("linear absorbers off the axis")
     loaded = cx.load_response(response.save(tmp_path / "run.nc"))

@@ -58,6 +58,7 @@ def refusal(call: Callable[[Path], object], path: Path) -> str:
 # -- history ------------------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow_for("every other")
 @pytest.mark.parametrize(
     "change",
     [

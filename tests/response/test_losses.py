@@ -30,6 +30,7 @@ def coated():
     return cx.simulate(with_losses(0.1, layers=[cx.Layer(RUBBER, "8 mm")]), **RUN)
 
 
+@pytest.mark.slow_for("constant-q")
 @pytest.mark.parametrize("loss_model", ["prony", "constant-q"])
 def test_energy_closes_with_what_the_walls_dissipate(coated, loss_model):
     response = coated if loss_model == "prony" else cx.simulate(with_losses(0.1, loss_model=loss_model), **RUN)
@@ -42,6 +43,7 @@ def test_energy_closes_with_what_the_walls_dissipate(coated, loss_model):
         assert np.all(np.diff(lost) > -1e-9 * float(lost[-1]))
 
 
+@pytest.mark.slow
 def test_energy_closes_over_the_whole_length():
     energy = cx.simulate(with_losses(0.1, layers=[cx.Layer(RUBBER, "8 mm")]), **ALONG).energy(every=40)
     assert float(np.abs(energy["closure_relative"]).max()) < 1e-5

@@ -149,6 +149,7 @@ def sphere(coat: bool = True, model: str = "prony") -> SpatialResponse:
     return found
 
 
+@pytest.mark.slow_for("False-constant-q")
 @pytest.mark.parametrize(("coat", "model"), [(True, "prony"), (False, "constant-q")])
 def test_energy_over_the_whole_length_closes_with_what_the_walls_dissipate(coat, model):
     energy = sphere(coat, model).energy(every=10)

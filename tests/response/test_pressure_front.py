@@ -18,6 +18,7 @@ SOURCES = {
 }
 
 
+@pytest.mark.slow_except("step", "line")
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 @pytest.mark.parametrize("name", SOURCES)
 def test_it_differs_from_the_sharp_one_at_the_front_only(name):

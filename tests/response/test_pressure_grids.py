@@ -59,6 +59,7 @@ def test_cartesian_equals_polar_at_the_same_points(answer):
             )  # the wake of a line source is a table made for its points
 
 
+@pytest.mark.slow_except("lopsided-pressure", "loaded-velocity")
 @pytest.mark.parametrize("quantity", ["pressure", "velocity"])
 def test_interpolated_grids_equal_exact_ones(answer, quantity):
     # Many pixels are interpolated, few are not; the largest error is at fronts that no pixel resolves.
@@ -76,6 +77,7 @@ class _Asked:
     resolution = 0.01
 
 
+@pytest.mark.slow_for("lopsided")
 def test_interpolation_does_not_reach_across_a_wall(answer):
     # Pixels next to either face of both shells, by interpolation and one by one.
     whole = answer.pressure(AXIS, AXIS, time=1.1).values
@@ -96,6 +98,7 @@ def test_a_raster_through_the_centre_and_one_off_it(lopsided):
         np.testing.assert_allclose(whole[:, 30, ::15], exact, atol=1e-4 * abs(exact).max())
 
 
+@pytest.mark.slow_for("lopsided")
 def test_blocks_change_nothing(answer):
     told = []
     times = np.linspace(0, 2, 41)
@@ -205,6 +208,7 @@ def test_polar_and_cartesian_velocities_are_one_vector(answer):
     np.testing.assert_allclose(cartesian, turn @ polar, rtol=1e-12)
 
 
+@pytest.mark.slow_except("lopsided-exterior-1.0-2.0", "loaded-interior-0.0-0.5")
 @pytest.mark.parametrize(("region", "inner", "outer"), [("interior", 0.0, 0.5), ("gap", 0.5, 1.0), ("exterior", 1.0, 2.0)])
 def test_the_rms_is_that_of_fine_pixels(answer, region, inner, outer):
     # Midpoints of equal areas; incident fronts limit what pixels can tell.

@@ -63,6 +63,7 @@ def test_walls_without_mass_and_stiffness_are_not_there(z0: float) -> None:
         assert float(abs(along[i].to_numpy() - expected).max()) < 2e-4 * 1e5
 
 
+@pytest.mark.slow_for("True")
 @pytest.mark.parametrize("held", [False, True])
 def test_slope_at_the_wall_is_the_fluids_density_times_its_acceleration(smooth: SpatialResponse, *, held: bool) -> None:
     if held:
@@ -116,6 +117,7 @@ def test_nothing_is_felt_before_it_arrives(bare: SpatialResponse) -> None:
     assert not early.any()
 
 
+@pytest.mark.slow
 def test_the_axial_period_and_the_contour_do_not_matter(smooth: SpatialResponse) -> None:
     shorter, x = solved(smooth.system, duration=3.0), np.linspace(-1.5, 1.5, 7)
     one, other = (run.pressure(x=x, z=[0.0, 1.0], y=0.2, time=2.5, time_resolution=FINE) for run in (smooth, shorter))

@@ -127,6 +127,7 @@ def test_a_line_source_is_that_of_two_dimensions_at_all_z() -> None:
     assert float(mean["z"]) == 0.7
 
 
+@pytest.mark.slow
 def test_a_volume_is_what_the_cuts_through_it_are(smooth: SpatialResponse) -> None:
     radius, angle, z = np.array([0.2, 0.8, 1.3]), [0.0, 77.0, 180.0], [-0.5, 0.4]
     keys: dict[str, Any] = {"time": [1.5, 2.5], "time_resolution": ROUGH}

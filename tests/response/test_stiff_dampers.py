@@ -44,6 +44,7 @@ def balance(damping: float, refinement: int = 1, **absorber: float) -> Any:
     return solved(damping, refinement, **absorber).energy(every=10)
 
 
+@pytest.mark.slow_for("1000000000.0-4-9.0")
 @pytest.mark.parametrize(("damping", "refinement", "mass"), [(1e9, 1, 9.0), (1e10, 1, 9.0), (1e13, 1, 9.0), (1e9, 4, 9.0), (1e9, 1, 0.0)])
 def test_linear_ones_close_at_any_step(damping: float, refinement: int, mass: float) -> None:
     assert np.abs(balance(damping, refinement, mass=mass)["closure_relative"]).max() < 5e-5
@@ -67,6 +68,7 @@ def test_what_they_take_is_force_squared_over_damping(damping: float, cubic: flo
     assert balance(damping, cubic_stiffness=cubic)["damper_dissipation"][-1] == pytest.approx(expected, rel=limit)
 
 
+@pytest.mark.slow_for("1e+16")
 @pytest.mark.parametrize("cubic", [0.0, 1e16])
 def test_a_refined_run_has_the_fields_and_energies_of_the_fine_one(cubic: float, tmp_path: Path) -> None:
     refined = solved(1e9, 4, cubic_stiffness=cubic)

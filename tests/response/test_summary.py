@@ -18,6 +18,7 @@ from coaxshell.solver.solution import ModalSolution
 FINE = np.arange(-180.0, 180.0, 0.025) + 0.025
 
 
+@pytest.mark.slow_for("None-2", "window1-2")
 @pytest.mark.parametrize("parities", [1, 2])
 @pytest.mark.parametrize("window", [None, (0.5, 1.2)])
 def test_peaks_and_rms(make: Callable[..., ModalSolution], parities: int, window: tuple[float, float] | None) -> None:

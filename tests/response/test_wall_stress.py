@@ -42,6 +42,7 @@ def everywhere(response, shell, component, angles=ANGLES, **station):
     return found
 
 
+@pytest.mark.slow_for("hoop", "axial")
 @pytest.mark.parametrize("component", ["von_mises", "hoop", "axial"])
 def test_no_place_has_more(steel, component):
     for shell in ("inner", "outer"):

@@ -59,6 +59,7 @@ def balance_of(name: str) -> xr.Dataset:
     return cx.simulate(system, **{**SMALL, "duration": duration}).energy()
 
 
+@pytest.mark.slow_for("rigid core, two sources at different places")
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_it_closes_over_the_whole_length(name: str) -> None:
     # Measured 1e-6, 1.4e-5 around a vacuum, which is what two dimensions have at this step: the fluids' fields are cut off at a frequency
@@ -89,6 +90,7 @@ def broken(motion: Motion, name: str) -> Motion:
     return replace(motion, problem=replace(motion.problem, fluids=tuple(fluids), shells=tuple(shells)))
 
 
+@pytest.mark.slow
 def test_a_broken_factor_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     # Every wave closes by itself: the longest ones tell. Measured 5e-7 for what is right, 4e-5 or more for what is not.
     run = cx.simulate("active", **SMALL)
@@ -136,6 +138,7 @@ def test_a_product_along_the_axis_is_the_sum_over_stations() -> None:
         assert expected[1:].max() > 0.0
 
 
+@pytest.mark.slow
 def test_walls_that_are_not_there_hold_the_energy_of_the_spherical_wave() -> None:
     # p = (S/R) f(x), v = (S/R) [f + F/R] integrated over the cylinder r < 1, of any length.
     ghost = cx.Shell(radius=1.0, layers=[cx.Layer(cx.Elastic(youngs_modulus=1e-3, poisson_ratio=0.3, density=1e-9), 1e-3)])
@@ -161,6 +164,7 @@ def test_walls_that_are_not_there_hold_the_energy_of_the_spherical_wave() -> Non
         assert float(now["exterior_work"]) == pytest.approx(kinetic + compression, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_images_stay_out_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     # Measured 3e-10 with twice the period, 4e-5 with three fifths of it. Without a fluid inside nothing is cut off: closure 2e-15.
     pulse = cx.Gaussian(peak_pressure=1e4, width=0.25 / 1400)
@@ -179,6 +183,7 @@ def test_images_stay_out_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     assert float(abs(found[0.6]["shell_kinetic"] - found[1.0]["shell_kinetic"]).max()) > 1e-5 * float(found[1.0]["shell_kinetic"].max())
 
 
+@pytest.mark.slow
 def test_it_does_not_ask_where_the_source_or_the_stations_are() -> None:
     source, here = cx.SphericalShock(distance=3.0, **SHOCK), balance_of("vacuum inside")
     there = cx.simulate(VACUUM.replace(source=source.replace(z=1.3)), stations=[0.0, 2.0], **SMALL).energy()
@@ -223,6 +228,7 @@ def run_of(absorbers: tuple[cx.PointAbsorber, ...]) -> cx.Response:
     return cx.simulate(held(*absorbers), **SMALL)
 
 
+@pytest.mark.slow_for("rings in both planes")
 @pytest.mark.parametrize(
     ("absorbers", "limit"),
     [
@@ -248,6 +254,7 @@ def test_point_absorbers_close_the_balance(absorbers: Any, limit: float) -> None
     np.testing.assert_allclose(balance["absorber_kinetic"], kinetic, atol=0.08 * kinetic.max(), rtol=0)
 
 
+@pytest.mark.slow_except("damping")
 @pytest.mark.parametrize("name", ["damping", "mass", "linear"])
 def test_a_broken_absorber_shows(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     run = run_of(RINGS)
@@ -269,6 +276,7 @@ def test_point_absorbers_under_a_source_uniform_along_the_axis_are_refused() -> 
 LINES = {"mass": 20.0, "damping": 1e4, "linear_stiffness": 1e8}
 
 
+@pytest.mark.slow_for("cubic")
 @pytest.mark.parametrize(("cubic", "limits"), [(0.0, (5e-6, 5e-6)), (1e22, (5e-4, 1.7e-4))], ids=["linear", "cubic"])
 def test_it_closes_with_line_absorbers(cubic: float, limits: tuple[float, float]) -> None:
     # measured 2.7e-6 and 1.8e-6 with linear ones, 3.4e-4 and 1.0e-4 with cubic springs: the march is of second order

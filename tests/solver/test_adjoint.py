@@ -181,6 +181,7 @@ def test_walls_fluids_gains_and_sources(cubic):
     assert_allclose(along(sensitivity(system), changes), difference(system, changes), rtol=1e-7)
 
 
+@pytest.mark.slow_for("1e+22")
 @pytest.mark.parametrize("cubic", [0.0, 1e22])
 def test_reflections_of_surface_and_bottom(cubic):
     """Images that are turned over and images of images that are not, up to three rounds; the sines take part."""

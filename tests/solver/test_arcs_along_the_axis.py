@@ -56,6 +56,7 @@ def test_lattices_and_any_layout_agree() -> None:
     assert off(folded.absorber_force(), apart.absorber_force()[:-1]) < 1e-9
 
 
+@pytest.mark.slow
 def test_short_arcs_are_lines_and_exact_walls_tend_to_thin_ones() -> None:
     """By O(h), thin walls wetted at their faces and held over the same arcs."""
     lines = [run(system(THIN, cx.absorber_ring(3, **{**LINES, "footprint": b}))).absorber_force() for b in (1e-7, None)]

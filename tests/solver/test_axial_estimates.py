@@ -104,6 +104,7 @@ def test_lines_under_a_line_source_feel_what_they_feel_in_two_dimensions(count, 
     assert off < 1e-3  # measured 1.4e-4: two dimensions count more orders with the last of the sample, for all that lie above it
 
 
+@pytest.mark.slow
 def test_springs_count_with_their_tangent(coarse):
     barely, strongly = (printed(solved(8, cubic_stiffness=value)) for value in (1e-3, 1e21))
     np.testing.assert_allclose(barely, printed(coarse), rtol=0.05)

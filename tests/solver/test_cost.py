@@ -61,6 +61,7 @@ CASES = {
 QUICK = ("bare", "many orders", "ring", "uneven", "in space", "direct")
 
 
+@pytest.mark.slow_for("in space")
 @pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in CASES])
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 def test_memory_within_a_factor_of_what_a_run_takes(name: str) -> None:

@@ -72,15 +72,6 @@ def test_a_wave_across_the_axis_is_that_of_two_dimensions(theory):
     assert not np.any(space.displacement(2, component="axial"))
 
 
-def test_what_is_odd_along_the_axis_vanishes_beside_the_source():
-    found = run()
-    for shell in (1, 2):
-        reads = [partial(found.stress, shell, [20, 90], component=name) for name in ("shear", "radial_axial")]
-        reads += [partial(found.displacement, shell, [20, 90], "axial")]
-        for read in reads:
-            assert np.abs(read(station=0.0)).max() < 1e-12 * np.abs(read(station=0.5)).max()
-
-
 def test_integrals_along_the_axis_are_those_of_the_longest_wave():
     """The trapezoidal rule over a period leaves k = 0 alone, two of it: the wave that nothing changes along the axis of."""
     period, half = 16.0, 6  # more than k_max L/(4 pi)
@@ -145,7 +136,8 @@ def test_histories_are_those_of_their_depth():
     assert summary.largest[1]["von_mises_stress"]["value"] == pytest.approx(largest, rel=1e-3)
 
 
-def test_reciprocity_of_two_points_off_each_other_s_plane():
+@pytest.mark.parametrize(("modes", "limit"), [(4, 2e-4), pytest.param(8, 2e-7, marks=pytest.mark.slow)], ids=["few", "many"])
+def test_reciprocity_of_two_points_off_each_other_s_plane(modes, limit):
     """A source at one point gives another what a source there gives the first, distances of their fronts counted.
 
     To what orders and wavenumbers leave out, whatever the time step and the axial period: 1e-4 up to order 4, 2e-6 up to 6, 5e-8 up to 8,
@@ -156,12 +148,12 @@ def test_reciprocity_of_two_points_off_each_other_s_plane():
     for (r, angle, z), (far, around, along) in (places, places[::-1]):
         walls = system(cx.SphericalWave(distance=r, angle=angle, z=z, pulse=BROAD))
         start = r - walls.head_radius
-        found = cx.simulate(walls, **{**SPACE, "duration": 6.6, "time_step": 4e-2, "modes": 8})
+        found = cx.simulate(walls, **{**SPACE, "duration": 6.6, "time_step": 4e-2, "modes": modes})
         asked = times - start
         at = found.pressure(radius=[far], angle=[around], z=along, time=asked, part="scattered", time_resolution=4e-2)
         answers.append(np.asarray(at).squeeze() / start)
     assert np.abs(answers[0]).max() > 1.0
-    np.testing.assert_allclose(answers[0], answers[1], rtol=2e-7)
+    np.testing.assert_allclose(answers[0], answers[1], rtol=limit)
 
 
 def test_energy_over_the_whole_length_closes():

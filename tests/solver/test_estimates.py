@@ -28,6 +28,7 @@ def stress_error(response: cx.Response, many: cx.Response, shell: int) -> float:
     return float(np.sqrt(mean_square(left_out).sum() / mean_square(full).sum()))
 
 
+@pytest.mark.slow_for("bare-40")
 @pytest.mark.parametrize("modes", [40, 120])
 def test_truncation_is_estimated_within_a_factor(case: tuple[cx.System, cx.Response], modes: int) -> None:
     system, many = case
@@ -183,6 +184,7 @@ def test_the_direct_engine_says_what_it_does_not_know() -> None:
     assert "unknown" in str(response.summary())
 
 
+@pytest.mark.slow_for("False-100000.0", "True-100000.0")
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 @pytest.mark.parametrize("limit", [2e4, 1e5, 6e5])
 @pytest.mark.parametrize("plane", [False, True])
@@ -206,6 +208,7 @@ def test_a_limit_out_of_reach_changes_nothing() -> None:
     np.testing.assert_allclose(limited, linear, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::coaxshell.PhysicsWarning")
 def test_the_march_of_a_lightly_damped_shell_is_not_told_from_steps_that_have_lost_its_phase() -> None:
     """At four times the step its membranes, which the step hardly resolves, ring out of phase: a fifth of that is less than the error."""

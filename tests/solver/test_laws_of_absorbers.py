@@ -92,6 +92,7 @@ FULL = {
 }
 
 
+@pytest.mark.slow_for("each side its own", "smoothed friction")
 @pytest.mark.parametrize("name", FULL)
 def test_the_energy_of_every_law_closes(name):
     response = run(of(single(law=FULL[name], inertance=1.0 if name == "Maxwell" else 0.0)), time_step=4e-3, modes=4)

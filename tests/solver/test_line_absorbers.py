@@ -144,6 +144,7 @@ def test_cubes_are_what_the_law_makes_of_the_stretch_at_a_station():
             assert off(links["linear_stiffness"] * stretch, law) > 0.02
 
 
+@pytest.mark.slow
 def test_more_axial_wavenumbers_change_no_more_than_is_told():
     ring = cx.absorber_ring(4, **CUBIC)
     few, many = (run(ring, stations=[0.0, 0.3, 0.6, 1.0], axial_modes=top) for top in (8, 24))

@@ -220,6 +220,7 @@ def left_after(amplitude: float) -> float:
     return (x * x + dx * dx) / amplitude**2
 
 
+@pytest.mark.slow
 def test_an_essentially_nonlinear_absorber_takes_energy_above_the_fold_of_its_slow_manifold():
     # |x|^2 = [lambda^2 + (1 - 3/4 k Z)^2] Z has its fold at Z = 4/(9 k) (2 - (1 - 3 lambda^2)^(1/2)): below it the absorber sleeps
     damping, cubic = 0.2, 4.0 / 3.0

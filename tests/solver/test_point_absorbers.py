@@ -42,6 +42,7 @@ def test_marched_forces_tend_to_the_exact_ones_at_second_order():
     assert errors[1] < errors[0] / 3
 
 
+@pytest.mark.slow_for("in both planes")
 @pytest.mark.parametrize("source", [{}, {"z": 0.2}, {"angle": 20.0}], ids=["in both planes", "beside z = 0", "beside theta = 0"])
 def test_mirror_images_carried_once_do_what_all_of_them_do(source):
     system = BARE.replace(source=BARE.source.model_copy(update=source))
@@ -52,6 +53,7 @@ def test_mirror_images_carried_once_do_what_all_of_them_do(source):
     assert off(once.absorber_force(), all_of_them.absorber_force()[:-1]) < 1e-9
 
 
+@pytest.mark.slow
 def test_a_system_that_is_moved_and_turned_does_the_same_there():
     here = run([cx.PointAbsorber(angle=15, z=0.3, **LINKS)], stations=0.5)
     source = BARE.source.model_copy(update={"angle": 25.0, "z": 0.1})

@@ -67,6 +67,7 @@ def assert_the_same(found: PreparedSystem, system: cx.System, settings: Settings
     assert reused.estimates.time_window == fresh.estimates.time_window
 
 
+@pytest.mark.slow_for("two sources", "distance", "angle", "no absorbers")
 @pytest.mark.parametrize("name", CHANGES)
 def test_equals_a_fresh_run_exactly(name: str) -> None:
     prepared = cx.prepare(ACTIVE, settings=SETTINGS)
@@ -78,6 +79,7 @@ def test_equals_a_fresh_run_exactly(name: str) -> None:
     assert_the_same(prepared, ACTIVE)
 
 
+@pytest.mark.slow
 def test_a_chain_of_changes() -> None:
     prepared, system = cx.prepare(ACTIVE, settings=SETTINGS), ACTIVE
     for change in CHANGES.values():

@@ -33,6 +33,7 @@ def test_the_map_of_the_package_is_what_its_script_makes():
     np.testing.assert_array_equal(again.spread, stored.spread)
 
 
+@pytest.mark.slow_for("15.0-0.14-3.0")
 @pytest.mark.parametrize(("distance", "decay", "duration"), [(4.0, 0.3, 1.5), (15.0, 0.14, 3.0)])
 def test_between_its_nodes_the_map_tells_what_a_run_shows(distance, decay, duration):
     found = compare(shocked(BARE, distance, decay), RESOLUTION.up_to(duration), ("slice",))

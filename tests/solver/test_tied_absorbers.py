@@ -81,6 +81,7 @@ def test_a_diagonal_matrix_beside_absorbers_is_each_walls_own_law(system):
     assert away < (1e-12 if system is LINEAR else 2e-3)  # marched by kernels of orders here, of points there
 
 
+@pytest.mark.slow_for("cubic")
 @pytest.mark.parametrize("law", [None, cx.laws.Friction(force=2e3)], ids=["cubic", "friction"])
 def test_energy_closes_and_a_stored_run_knows_its_voltages(law, tmp_path):
     absorbers = tuple(one.replace(law=law, cubic_stiffness=1e20 if law is None else 0.0) for one in CUBIC.absorber_list)

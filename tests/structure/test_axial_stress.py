@@ -137,6 +137,7 @@ def test_a_free_vibration_keeps_its_energy():
         assert found.piezoelectric[0] > 0.0
 
 
+@pytest.mark.slow_for("0.01")
 @pytest.mark.parametrize("thickness", [0.01, 0.05])
 def test_nothing_runs_faster_than_the_fastest_wave(thickness):
     # Group velocities d omega/dk of all branches; stretching waves and the shortest bending waves come near the bound.

@@ -104,6 +104,13 @@ WALLS = {
 }
 
 
+@pytest.mark.slow_for(
+    "9-30.0-rubber outside",
+    "60-0.0-rubber outside",
+    "9-0.0-rubber outside",
+    "9-30.0-ceramics",
+    "9-30.0-rubber between",
+)
 @pytest.mark.parametrize("name", WALLS)
 @pytest.mark.parametrize(("order", "wavenumber"), [*((m, 0.0) for m in (0, 1, 2, 9, 60)), (0, 0.2), (9, 30.0)])
 def test_receptances_and_stresses_agree_with_a_dense_solve(name, order, wavenumber, monkeypatch):

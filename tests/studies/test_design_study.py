@@ -22,6 +22,7 @@ def test_every_study_has_a_result():
     assert {name.replace("-", "_") for name in SCRIPTS} < {path.stem for path in STUDIES.glob("*.py")}
 
 
+@pytest.mark.slow_for("c-hybrid", "b-60-free")
 @pytest.mark.parametrize("name", NAMES)
 def test_the_best_system_gives_the_number_told(name):
     problem = read_study(STUDIES / f"{name}.toml", OptimisationStudy).problem(STUDIES)

@@ -98,6 +98,7 @@ def square(x):
     return x * x
 
 
+@pytest.mark.slow
 def test_a_pool_survives_the_death_of_its_workers():
     found = dict(completed(range(12), square, workers=2))
     assert isinstance(found.pop(5), WorkerDiedError)

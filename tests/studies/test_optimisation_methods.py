@@ -32,6 +32,7 @@ def bowl(system):
     return 3.0 + (x + y) ** 2 + 10.0 * (x - y) ** 2 + (z - x) ** 2
 
 
+@pytest.mark.slow_for("0-gradient")
 @pytest.mark.parametrize("method", EACH)
 @pytest.mark.parametrize("seed", [0, 3])
 def test_the_smallest_value_is_found(analytic, method, seed):
@@ -44,6 +45,7 @@ def test_the_smallest_value_is_found(analytic, method, seed):
     assert len(found.history) == 700
 
 
+@pytest.mark.slow_for("gradient")
 @pytest.mark.parametrize("method", EACH)
 def test_a_maximum_is_found(analytic, method):
     goal = cx.Objective("inner.peak_stress", maximise=True)
@@ -66,6 +68,7 @@ def test_an_active_limit_of_a_run_is_met_from_inside(analytic, method):
     assert_allclose(found.best.objectives[0], 0.5, rtol=5e-5)
 
 
+@pytest.mark.slow_for("cma-es")
 @pytest.mark.parametrize("method", SINGLE)
 def test_an_active_limit_of_the_design_is_met_without_runs_beyond_it(analytic, method):
     """The more mass the better, at most 125 kg/m in 25 absorbers: 5 kg/m each; nothing heavier is run."""
@@ -109,6 +112,7 @@ def test_one_variable(analytic):
         assert_allclose(found.system.absorbers.mass, 6.0, rtol=5e-5)
 
 
+@pytest.mark.slow_for("constraints0-0.0")
 @pytest.mark.parametrize(("constraints", "low"), [((), 0.0), (("interior.rms_pressure >= 0.5 Pa",), 0.5)])
 def test_a_known_front(analytic, constraints, low):
     """Schaffer's f1 = x^2, f2 = (x - 2)^2: the front is 0 <= x <= 2, from x = 1/2 where that is asked."""

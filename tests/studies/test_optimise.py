@@ -63,6 +63,7 @@ def test_the_answer_is_a_system_ready_to_run_with_the_value_told(quick, tmp_path
     assert_allclose(dataset["absorbers.mass (target)"], 25 * dataset["absorbers.mass"], rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_one_worker_and_two_go_the_same_way(quick):
     one, two = (searched(quick, workers=workers).history for workers in (1, 2))
     assert one == two
@@ -94,6 +95,7 @@ def test_ctrl_c_keeps_the_best_so_far(quick):
     assert "interrupted" in str(found)
 
 
+@pytest.mark.slow
 def test_a_study_killed_and_resumed_equals_one_that_was_not(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(STUDY)
@@ -130,6 +132,7 @@ def test_the_command_writes_answer_and_figure(tmp_path, monkeypatch, capsys):
     assert main(["optimise", "study.toml", "--workers", "1", "--quiet", "--force"]) == 0
 
 
+@pytest.mark.slow
 def test_two_objectives_from_a_file(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     text = STUDY.replace('["inner.peak_stress"]', '["inner.peak_stress", { metric = "absorbers.dissipated_energy", maximise = true }]')

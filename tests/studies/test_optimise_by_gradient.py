@@ -53,6 +53,7 @@ def test_starts_side_by_side_take_their_steps_together(quick, found):
     assert [one.values for one in together.history[::2]] == [one.values for one in found.history[:4]]
 
 
+@pytest.mark.slow
 def test_robust_objectives_have_gradients(quick):
     arguments = {"variables": {"absorbers[*].damping": VARIABLES["absorbers[*].damping"]}, "evaluations": 4}
     chance = {"uncertain": {"source.distance": cx.Uniform("4 m", "6 m")}, "samples": 2}

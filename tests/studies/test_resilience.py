@@ -77,6 +77,7 @@ def nobody_left(group):
     return False
 
 
+@pytest.mark.slow_for("1")
 @pytest.mark.parametrize("workers", [1, 2])
 def test_killed_and_resumed_equals_undisturbed(script, study, undisturbed, tmp_path, workers):
     folder = tmp_path / "store"
@@ -96,6 +97,7 @@ def test_killed_and_resumed_equals_undisturbed(script, study, undisturbed, tmp_p
     assert all((folder / name).stat().st_mtime_ns == stamp for name, stamp in before.items())
 
 
+@pytest.mark.slow
 def test_two_writers_on_one_store(script, undisturbed, tmp_path):
     outputs = [tmp_path / f"{name}.nc" for name in "ab"]
     processes = [begin(script, tmp_path / "store", output) for output in outputs]
@@ -139,6 +141,7 @@ def cluster():
         yield made
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")
 def test_a_dask_cluster_one_of_whose_workers_is_killed(cluster, study, undisturbed, tmp_path):
     pids = [worker.pid for worker in cluster.workers.values()]

@@ -45,6 +45,7 @@ def threaded() -> SpatialResponse:
         return run()
 
 
+@pytest.mark.slow_for("1")
 @pytest.mark.parametrize("workers", [1, 2])
 def test_processes_give_the_bits_of_threads(threaded: SpatialResponse, workers: int) -> None:
     told: list[float] = []
@@ -99,6 +100,7 @@ def test_two_dimensions_have_no_blocks() -> None:
         cx.simulate("bare", execution=cx.Execution(workers=2))
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")
 def test_a_dask_cluster_one_of_whose_workers_is_killed(threaded: SpatialResponse) -> None:
     assert_same(with_a_worker_killed("bare", **QUICK), threaded)

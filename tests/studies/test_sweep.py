@@ -44,6 +44,7 @@ def test_zipped_lists_and_functions(hybrid, quick):
     np.testing.assert_allclose(found["tail"], expected, rtol=1e-9)
 
 
+@pytest.mark.slow_for("sobol")
 @pytest.mark.parametrize("points", ["latin-hypercube", "sobol"])
 def test_sampled_points_fill_the_box_and_repeat(hybrid, quick, points):
     over = {"absorbers.count": (1, 4), "absorbers.damping": {"from": 1e4, "to": 1e8, "scale": "log"}}

@@ -106,6 +106,7 @@ def test_the_best_can_be_adopted_and_taken_home(client, single):
         assert client.get(f"/api/jobs/{name}/designs/{number}").status_code == 400
 
 
+@pytest.mark.slow
 def test_two_objectives_give_the_library_s_front(client, double):
     name, told = double
     expected = cx.optimise(
@@ -129,6 +130,7 @@ def test_two_objectives_give_the_library_s_front(client, double):
     assert_allclose(again, last["targets"][0], rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_choices_counts_gains_and_layers_are_those_of_the_library(client):
     variables = {
         "absorbers.count": {"from": 5, "to": 12},

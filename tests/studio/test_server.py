@@ -202,6 +202,7 @@ def test_a_page_that_leaves_in_the_middle_leaves_no_traceback(client, caplog):
     assert not caplog.records
 
 
+@pytest.mark.slow_for("closed terminal")
 @pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGKILL], ids=["closed terminal", "killed"])
 def test_nothing_stays_of_a_server_that_was_ended_otherwise(tmp_path, monkeypatch, number):
     """A closed terminal ends it cleanly; what a killed one leaves is removed by the next."""

@@ -131,6 +131,7 @@ def test_what_there_is_not_is_refused_in_one_line(client, answer, entries, where
     assert (told.get("problem") or told["error"])["where"] == where
 
 
+@pytest.mark.slow_for("across")
 @pytest.mark.parametrize("plane", ["along", "across"])
 def test_the_pressure_on_a_cut_is_the_library_s(client, answer, library, plane):
     asked = {"kind": "field", "run": answer[0]["run"], "plane": plane, "station": 1, "every": 25, "size": 32, "half_width": 1.6}
@@ -202,7 +203,8 @@ def test_runs_are_taken_home(client, answer, library, tmp_path):
     assert upload["resolution"]["stations"] == [0.0, 0.5]
 
 
-def test_studies_are_of_three_dimensions_too(client):
+@pytest.mark.parametrize("whole", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["sweep", "optimisation too"])
+def test_studies_are_of_three_dimensions_too(client, whole):
     system = {**described("bare"), "absorbers": [POINT]}
     small = {**SPACE, "duration": 1.0, "modes": 6}
     over = {"absorbers[0].z": {"from": 0, "to": "40 cm", "count": 2}}
@@ -218,7 +220,8 @@ def test_studies_are_of_three_dimensions_too(client):
         "evaluations": 4,
         "population": 4,
     }
-    job = finished(client, kind="optimise", system=system, resolution=small, **search)
-    assert client.get(f"/api/jobs/{job['id']}/result").json()["evaluations"] == 4
+    if whole:
+        job = finished(client, kind="optimise", system=system, resolution=small, **search)
+        assert client.get(f"/api/jobs/{job['id']}/result").json()["evaluations"] == 4
     refused = client.post("/api/jobs", json={"client": "tab", **body, "metrics": ["interior.rms_pressure"]}).json()
     assert refused["problem"]["where"] == "metrics[0]"

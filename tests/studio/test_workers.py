@@ -22,6 +22,7 @@ def carried_out():
             yield told
 
 
+@pytest.mark.slow
 def test_a_task_that_reports_nothing_is_ended_and_the_next_one_runs(carried_out):
     async def story(crew):
         first = await crew.submit(os.getpid).future

@@ -13,6 +13,7 @@ from coaxshell.numerics.radial_functions import RadialFunctions
 from coaxshell.structure.thin_wall import ThinWall
 
 
+@pytest.mark.slow_for("axial-wavenumbers", "independent", "inclined-waves", "engines", "modes")
 @pytest.mark.parametrize("name", [one.name for one in checks()])
 def test_quick_check_passes(quick_rows, name):
     assert quick_rows(name)
@@ -61,6 +62,7 @@ def test_a_wrong_wall_is_seen(monkeypatch):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("quick_rows")
 def test_a_wrong_wavenumber_is_seen(monkeypatch):
     right = Modes.kappa
