@@ -185,12 +185,19 @@ CASES: dict[str, tuple[Callable[[], Any], tuple[str, ...]]] = {
     ),
     "absorber past a shell": (
         lambda: cx.Absorber(mass=1, linear_stiffness=1e9, shells=(0, 2)),
-        ("shells:", "(0, 2)", "past a shell between are not solved", "inner_shell", "each gap"),
+        ("shells:", "(0, 2)", "have one each", "inner_shell = 0 and outer_shell = 2"),
     ),
-    "ring past a shell": (lambda: toml("mass = 10", "mass = 10\nouter_shell = 2"), ("absorbers.outer_shell:", "2", "inner_shell")),
-    "points past a shell": (
-        lambda: BARE.replace(absorbers=[{"mass": 1, "z": 0}, {"mass": 1, "z": 0, "shells": [0, 2]}]),
-        ("absorbers[1].shells:", "[0, 2]", "inner_shell"),
+    "outer shell beyond": (
+        lambda: toml("mass = 10", "mass = 10\nouter_shell = 2"),
+        ("absorbers.outer_shell:", "2 is no shell of this system of 2 shells", "at most 1"),
+    ),
+    "outer shell of a single one": (
+        lambda: BARE.replace(shells=BARE.shells[:1], fluids=BARE.fluids[:2], absorbers=[cx.Absorber(mass=1, links="outer", outer_shell=1)]),
+        ("absorbers[0].outer_shell:", "1 is no shell of this system of 1 shell", "leave it out"),
+    ),
+    "outer shell inside": (
+        lambda: BARE.replace(absorbers=[{"mass": 1, "z": 0}, {"mass": 1, "z": 0, "inner_shell": 1, "outer_shell": 1}]),
+        ("absorbers[1].outer_shell:", "1 does not lie outside inner_shell = 1", "at least 2"),
     ),
     "absorber on rigid": (
         lambda: BARE.replace(shells=[cx.RigidShell(radius=0.5), BARE.shells[1]], absorbers=ring(links="inner")),

@@ -85,6 +85,27 @@ def test_every_preset_shows_itself_and_needs_nothing_from_outside(name):
     assert name in text
 
 
+def mass(system: cx.System) -> float:
+    """Return x of the only absorber's mass, in pixels."""
+    (place,) = (float(one["cx"]) for one in circles(system) if one.get("fill") == "currentColor")
+    return place
+
+
+def test_absorbers_are_drawn_from_shell_to_shell_with_the_mass_in_the_outermost_gap():
+    bare = cx.presets.load("bare")
+    inner, outer = bare.shells
+    rod = {"mass": 10, "linear_stiffness": 1e9}
+    three = bare.replace(shells=[inner, inner.replace(radius=0.75), outer], fluids=[bare.exterior] * 4)
+    past, beside = (three.replace(absorbers=[cx.Absorber(**rod, **more)]) for more in ({"outer_shell": 2}, {"inner_shell": 1}))
+    drawn, other = cross_section(past), cross_section(beside)
+    (from_inner,), (from_middle,) = (re.findall(r'<path d="M(\S+) \S+L\S+ \S+" stroke="currentColor"', one) for one in (drawn, other))
+    assert float(from_inner) < 0.6 * PIXELS_PER_A < 0.75 * PIXELS_PER_A < float(from_middle)
+    assert mass(past) == mass(beside)
+    assert "from inner to outer" in past._repr_html_()
+    alone = bare.replace(shells=[outer], fluids=bare.fluids[1:], absorbers=[cx.Absorber(**rod, links="outer")])
+    assert_allclose(mass(alone), 0.75 * PIXELS_PER_A, rtol=0.05)
+
+
 def test_names_are_escaped():
     text = cx.presets.load("bare").replace(name="<b>&")._repr_html_()
     assert "<b>&lt;b&gt;&amp;</b>" in text

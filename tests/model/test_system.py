@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import coaxshell.model as cx
 from coaxshell.model import fluids, materials, presets
+from coaxshell.model.absorbers import gaps_of
 
 
 def test_radii_and_core_of_a_wall() -> None:
@@ -78,6 +79,15 @@ def test_rings_of_several_gaps_are_written_out() -> None:
         absorbers=rings,  # type: ignore[arg-type]
     )
     assert [absorber.inner_shell for absorber in system.absorber_list] == [0, 0, 0, 1, 1]
+
+
+def test_gaps_of_an_absorber_are_those_that_it_is_in() -> None:
+    made = {"mass": 1.0, "linear_stiffness": 1.0, "inner_shell": 1, "outer_shell": 4}
+    gaps = [
+        gaps_of(cx.Absorber(**made, **more)) for more in ({}, {"links": "inner"}, {"links": "outer"}, {"links": "outer", "grounded": True})
+    ]
+    assert [list(one) for one in gaps] == [[1, 2, 3], [1], [3], [1, 2, 3]]
+    assert list(gaps_of(cx.absorber_ring(2, mass=1.0, damping=1.0, inner_shell=2))) == [2]
 
 
 def test_an_empty_ring_fits_any_system() -> None:

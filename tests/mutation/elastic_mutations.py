@@ -168,8 +168,8 @@ ELASTIC = (
     Mutation(
         "faces-at-the-gap",
         "solver/interface/absorbers.py",
-        "surface_facing(inner + side, 1 - side)",
-        "surface_facing(inner + side, side if inner else 1 - side)",
+        "surface_facing(shell[side], 1 - side)",
+        "surface_facing(shell[side], side if shell[0] else 1 - side)",
         "absorbers hold the faces that look at their gap",
         "solver/test_footprints.py",
     ),

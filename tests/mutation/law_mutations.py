@@ -86,6 +86,22 @@ LAWS = (
         "solver/test_laws_of_absorbers.py",
     ),
     Mutation(
+        "law-past-shells",
+        "solver/links/described.py",
+        "return linked_shells(one) if shells > 1",
+        "return (one.inner_shell, one.inner_shell + 1) if shells > 1",
+        "the outer shell that an absorber past another holds",
+        "solver/test_absorbers_past_shells.py",
+    ),
+    Mutation(
+        "linear-ring-past-shells",
+        "solver/interface/linear_ring.py",
+        "slice(inner, outer + 1, outer - inner)",
+        "slice(inner, inner + 2)",
+        "the two surfaces that a ring past a shell holds",
+        "solver/test_absorbers_past_shells.py",
+    ),
+    Mutation(
         "law-other-side",
         "solver/interface/absorbers.py",
         "-inner * shares[1], *shares)",

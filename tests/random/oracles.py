@@ -16,6 +16,7 @@ import numpy as np
 from random_systems import Case
 
 import coaxshell as cx
+from coaxshell.model.absorbers import gaps_of
 
 Oracle = Callable[[Case, cx.Response], float | None]
 ROTATION, SCALE, SHIFT, LOUDER = 77.0, 3.0, 24, 2.0
@@ -200,7 +201,7 @@ def causality(case: Case, response: cx.Response) -> float:
     absorber's springs, at once; behind a vacuum never. Relative to the largest motion of all."""
     system, motion = case.system, delayed(case)
     step, transit = case.settings["time_step"], system.transit_time
-    linked = {absorber.inner_shell for absorber in system.absorber_list}
+    linked = {gap for absorber in system.absorber_list for gap in gaps_of(absorber)}
     arrival = min(one.delay for one in system.sources) + SHIFT * step * transit
     largest, early = float(np.abs(motion).max()), 0.0
     for i in reversed(range(len(system.shells))):

@@ -168,6 +168,9 @@ def _absorbers(random: np.random.Generator, shells: list[Any], inner: int, trans
         "cubic_stiffness": _one_of(random, (0.0, 0.4), (stiffness / stretch**2 * _log(random, 0.1, 10.0), 0.6)),
         "inner_shell": inner,
     }
+    apart = random.spawn(1)[0]  # what follows is drawn as ever
+    if len(shells) - inner > 2 and apart.random() < 0.3:
+        made["outer_shell"] = int(apart.integers(inner + 2, len(shells)))
     if random.random() < 0.12:
         made["mass"] = 0.0
     if random.random() < 0.1 and made["cubic_stiffness"] and made["mass"]:

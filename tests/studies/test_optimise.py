@@ -173,6 +173,10 @@ def test_spacing_is_the_smallest_arc_on_the_inner_shell():
     assert_allclose(DesignReading(base).absorber_spacing, 2 * np.pi * 0.5 / 25, rtol=1e-12)
     pair = [cx.Absorber(angle=350, mass=1), cx.Absorber(angle=20, mass=1), cx.Absorber(angle=180, mass=1)]
     assert_allclose(DesignReading(base.replace(absorbers=pair)).absorber_spacing, 0.5 * np.radians(30), rtol=1e-12)
+    inner, outer = base.shells  # one past a shell stands in both gaps
+    crossing = [cx.Absorber(mass=1, inner_shell=1, angle=10), cx.Absorber(mass=1, outer_shell=2, angle=50), cx.Absorber(mass=1, angle=200)]
+    three = base.replace(shells=[inner, inner.replace(radius=0.75), outer], fluids=[base.exterior] * 4, absorbers=crossing)
+    assert_allclose(DesignReading(three).absorber_spacing, 0.75 * np.radians(40), rtol=1e-12)
 
 
 BAD = {

@@ -1,11 +1,11 @@
-"""Vibration absorbers between neighbouring shells (paper's Eqs. 6 and 7), one by one or as a ring of equal ones.
+"""Vibration absorbers between two shells (paper's Eqs. 6 and 7), neighbours or any other, one by one or as a ring of equal ones.
 
 Those of two dimensions are lines along the axis, with their properties per metre of length; those of three are points of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Annotated, Any, Literal, Self, overload
 
@@ -51,15 +51,54 @@ def _require_determined(one: _Link | PointAbsorber, unit: str) -> None:
         raise InputError("mass", f"0.0 {unit} on one shell alone does nothing", "must be greater than 0")
 
 
-def _require_neighbours(entries: Any) -> Any:
-    """Return the entries of an absorber; InputError if they name a pair of shells, or its outer one, which follows from inner_shell."""
+def _require_known_pair(entries: Any) -> Any:
+    """Return the entries of an absorber; InputError if they name its two shells by one entry."""
     given = entries if isinstance(entries, Mapping) else {}
-    for name in ("shells", "outer_shell"):
+    for name in ("shells", "between"):
         if name in given:
-            why = "an absorber joins a shell and the next one out; links past a shell between are not solved"
-            remedy = "give inner_shell alone, or for shells further apart an absorber in each gap, which holds those between too"
-            raise InputError(name, f"{shown(given[name])} is no entry: {why}", remedy)
+            problem = f"{shown(given[name])} is no entry: the two shells of an absorber have one each"
+            raise InputError(name, problem, "give inner_shell and outer_shell, such as inner_shell = 0 and outer_shell = 2")
     return entries
+
+
+def _require_outside(one: _Link | PointAbsorber) -> None:
+    """Raise InputError if the outer one of the two shells does not lie outside the other."""
+    if one.outer_shell is not None and one.outer_shell <= one.inner_shell:
+        problem = f"{one.outer_shell} does not lie outside inner_shell = {one.inner_shell}"
+        raise InputError("outer_shell", problem, f"must be at least {one.inner_shell + 1}, or leave it out for the next one out")
+
+
+def linked_shells(one: _Link | PointAbsorber) -> tuple[int, int]:
+    """Return the numbers of the two shells between which an absorber is described, the outer one the next one out unless given."""
+    return one.inner_shell, one.inner_shell + 1 if one.outer_shell is None else one.outer_shell
+
+
+def gaps_of(one: _Link | PointAbsorber) -> range:
+    """Return the gaps through which an absorber runs, gap i between the shells i and i + 1; of a mass on one shell alone that beside it."""
+    inner, outer = linked_shells(one)
+    if one.links == "both" or one.grounded:
+        return range(inner, outer)
+    return range(inner, inner + 1) if one.links == "inner" else range(outer - 1, outer)
+
+
+def drawn_radii(one: _Link | PointAbsorber, inside: Sequence[float], outside: Sequence[float]) -> tuple[float, float, float]:
+    """Return the radii between which an absorber is drawn, and in the middle that of its mass: half-way through the outermost gap it is in.
+
+    A link that there is not ends at the mass, and the core of one shell alone is drawn at half its radius.
+
+    Parameters
+    ----------
+    inside, outside : sequence of float
+        Radii of the inner and the outer faces of all shells as they are drawn.
+    """
+    if len(inside) < 2:
+        inner, mass, outer = 0.5 * inside[0], 0.75 * inside[0], inside[0]
+        return (inner if one.grounded else mass), mass, outer
+    first, last = linked_shells(one)
+    gap = gaps_of(one)[-1]
+    mass = (outside[gap] + inside[gap + 1]) / 2
+    held = one.links if not one.grounded else "both"
+    return (mass if held == "outer" else outside[first]), mass, (mass if held == "inner" else inside[last])
 
 
 class _Link(Described):
@@ -74,7 +113,9 @@ class _Link(Described):
     cubic_stiffness: LineCubicStiffness = 0.0
     """Cubic stiffness k_nl of each link (N/m^3 per metre of length)."""
     inner_shell: Count = 0
-    """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
+    """The inner one of the two shells it links, counted from 0 inside."""
+    outer_shell: Count | None = None
+    """The outer one of the two; unless given the next one out. It passes those between through holes, without touching them."""
     footprint: Length | None = None
     """Arc of each wall that it holds (m); unless given the wall's thickness on exact walls, a line on thin ones."""
     links: Links = "both"
@@ -86,10 +127,11 @@ class _Link(Described):
     inertance: LineMass = 0.0
     """Inertance b of each link (kg per metre of length): f = b d^2D/dt^2 besides, of an inerter."""
 
-    _neighbours = model_validator(mode="before")(_require_neighbours)
+    _known_pair = model_validator(mode="before")(_require_known_pair)
 
     @model_validator(mode="after")
     def _determined(self) -> Self:
+        _require_outside(self)
         _require_determined(self, "kg/m")
         return self
 
@@ -116,7 +158,9 @@ class PointAbsorber(Described):
     cubic_stiffness: PointCubicStiffness = 0.0
     """Cubic stiffness k_nl of each link (N/m^3)."""
     inner_shell: Count = 0
-    """The inner one of the two shells it links, counted from 0 inside; the other is the next one out."""
+    """The inner one of the two shells it links, counted from 0 inside."""
+    outer_shell: Count | None = None
+    """The outer one of the two; unless given the next one out. It passes those between through holes, without touching them."""
     links: Links = "both"
     """Which shells it holds: "both", or its mass hangs on the "inner" or the "outer" one alone, as a tuned mass damper."""
     grounded: bool = False
@@ -132,10 +176,11 @@ class PointAbsorber(Described):
     footprint: Length | None = None
     """Side of the patch of each wall that it holds (m); the wall's thickness unless given."""
 
-    _neighbours = model_validator(mode="before")(_require_neighbours)
+    _known_pair = model_validator(mode="before")(_require_known_pair)
 
     @model_validator(mode="after")
     def _determined(self) -> Self:
+        _require_outside(self)
         _require_determined(self, "kg")
         return self
 

@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber
+from coaxshell.model.absorbers import Absorber, AbsorberRing, PointAbsorber, linked_shells
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Vacuum
@@ -113,7 +113,9 @@ def _absorbers(system: SystemParts) -> None:
                 f"{inner} has no shell outside it",
                 f"must be at most {most} in a system of {len(system.shells)} shells",
             )
-        ends = {"both": [inner, inner + 1], "inner": [inner], "outer": [inner if alone else inner + 1]}[absorber.links]
+        _outer_shell(where, absorber, len(system.shells))
+        outer = inner if alone else linked_shells(absorber)[1]
+        ends = {"both": [inner, outer], "inner": [inner], "outer": [outer]}[absorber.links]
         if all(isinstance(system.shells[end], RigidShell) for end in ends):
             found = " and ".join(f"shells[{end}]" for end in ends)
             are = "are" if len(ends) > 1 else "is"
@@ -123,6 +125,15 @@ def _absorbers(system: SystemParts) -> None:
             if absorber.footprint > around:
                 found = f"{absorber.footprint:g} m is more than the circumference of shells[{inner}]"
                 raise InputError(f"{where}.footprint", found, f"must be at most {around:.4g} m")
+
+
+def _outer_shell(where: str, absorber: Absorber | AbsorberRing | PointAbsorber, shells: int) -> None:
+    """Raise InputError if the outer shell that an absorber names is none of a system."""
+    outer = absorber.outer_shell
+    if outer is not None and outer >= shells:
+        of = "1 shell" if shells == 1 else f"{shells} shells"
+        remedy = f"must be at most {shells - 1}, or leave it out for the next one out" if shells > 1 else "leave it out"
+        raise InputError(f"{where}.outer_shell", f"{outer} is no shell of this system of {of}", remedy)
 
 
 def _control(system: SystemParts) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 from coaxshell.errors import InputError
 from coaxshell.limits import TOML_BYTES
+from coaxshell.model.absorbers import Absorber, PointAbsorber, linked_shells
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.gains import gains_of, reads_of
@@ -101,7 +102,7 @@ def canonical(system: SystemParts) -> dict[str, Any]:
     """Return the physics of a system as plain data: no names, references or strengths, a ring written out as its absorbers."""
     data = _plain(system)
     data["source"] = [_source(source, None, hashed=True) for source in system.sources]
-    data["absorbers"] = [_plain(absorber) for absorber in (*system.absorber_list, *system.point_absorbers)]
+    data["absorbers"] = [*map(_absorber, system.absorber_list), *map(_absorber, system.point_absorbers)]
     if system.control is not None:
         several = isinstance(system.control, tuple)
         for law, written in zip(laws_of(system), data["control"] if several else [data["control"]], strict=True):
@@ -115,6 +116,12 @@ def canonical(system: SystemParts) -> dict[str, Any]:
                 written["matrix"] = [[row[number] for number in numbers] for row in rows if row is not None]
             written["shells"] = list(numbers)
     return _nameless(data)  # type: ignore[no-any-return]
+
+
+def _absorber(one: Absorber | PointAbsorber) -> dict[str, Any]:
+    """Return an absorber as plain data; that its outer shell is the next one out goes without saying."""
+    inner, outer = linked_shells(one)
+    return _plain(one if outer > inner + 1 else one.replace(outer_shell=None))
 
 
 def _plain(model: SystemParts | Material | Any) -> dict[str, Any]:

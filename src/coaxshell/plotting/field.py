@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coaxshell.model.absorbers import drawn_radii
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.field_scales import (
     PRESSURE_COLOURS,
@@ -135,11 +136,10 @@ def wall_bands(system: System) -> list[tuple[float, float]]:
 
 
 def absorber_places(system: System) -> tuple[FloatArray, FloatArray]:
-    """Return x and y of the absorbers, in a, half-way between the shells they link."""
-    radii = np.array(wall_radii(system))
-    inner = np.array([absorber.inner_shell for absorber in system.absorber_list], dtype=np.intp)
+    """Return x and y of the masses of the absorbers, in a: half-way between the shells they link, or through the outermost gap."""
+    radii = wall_radii(system)
     angle = np.radians([absorber.angle for absorber in system.absorber_list])
-    middle = 0.5 * (radii[inner] + radii[inner + 1])
+    middle = np.array([drawn_radii(absorber, radii, radii)[1] for absorber in system.absorber_list])
     return middle * np.cos(angle), middle * np.sin(angle)
 
 

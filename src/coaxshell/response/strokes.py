@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.absorbers import linked_shells
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.response.absorbers import SIDES, absorber_displacement
 from coaxshell.response.synthesis import angle_basis, at_angles
@@ -34,7 +35,7 @@ def absorber_stroke(solution: ModalSolution) -> xr.DataArray:
     for n, one in enumerate(absorbers):
         for side, name in enumerate(SIDES):
             held = one.links in ("both", name)
-            shell = one.inner_shell + side
+            shell = linked_shells(one)[side] if len(shells) > 1 else 0
             arc = segment_mean(orders, (one.footprint or 0.0) / shells[shell].radius)
             wall = length * at_angles(modal[shell], basis[n : n + 1] * arc)[:, 0] if held else 0.0
             strokes[n, side] = masses.to_numpy()[n] - wall if held or one.grounded else np.nan

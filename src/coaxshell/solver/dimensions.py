@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from coaxshell.errors import InputError
+from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.gains import law_of, limits_currents, limits_voltages, segments_of, ties_shells
 from coaxshell.model.layers import Shell
@@ -96,7 +97,7 @@ def require_cubic_springs(system: System, what: str, remedy: str) -> None:
     """Raise InputError if absorbers have more than two links of dampers, linear and cubic springs, all that *what* knows."""
     for number, one in enumerate(system.absorber_list):
         where = f"absorbers[{number}]" if isinstance(system.absorbers, tuple) else "absorbers"
-        core = any(isinstance(system.shells[i], RigidShell) for i in (one.inner_shell, one.inner_shell + 1) if i < len(system.shells))
+        core = any(isinstance(system.shells[i], RigidShell) for i in linked_shells(one) if i < len(system.shells))
         besides = {"law": one.law is not None, "inertance": one.inertance != 0.0, "links": one.links != "both", "inner_shell": core}
         for name, given in besides.items():
             if given:

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.absorbers import gaps_of
 from coaxshell.model.layers import Shell
 from coaxshell.model.sources import UnderwaterExplosion
 from coaxshell.model.system import System
@@ -259,18 +260,18 @@ def absorber_mass(system: System) -> float:
 
 
 def absorber_spacing(system: System) -> float:
-    """Return the smallest distance between absorbers of one gap, m, along the inner of the shells they link.
+    """Return the smallest distance between absorbers of one gap, m, along the shell inside it; one past a shell is in every gap it crosses.
 
     Of lines the arc between neighbours, of points sqrt((R theta)^2 + z^2). A gap's whole circumference where it has a single absorber,
     that of the outermost shell where there are none.
     """
     spacings = [math.tau * system.reference_radius]
-    for i in {absorber.inner_shell for absorber in system.absorber_list}:
-        angles = sorted(absorber.angle % 360.0 for absorber in system.absorber_list if absorber.inner_shell == i)
+    for i in {gap for absorber in system.absorber_list for gap in gaps_of(absorber)}:
+        angles = sorted(absorber.angle % 360.0 for absorber in system.absorber_list if i in gaps_of(absorber))
         steps = [after - before for before, after in pairwise([*angles, angles[0] + 360.0])]
         spacings.append(math.radians(min(steps)) * system.shells[i].radius)
-    for i in {absorber.inner_shell for absorber in system.point_absorbers}:
-        places = [(absorber.angle, absorber.z) for absorber in system.point_absorbers if absorber.inner_shell == i]
+    for i in {gap for absorber in system.point_absorbers for gap in gaps_of(absorber)}:
+        places = [(absorber.angle, absorber.z) for absorber in system.point_absorbers if i in gaps_of(absorber)]
         spacings.append(_closest(np.array(places), system.shells[i].radius))
     return min(spacings)
 

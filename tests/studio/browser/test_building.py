@@ -42,12 +42,15 @@ MADE = """async () => {
   };
   const told = ({shells, fluids, absorbers, control}) =>
     [shells.map(({radius}) => radius), fluids.join(''), absorbers.map(({inner_shell}) => inner_shell), control?.shells ?? null];
+  const past = {...system, absorbers: [{inner_shell: 0, outer_shell: 2, mass: 1}, {outer_shell: null}]};
   return {
+    past: [withShellAfter(past, 0), withShellAfter(past, 2), withoutShell(past, 1), withoutShell(past, 2)].map(({absorbers}) => absorbers),
+    crossed: freeAngle([{angle: 0}, {angle: 90, outer_shell: 2}], {inner_shell: 1}),
     after: [0, 2].map(i => told(withShellAfter(system, i))),
     without: [0, 1, 2].map(i => told(withoutShell(system, i))),
     walls: withWallsExchanged(system, 1).shells.map(({radius, layers}) => [radius, layers[0].thickness]),
     alone: withShellAfter({...system, shells: system.shells.slice(0, 1), fluids: ['vacuum', 'water']}, 0).fluids,
-    free: [[], [{angle: 90}, {angle: 270}, {angle: 10, inner_shell: 1}], [{angle: 0}, {angle: 90}]].map(some => freeAngle(some, 0)),
+    free: [[], [{angle: 90}, {angle: 270}, {angle: 10, inner_shell: 1}], [{angle: 0}, {angle: 90}]].map(some => freeAngle(some, {})),
     laws: split({numerator: [2, 4], matrix: [[1, 0.3], [0.6, 0.5]], shells: 'all'}, [1, 2].map(radius => ({radius, layers: []}))),
     two: withoutShell({...system, control: [{shells: [0]}, {shells: [2]}]}, 0).control,
     ring: singly({count: 4, offset: 45, mass: 2, inner_shell: 1}),
@@ -60,6 +63,13 @@ def test_what_hangs_on_a_shell_s_place_goes_with_it(linked_page):
     assert made["after"] == [[[1, 1.5, 2, 4], "abbcd", [0, 2], [2, 3]], [[1, 2, 4, 5], "abccd", [0, 1], [1, 2]]]
     assert made["without"] == [[[2, 4], "acd", [0], [0, 1]], [[1, 4], "abd", [], [1]], [[1, 2], "abd", [0], None]]
     assert made["walls"] == [[1, 0.01], [2, 0.04], [4, 0.02]], "the radii stay"
+    assert made["past"] == [
+        [{"inner_shell": 0, "outer_shell": 3, "mass": 1}, {"inner_shell": 0}],
+        [{"inner_shell": 0, "outer_shell": 2, "mass": 1}, {"inner_shell": 0}],
+        [{"inner_shell": 0, "mass": 1}],
+        [{"inner_shell": 0}],
+    ], "what it passes comes and goes, what it holds takes it along"
+    assert made["crossed"] == -90, "an absorber is in every gap that it crosses"
     assert made["alone"] == ["vacuum", "water", "water"], "the first gap is full of what is outside"
     assert made["free"][0] == 0
     assert made["free"][1] in (0, 180)
@@ -155,6 +165,16 @@ def test_absorbers_are_dragged_and_moved_by_keys(linked_page):
     page.keyboard.press("ArrowDown")  # the source comes after them
     page.keyboard.press("ArrowLeft")
     until(page, f"{SYSTEM}.source.angle === -1")
+    page.locator('details[data-group="shells"] > summary').press("Enter")
+    page.get_by_role("button", name="Add shell").press("Enter")
+    until(page, f"{SYSTEM}.shells.length === 3")
+    between = page.locator('select[data-path="absorbers[0].inner_shell"]')
+    between.locator("option").nth(2).wait_for(state="attached")
+    page.evaluate("document.querySelectorAll('#form details[data-group^=absorbers]').forEach(one => { one.open = true; })")
+    assert between.locator("option").all_text_contents() == ["inner and middle", "middle and outer", "inner and outer"]
+    between.select_option(label="inner and outer")
+    until(page, f"{SYSTEM}.absorbers[0].outer_shell === 2 && {SYSTEM}.absorbers[1].outer_shell == null")
+    assert between.evaluate("one => one.selectedOptions[0].textContent") == "inner and outer"
     until(page, "!document.documentElement.classList.contains('stale')")
     assert violations(page, "#section") == []
 

@@ -20,6 +20,7 @@ from coaxshell.response.summary import Summary, summarise
 from coaxshell.response.tables import quantities_of
 from coaxshell.response.voltages import actuator_limit
 from coaxshell.response.wall_motion import WallMotion
+from coaxshell.solver.links.described import shells_between
 
 _ABSORBER_FORCE = {"absorber_force": ("absorber force, inward", "N/m")}
 _PLACES: dict[Where, str] = {"head": "peak {} at the head", "tail": "peak {} at the tail", "anywhere": "peak {} anywhere", "rms": "RMS {}"}
@@ -112,8 +113,8 @@ def _histories(response: Response, absorbers: dict[str, Any], with_rates: bool) 
     if solution.absorber_force is not None and response.system.absorber_list:
         forces = solution.problem.scales.line_force * solution.absorber_force
         for index in range(len(response.system.shells)):
-            for side, first in ((0, index), (1, index - 1)):  # a shell is the inner one of the gap outside it, the outer one of that inside
-                pair = _nearest(response.system.absorber_list, head, first)
+            for side in (0, 1):
+                pair = _nearest(response.system.absorber_list, head, (side, index), len(response.system.shells))
                 if pair is not None and f"absorber_force/{index}" not in items:
                     items[f"absorber_force/{index}"] = Item(forces[list(pair), side], "N/m")
     return items
@@ -126,19 +127,23 @@ def given(motion: WallMotion, index: int) -> list[Quantity]:
 
 def absorbers_of(response: Response, listed: Sequence[Absorber | PointAbsorber]) -> dict[str, Any]:
     """Return where absorbers are, and the numbers of those nearest to head and tail."""
-    pair = _nearest(listed, response.system.sources[0].angle, None)
+    pair = _nearest(listed, response.system.sources[0].angle)
+    pairs = [shells_between(one, len(response.system.shells)) for one in listed]
     return {
         "count": len(listed),
         "angles": [absorber.angle for absorber in listed],
-        "inner_shells": [absorber.inner_shell for absorber in listed],
+        "inner_shells": [inner for inner, _ in pairs],
+        "outer_shells": [outer for _, outer in pairs],
         "head": None if pair is None else pair[0],
         "tail": None if pair is None else pair[1],
     }
 
 
-def _nearest(listed: Sequence[Absorber | PointAbsorber], head: float, inner_shell: int | None) -> tuple[int, int] | None:
-    """Return the numbers of the absorbers nearest to head and tail, of one gap or of all; None without any."""
-    numbers = [n for n, one in enumerate(listed) if inner_shell in (None, one.inner_shell)]
+def _nearest(
+    listed: Sequence[Absorber | PointAbsorber], head: float, end: tuple[int, int] | None = None, shells: int = 0
+) -> tuple[int, int] | None:
+    """Return the numbers of the absorbers nearest to head and tail, of those that end on a side on a shell, or all; None without any."""
+    numbers = [n for n, one in enumerate(listed) if end is None or shells_between(one, shells)[end[0]] == end[1]]
     if not numbers:
         return None
 

@@ -11,6 +11,7 @@ from coaxshell.apps.studio import limits, worker
 from coaxshell.apps.studio.fields import Stresses, told_of, written
 from coaxshell.errors import InputError
 from coaxshell.model import System
+from coaxshell.model.absorbers import drawn_radii
 from coaxshell.numerics.cost import Cost
 from coaxshell.plotting.cut_frames import Shown, shown_runs
 from coaxshell.plotting.frames import FieldView, gathered
@@ -79,6 +80,5 @@ def _in_the_plane(system: System) -> list[list[float]]:
     for point in system.point_absorbers:
         across = np.cos(np.radians(point.angle))
         if abs(across) > 0.99:
-            beside = radii[min(point.inner_shell + 1, len(radii) - 1)]
-            found.append([float(across * 0.5 * (radii[point.inner_shell] + beside)), point.z])
+            found.append([float(across * drawn_radii(point, radii, radii)[1]), point.z])
     return [[x / system.reference_radius, z / system.reference_radius] for x, z in found]

@@ -53,10 +53,9 @@ def _forces(response: SpatialResponse, absorbers: dict[str, Any], unit: str) -> 
     """Return the forces of the absorbers nearest to head and tail on their shells: of points (2, instants), of lines at every station."""
     if absorbers["head"] is None:
         return {}
-    found, inner = np.asarray(response.absorber_force())[[absorbers["head"], absorbers["tail"]]], absorbers["inner_shells"]
+    found = np.asarray(response.absorber_force())[[absorbers["head"], absorbers["tail"]]]
     forces = found if found.ndim == 3 else found.transpose(2, 0, 1, 3)
-    shells = {inner[absorbers["head"]], inner[absorbers["tail"]]}
-    if len(shells) > 1:  # in different gaps: no shell is held by both
+    pairs = {(absorbers["inner_shells"][absorbers[end]], absorbers["outer_shells"][absorbers[end]]) for end in ("head", "tail")}
+    if len(pairs) > 1:  # between different shells
         return {}
-    first = shells.pop()
-    return {f"absorber_force/{first + side}": Item(forces[..., side, :], unit) for side in (0, 1)}
+    return {f"absorber_force/{shell}": Item(forces[..., side, :], unit) for side, shell in enumerate(pairs.pop()) if shell >= 0}

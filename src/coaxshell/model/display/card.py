@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 
-from coaxshell.model.absorbers import AbsorberRing
+from coaxshell.model.absorbers import AbsorberRing, linked_shells
 from coaxshell.model.control import PDControl
 from coaxshell.model.display.drawing import ROLE_COLOURS, cross_section
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid, Vacuum
 from coaxshell.model.gains import gains_of, saturates
 from coaxshell.model.parts import SystemParts, laws_of, shells_under
-from coaxshell.model.places import region_side, shell_phrase
+from coaxshell.model.places import region_side, shell_name, shell_phrase
 from coaxshell.model.prefixes import engineering
 from coaxshell.model.sea import Sea
 from coaxshell.model.shells import RigidShell, Shell
@@ -179,6 +179,9 @@ def _absorbers(system: SystemParts) -> str:
     law = f"m = {first.mass:g} kg/m, c = {first.damping:.3g}, k_l = {first.linear_stiffness:.3g}, k_nl = {first.cubic_stiffness:.3g}"
     besides = [f"law {first.law.type}"] if first.law is not None else []
     besides += [f"b = {first.inertance:.3g}"] if first.inertance else []
+    inner, outer = linked_shells(first)
+    if first.links == "both" and outer > inner + 1:
+        besides.append(f"from {' to '.join(shell_name(i, len(system.shells)) for i in (inner, outer))}")
     besides += (
         [f"on the {first.links} shell alone{', the other link on a core' if first.grounded else ''}"] if first.links != "both" else []
     )

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from html import escape
 
-from coaxshell.model.absorbers import Absorber
+from coaxshell.model.absorbers import Absorber, drawn_radii
 from coaxshell.model.fluids import Fluid, Vacuum
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import SystemParts
@@ -155,10 +155,9 @@ def _absorbers(system: SystemParts, factor: float) -> Iterator[str]:
 
 
 def _absorber(system: SystemParts, absorber: Absorber, factor: float) -> Iterator[str]:
-    inner, outer = system.shells[absorber.inner_shell], system.shells[absorber.inner_shell + 1]
-    low = inner.radius + factor * inner.thickness / 2
-    high = outer.radius - factor * outer.thickness / 2
-    (x1, y1), (x, y), (x2, y2) = (_at(system, radius, absorber.angle) for radius in (low, (low + high) / 2, high))
+    inside = [shell.radius - factor * shell.thickness / 2 for shell in system.shells]
+    outside = [shell.radius + factor * shell.thickness / 2 for shell in system.shells]
+    (x1, y1), (x, y), (x2, y2) = (_at(system, radius, absorber.angle) for radius in drawn_radii(absorber, inside, outside))
     yield f'<path d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}" stroke="currentColor" stroke-width="0.8" opacity="0.6"/>'
     yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.4" fill="currentColor"/>'
 

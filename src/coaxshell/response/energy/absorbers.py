@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.faced_forces import surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, Properties, absorber_set, properties
 from coaxshell.solver.interface.link_motion import LinkMotion
-from coaxshell.solver.links.described import side_of
+from coaxshell.solver.links.described import shells_between
 from coaxshell.structure.shell_model import ShellModel
 
 
@@ -47,12 +47,12 @@ def absorber_energy(motion: Motion) -> AbsorberEnergy:
 
     every = absorber_set(motion.problem, fitted, 2)
     at: Walls = on_lines if every.footprint is None else _on_footprints(motion, every)
-    inner = [side_of(one, len(motion.problem.shells)) for one in fitted]
-    return held_energy(properties(fitted, scales), inner, motion.links, at, motion.grid, motion.kept)
+    linked = [shells_between(one, len(motion.problem.shells)) for one in fitted]
+    return held_energy(properties(fitted, scales), linked, motion.links, at, motion.grid, motion.kept)
 
 
 def held_energy(
-    law: Properties, inner: Sequence[int], links: LinkMotion | None, at: Walls, grid: LaplaceGrid, kept: slice
+    law: Properties, linked: Sequence[tuple[int, int]], links: LinkMotion | None, at: Walls, grid: LaplaceGrid, kept: slice
 ) -> AbsorberEnergy:
     """Return m (dq/dt)^2/2, the springs' k_l D^2/2 + k_nl D^4/4, D = q - w_i on either side, and what the dampers take.
 
@@ -65,8 +65,8 @@ def held_energy(
     ----------
     law : Properties
         Dimensionless, of every absorber.
-    inner : sequence of int
-        The inner one of the two shells that each links.
+    linked : sequence of (int, int)
+        The two shells that each links, the inner one first; -1 for none.
     links : LinkMotion or None
         None without absorbers.
     at : callable
@@ -77,15 +77,11 @@ def held_energy(
     """
     powers, energies = np.zeros((2, grid.time.size)), np.zeros((2, grid.time[kept].size))
     if links is not None and links.laws is not None:
-        return _energy_of_laws(law, inner, links, at, grid, kept)
+        return _energy_of_laws(law, linked, links, at, grid, kept)
     if links is not None:
         q, dq, force = links.displacement, links.velocity, links.force
         energies[0] = np.sum(0.5 * law.mass[:, None] * dq[:, kept] ** 2, axis=0)
-        for shell in range(max(inner, default=0) + 2):
-            ends = [(n, shell - first) for n, first in enumerate(inner) if shell - first in (0, 1)]
-            if not ends:
-                continue
-            here, side = (list(part) for part in zip(*ends, strict=True))
+        for shell, here, side in _ends(linked):
             w, dw, impedance = at(shell, here, side)
             stretch, parting = q[here] - w, dq[here] - dw
             damping, linear, cubic = (column[here, None] for column in (law.damping, law.linear, law.cubic))
@@ -115,13 +111,22 @@ def _on_footprints(motion: Motion, links: AbsorberSet) -> Walls:
     return at
 
 
-def _energy_of_laws(law: Properties, inner: Sequence[int], links: LinkMotion, at: Walls, grid: LaplaceGrid, kept: slice) -> AbsorberEnergy:
+def _ends(linked: Sequence[tuple[int, int]]) -> Iterator[tuple[int, list[int], list[int]]]:
+    """Yield the shells that absorbers hold, and on each the numbers and sides of their ends."""
+    for shell in sorted({shell for pair in linked for shell in pair if shell >= 0}):
+        ends = [(n, pair.index(shell)) for n, pair in enumerate(linked) if shell in pair]
+        yield shell, [n for n, _ in ends], [side for _, side in ends]
+
+
+def _energy_of_laws(
+    law: Properties, linked: Sequence[tuple[int, int]], links: LinkMotion, at: Walls, grid: LaplaceGrid, kept: slice
+) -> AbsorberEnergy:
     """Return the energies of links of any law, as their march kept them; the defect is that of the work on the moving ends."""
     assert links.laws is not None
     stored, damped, lost, held = links.laws
     power = np.zeros(grid.time.size)
-    for shell in range(max(inner, default=0) + 2):
-        ends = [(n, shell - first) for n, first in enumerate(inner) if shell - first in (0, 1) and held[n, shell - first]]
+    for shell, every, sides in _ends(linked):
+        ends = [(n, side) for n, side in zip(every, sides, strict=True) if held[n, side]]
         if ends:
             here, side = (list(part) for part in zip(*ends, strict=True))
             power -= np.sum(links.force[here, side] * at(shell, here, side)[1], axis=0)

@@ -57,8 +57,8 @@ class HeldPoints:
             return w[points], dw[points], impedance[points, None]
 
         law = Properties(*(x[absorbers.member] for x in (absorbers.mass, absorbers.damping, absorbers.linear, absorbers.cubic)))
-        inner = [int(shell) for shell in absorbers.inner_shell[absorbers.member]]
-        return held_energy(law, inner, self._links, at, grid, kept)
+        linked = [(int(inner), int(outer)) for inner, outer in absorbers.shells.T[absorbers.member]]
+        return held_energy(law, linked, self._links, at, grid, kept)
 
     def _impedance(self) -> FloatArray:
         """Return Z, by which a force at a point and its images moves the wall's own mass within half a step, at all points carried."""

@@ -33,7 +33,7 @@ from coaxshell.solver.axial.sums import pair_count
 from coaxshell.solver.axial.surfaces import SurfaceWave
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.links.described import LinkScales, link_elements, side_of
+from coaxshell.solver.links.described import LinkScales, link_elements, shells_between
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
 
@@ -104,7 +104,7 @@ def point_layout(problem: Problem) -> PointLayout:
     absorbers = AbsorberSet(
         angle=np.array([one.angle for one in carried]),
         **_properties(carried, problem.scales),
-        inner_shell=np.array([side_of(one, len(problem.shells)) for one in carried], dtype=np.int64),
+        shells=np.array([shells_between(one, len(problem.shells)) for one in carried], dtype=np.int64).T.copy(),
         multiplicity=np.array([float(len(members)) for members in images]),
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([one.angle for one in listed]),
@@ -120,10 +120,10 @@ def point_layout(problem: Problem) -> PointLayout:
 
 def _end(problem: Problem, one: PointAbsorber, side: int) -> int:
     """Return the surface of a link, or that of the other link where there is none or a core: the point counts, but not what it does."""
-    inner = side_of(one, len(problem.shells))
-    moves = inner + side >= 0 and problem.shells[inner + side].moves
+    shell = shells_between(one, len(problem.shells))
+    moves = shell[side] >= 0 and problem.shells[shell[side]].moves
     held = side if moves else 1 - side
-    return problem.surface_facing(inner + held, 1 - held)
+    return problem.surface_facing(shell[held], 1 - held)
 
 
 def _wall_point(problem: Problem, one: PointAbsorber, surface: int) -> tuple[float, float, float, float]:

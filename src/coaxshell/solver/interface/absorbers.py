@@ -1,6 +1,6 @@
 """Absorbers in dimensionless form, their symmetry, and the projection between their forces and the modes.
 
-Absorber n links shell i to shell i + 1 at theta_n. On side j (0 the inner, 1 the outer shell) it exerts, positive inward,
+Absorber n links two shells at theta_n, neighbours or not. On side j (0 the inner, 1 the outer shell) it exerts, positive inward,
 
     f = c dD/dt + k_l D + k_nl D^3,  D = q - w_j(theta_n);      m d2q/dt2 = -f_0 - f_1         (Eqs. 6, 7)
 
@@ -21,10 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.model.absorbers import Absorber
+from coaxshell.model.absorbers import Absorber, linked_shells
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
-from coaxshell.solver.links.described import LinkElements, LinkScales, link_elements, side_of
+from coaxshell.solver.links.described import LinkElements, LinkScales, link_elements, shells_between
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
 from coaxshell.structure.segmented_wall import SegmentedWall
@@ -66,7 +66,8 @@ class AbsorberSet:
         Degrees.
     mass, damping, linear, cubic : ndarray, shape (N,)
         As :class:`Properties`.
-    inner_shell : ndarray of int, shape (N,)
+    shells : ndarray of int, shape (2, N)
+        Between which they are counted, the inner ones first; -1 and 0 in a system of one shell.
     multiplicity : ndarray, shape (N,)
         2 for one that stands for itself and its mirror image, else 1.
     member : ndarray of int
@@ -88,7 +89,7 @@ class AbsorberSet:
     damping: FloatArray
     linear: FloatArray
     cubic: FloatArray
-    inner_shell: npt.NDArray[np.int64]
+    shells: npt.NDArray[np.int64]
     multiplicity: FloatArray
     member: npt.NDArray[np.int64]
     every_angle: FloatArray
@@ -177,7 +178,7 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int
     return AbsorberSet(
         angle=np.array([a.angle for a in carried], dtype=np.float64),
         **properties(carried, problem.scales)._asdict(),
-        inner_shell=np.array([side_of(a, len(problem.shells)) for a in carried], dtype=np.int64),
+        shells=np.array([shells_between(a, len(problem.shells)) for a in carried], dtype=np.int64).reshape(-1, 2).T.copy(),
         multiplicity=np.array(multiplicity),
         member=np.array(member, dtype=np.int64),
         every_angle=np.array([a.angle for a in absorbers], dtype=np.float64),
@@ -209,8 +210,8 @@ def _footprints(problem: Problem, absorbers: Sequence[Absorber]) -> FloatArray |
 
 def _surface(problem: Problem, one: Absorber, side: int) -> int:
     """Return the number of the surface that a link of an absorber holds; in a system of one shell that shell's, for both."""
-    inner = side_of(one, len(problem.shells))
-    return problem.surface_facing(inner + side, 1 - side) if inner >= 0 else 0
+    shell = shells_between(one, len(problem.shells))
+    return problem.surface_facing(shell[side], 1 - side) if shell[0] >= 0 else 0
 
 
 def _link_scales(scales: Scales) -> LinkScales:
@@ -220,8 +221,8 @@ def _link_scales(scales: Scales) -> LinkScales:
 def _place(absorber: Absorber, *, mirrored: bool) -> tuple[object, ...]:
     """Return what makes two absorbers equal: rounded angle and all properties."""
     angle = round((-absorber.angle if mirrored else absorber.angle) / _SAME_ANGLE) % round(360.0 / _SAME_ANGLE)
-    rest = tuple(repr(value) if isinstance(value, dict) else value for name, value in absorber.model_dump().items() if name != "angle")
-    return (angle, *rest)
+    apart = absorber.model_dump(exclude={"angle", "outer_shell"}).values()
+    return (angle, linked_shells(absorber), *(repr(value) if isinstance(value, dict) else value for value in apart))
 
 
 def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:

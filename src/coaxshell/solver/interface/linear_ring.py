@@ -22,7 +22,7 @@ _SAME_ANGLE = 1e-9
 
 def is_ring(absorbers: AbsorberSet) -> bool:
     """Return whether the absorbers of the description are equal and equally spaced."""
-    properties = (absorbers.mass, absorbers.damping, absorbers.linear, absorbers.cubic, absorbers.inner_shell, *_held(absorbers))
+    properties = (absorbers.mass, absorbers.damping, absorbers.linear, absorbers.cubic, *absorbers.surfaces, *_held(absorbers))
     if absorbers.count == 0 or absorbers.elements is not None or any(np.ptp(x) > 0 for x in properties):
         return False
     angles = np.sort(absorbers.every_angle % 360.0)
@@ -37,8 +37,8 @@ def _held(absorbers: AbsorberSet) -> tuple[FloatArray, ...]:
 def solve_ring(structure: LinearStructure, absorbers: AbsorberSet) -> LinearAbsorberSpectra:
     """Return the interface spectra of a ring of linear absorbers, exact up to the modal truncation."""
     nodes, count = structure.grid.nodes, absorbers.every_angle.size
-    surfaces, inner = structure.problem.surfaces, int(absorbers.surfaces[0, 0])
-    pair = slice(inner, inner + 2)  # those that look at one gap stand next to each other
+    surfaces, (inner, outer) = structure.problem.surfaces, absorbers.surfaces[:, 0].tolist()
+    pair = slice(inner, outer + 1, outer - inner)  # these two alone
     orders = np.arange(-structure.modes.max_order, structure.modes.max_order + 1)
     start = float(absorbers.every_angle[0])
     phase = np.exp(1j * np.radians(orders * start))

@@ -143,7 +143,7 @@ def _make_ring(absorbers: AbsorberSet) -> bool:
     if absorbers.elements is not None:
         return False
     held = () if absorbers.footprint is None else tuple(absorbers.footprint)
-    if any(np.ptp(x) > 0 for x in (absorbers.mass, absorbers.damping, absorbers.linear, absorbers.inner_shell, *held)):
+    if any(np.ptp(x) > 0 for x in (absorbers.mass, absorbers.damping, absorbers.linear, *absorbers.surfaces, *held)):
         return False
     angles = np.sort(absorbers.every_angle % 360.0)
     gaps = np.diff(np.append(angles, angles[0] + 360.0))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.model import laws as model
-from coaxshell.model.absorbers import Absorber, PointAbsorber
+from coaxshell.model.absorbers import Absorber, PointAbsorber, linked_shells
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.links.branches import Inerters, MaxwellBranches, SpringDampers
 from coaxshell.solver.links.friction import DryFriction, HystereticFriction, SmoothedFriction
@@ -113,16 +113,16 @@ def link_elements(absorbers: Sequence[Absorber | PointAbsorber], moving: Sequenc
     return LinkElements(tuple(elements), present, held)
 
 
-def side_of(one: Absorber | PointAbsorber, shells: int) -> int:
-    """Return the number of the inner one of two neighbouring shells between which an absorber is counted; -1 in a system of one shell."""
-    return one.inner_shell if shells > 1 else -1
+def shells_between(one: Absorber | PointAbsorber, shells: int) -> tuple[int, int]:
+    """Return the numbers of the two shells between which an absorber is counted; -1 and 0 in a system of one shell."""
+    return linked_shells(one) if shells > 1 else (-1, 0)
 
 
 def _pair(one: Absorber | PointAbsorber, moving: Sequence[bool]) -> tuple[tuple[bool, bool], tuple[bool, bool]]:
     """Return which of an absorber's two links there are, and whose shell moves."""
-    alone, inner = len(moving) < 2, one.inner_shell
+    alone, (inner, outer) = len(moving) < 2, linked_shells(one)
     on = (one.links == "both" or (one.links == "inner" and not alone), one.links == "both" or one.links == "outer" or alone)
-    moves = (on[0] and moving[inner], on[1] and moving[inner if alone else inner + 1])
+    moves = (on[0] and moving[inner], on[1] and moving[inner if alone else outer])
     return (on[0] or one.grounded, on[1] or one.grounded), moves
 
 

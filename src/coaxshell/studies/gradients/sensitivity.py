@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber, AbsorberRing
+from coaxshell.model.absorbers import Absorber, AbsorberRing, gaps_of
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.response import Response
@@ -229,8 +229,8 @@ def _of_design(metric: Metric, system: System) -> dict[str, FloatArray]:
 def neighbours(system: System) -> list[tuple[int, int, float, float]]:
     """Return every two neighbours among the absorbers of a gap: their numbers, the second ahead, the radius beneath, and the arc, m."""
     found, listed = [], system.absorber_list
-    for shell in {one.inner_shell for one in listed}:
-        here = sorted((i for i, one in enumerate(listed) if one.inner_shell == shell), key=lambda i: listed[i].angle % 360.0)
+    for shell in {gap for one in listed for gap in gaps_of(one)}:
+        here = sorted((i for i, one in enumerate(listed) if shell in gaps_of(one)), key=lambda i: listed[i].angle % 360.0)
         radius = system.shells[shell].radius
         for one, other in zip(here, [*here[1:], here[0]], strict=True):
             if one != other:

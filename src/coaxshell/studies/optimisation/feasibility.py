@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.absorbers import gaps_of
 from coaxshell.model.system import System
 from coaxshell.studies.optimisation.targets import Limit, Targets
 from coaxshell.studies.optimisation.variables import Space
@@ -50,7 +51,7 @@ def _nearest(limit: Limit, systems: list[System]) -> float:
 
 def _widest(system: System) -> float:
     """Return the largest possible smallest spacing of a system's absorbers."""
-    gaps = [absorber.inner_shell for absorber in system.absorber_list]
+    gaps = [gap for absorber in system.absorber_list for gap in gaps_of(absorber)]
     circles = [math.tau * system.shells[i].radius / gaps.count(i) for i in set(gaps)]
     return min([math.tau * system.reference_radius, *circles])
 

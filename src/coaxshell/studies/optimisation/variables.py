@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.model.absorbers import Absorber, PointAbsorber
+from coaxshell.model.absorbers import Absorber, PointAbsorber, linked_shells
 from coaxshell.model.base import shown
 from coaxshell.model.system import System
 from coaxshell.studies.varied_fields import Field, field_of, varied
@@ -275,7 +275,7 @@ def _pairs(base: System, where: str) -> list[tuple[int, int]]:
 
     def images(a: Absorber | PointAbsorber, b: Absorber | PointAbsorber) -> bool:
         at_one_z = getattr(a, "z", 0.0) == getattr(b, "z", 0.0)
-        return at_one_z and a.inner_shell == b.inner_shell and abs(math.remainder(a.angle + b.angle - 2.0 * axis, 360.0)) < _SAME
+        return at_one_z and linked_shells(a) == linked_shells(b) and abs(math.remainder(a.angle + b.angle - 2.0 * axis, 360.0)) < _SAME
 
     pairs = []
     for i, absorber in enumerate(absorbers):

@@ -12,6 +12,7 @@ import numpy as np
 
 from coaxshell.apps.verification.independent.assembly import Assembly
 from coaxshell.apps.verification.independent.springs import force_of
+from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.gains import gains_of
 from coaxshell.model.laws import of_side
 from coaxshell.numerics.arrays import FloatArray
@@ -71,10 +72,10 @@ class Links:
     def _absorbers(self) -> None:
         places = self._places
         for k, x in enumerate(self._assembly.system.absorber_list):
-            for i in (x.inner_shell, x.inner_shell + 1):
+            for side, i in zip(("inner", "outer"), linked_shells(x), strict=True):
                 p, b = np.zeros(places.size), np.zeros(places.size)
                 p[places.masses + k], b[places.masses + k] = 1.0, -1.0
-                if x.links not in ("both", "inner" if i == x.inner_shell else "outer"):
+                if x.links not in ("both", side):
                     self._rows.append((p, b))  # nothing, or a core that does not move
                     continue
                 for start, (parity, m) in zip(places.starts, places.blocks, strict=True):

@@ -1,5 +1,5 @@
 // Building a system: shells put in, taken out and exchanged, with what hangs on their places: fluids, absorbers, control.
-// Region i lies inside shell i, region i + 1 outside it; an absorber of inner_shell i holds the shells i and i + 1.
+// Region i lies inside shell i, region i + 1 outside it; an absorber of inner_shell i holds the shells i and, unless outer_shell says another, i + 1.
 const rounded = (value) => Number(value.toPrecision(4));
 
 // A copy of a shell outside it: halfway to the next one, or a quarter larger. The region that it divides is there twice.
@@ -11,7 +11,7 @@ export function withShellAfter(system, index) {
     ...system,
     shells: [...shells.slice(0, index + 1), copy, ...shells.slice(index + 1)],
     fluids: [...system.fluids.slice(0, index + 1), gap, ...system.fluids.slice(index + 1)],
-    absorbers: inGaps(system.absorbers, (gapNumber) => (gapNumber > index ? gapNumber + 1 : gapNumber)),
+    absorbers: onPairs(system.absorbers, (number) => (number > index ? number + 1 : number)),
     control: onShells(system.control, (number) => (number > index ? number + 1 : number)),
   };
 }
@@ -25,7 +25,7 @@ export function withoutShell(system, index) {
     ...system,
     shells,
     fluids: system.fluids.filter((_, i) => i !== gone),
-    absorbers: inGaps(system.absorbers, (gap) => (gap === index || gap === index - 1 ? null : gap > index ? gap - 1 : gap)),
+    absorbers: onPairs(system.absorbers, (number) => (number === index ? null : number > index ? number - 1 : number)),
     control: senses ? control : null,
   };
 }
@@ -38,9 +38,26 @@ export function withWallsExchanged(system, index) {
   return { ...system, shells };
 }
 
-// Absorbers with the numbers of their gaps mapped; those of a gap that is no more (null) are left out.
-function inGaps(absorbers, to) {
-  const moved = (one) => { const gap = to(one.inner_shell ?? 0); return gap === null ? [] : [{ ...one, inner_shell: gap }]; };
+// The shells that an absorber links, the inner one first.
+export const linkedShells = ({ inner_shell, outer_shell }) => [inner_shell ?? 0, outer_shell ?? (inner_shell ?? 0) + 1];
+
+// An absorber between other shells; that the outer one is the next one out goes without saying.
+export function between({ outer_shell: _, ...one }, inner, outer) {
+  return { ...one, inner_shell: inner, ...(outer > inner + 1 ? { outer_shell: outer } : {}) };
+}
+
+// Where an absorber is drawn: the shells between which it runs, and the gap in which its mass is, the outermost that it is in.
+export function reach(absorber) {
+  const [inner, outer] = linkedShells(absorber), { links = "both", grounded = false } = absorber;
+  return { inner, outer, gap: links === "inner" && !grounded ? inner : outer - 1 };
+}
+
+// Absorbers with the numbers of their shells mapped; those of a shell that is no more (null) are left out, neighbours stay neighbours.
+function onPairs(absorbers, to) {
+  const moved = (one) => {
+    const [inner, outer] = linkedShells(one), [first, last] = [to(inner), to(outer)];
+    return first === null || last === null ? [] : [between(one, first, outer > inner + 1 ? last : first + 1)];
+  };
   return Array.isArray(absorbers) ? absorbers.flatMap(moved) : absorbers ? moved(absorbers)[0] ?? [] : absorbers;
 }
 
@@ -65,9 +82,10 @@ export function singly(ring, more = {}) {
 // An angle within (-180, 180], without the digits of rounding.
 export const turned = (angle) => Number((180 - ((((180 - angle) % 360) + 360) % 360)).toPrecision(8));
 
-// The middle of the largest arc of a gap without an absorber.
-export function freeAngle(absorbers, gap) {
-  const angles = absorbers.filter(({ inner_shell = 0 }) => inner_shell === gap).map(({ angle = 0 }) => turned(angle)).sort((a, b) => a - b);
+// The middle of the largest arc without an absorber in a gap that one like this is in.
+export function freeAngle(absorbers, like) {
+  const [inner, outer] = linkedShells(like), beside = (one) => { const [a, b] = linkedShells(one); return a < outer && b > inner; };
+  const angles = absorbers.filter(beside).map(({ angle = 0 }) => turned(angle)).sort((a, b) => a - b);
   if (!angles.length) return 0;
   const arcs = angles.map((angle, i) => (i + 1 < angles.length ? angles[i + 1] : angles[0] + 360) - angle), widest = arcs.indexOf(Math.max(...arcs));
   return turned(Math.round(angles[widest] + arcs[widest] / 2));

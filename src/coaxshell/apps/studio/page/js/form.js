@@ -152,7 +152,7 @@ function entry(schema, path, name, value, bare = false) {
 
 function table(schema, path, name, value, bare) {
   const isRecord = resolve(schema.properties?.type).const === "sampled"; // its samples are read from a file or a text, not typed one by one
-  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !(isRecord && SAMPLES.has(key)) && !(OFF_THE_PLANE.has(key) && !value[key] && !space)).map(([key, part]) => entry(part, join(path, key), key, value[key]));
+  const fields = Object.entries(schema.properties ?? {}).filter(([key]) => !(isRecord && SAMPLES.has(key)) && !(OFF_THE_PLANE.has(key) && !value[key] && !space) && key !== "outer_shell").map(([key, part]) => entry(part, join(path, key), key, value[key]));
   if (isRecord) fields.unshift(editor(path, change));
   return bare ? el("div", {}, ...fields) : group(path, label(path, name), false, summary(path, value), ...fields);
 }
@@ -234,7 +234,7 @@ function opened(to, from) { KEPT_OPEN.set(to, KEPT_OPEN.get(from) ?? false); }
 function following(item, before, value) {
   const copy = structuredClone(before ?? fresh(itemHere(item), HINTS));
   if ("shells" in copy) return laws.following(copy, value, now().shells);
-  if ("inner_shell" in copy) copy.angle = building.freeAngle(value, copy.inner_shell);
+  if ("inner_shell" in copy) copy.angle = building.freeAngle(value, copy);
   else if (typeof copy.angle === "number") copy.angle = building.turned(copy.angle + 30);
   if (["sensor", "actuator", "self-sensing"].includes(copy.role)) copy.role = "passive";
   return copy;
@@ -329,7 +329,10 @@ function leaf(schema, path, name, value) {
   const id = `at-${path}`, shared = { id, "data-path": path, title: [schema.description, limits(schema)].filter(Boolean).join("\n") };
   const text = el("label", { for: id }, title(name));
   if (name === "inner_shell" && shells > 1) {
-    const select = el("select", { ...shared, onchange: () => change(path, Number(select.value)) }, ...Array.from({ length: shells - 1 }, (_, i) => el("option", { value: i, selected: i === (value ?? 0) }, `${shellName(i, shells)} and ${shellName(i + 1, shells)}`)));
+    const place = path.slice(0, path.lastIndexOf(".")), [inner, outer] = building.linkedShells(read(now(), place) ?? {});
+    const pairs = Array.from({ length: shells }, (_, i) => Array.from({ length: shells - 1 - i }, (_, k) => [i, i + 1 + k])).flat().sort(([a, b], [c, d]) => b - a - (d - c) || a - c);
+    const linked = () => change(place, building.between(read(now(), place), ...pairs[select.selectedIndex]));
+    const select = el("select", { ...shared, onchange: linked }, ...pairs.map(([i, k]) => el("option", { value: `${i} ${k}`, selected: i === inner && k === outer }, `${shellName(i, shells)} and ${shellName(k, shells)}`)));
     return el("div", { class: "field broad" }, text, select);
   }
   if (schema.enum) {

@@ -108,7 +108,7 @@ function addAbsorber() {
   const { absorbers } = page.system, most = page.world.limits.absorbers, like = absorbers[numberOf(handles.choice())] ?? absorbers.at(-1) ?? form.newAbsorber();
   if (absorbers.length >= most) return toast(`At most ${most} absorbers.`);
   handles.expect(`absorbers[${absorbers.length}]`);
-  return change("absorbers", [...absorbers, { ...like, angle: building.freeAngle(absorbers, like.inner_shell ?? 0) }]);
+  return change("absorbers", [...absorbers, { ...like, angle: building.freeAngle(absorbers, like) }]);
 }
 
 function removeAbsorber(key) {

@@ -1,5 +1,5 @@
 // The cross-section to scale, with absorbers, the source's direction and its front.
-import { turned } from "./building.js";
+import { reach, turned } from "./building.js";
 import { el, svg, by } from "./dom.js";
 import * as handles from "./handles.js";
 import { show } from "./units.js";
@@ -101,9 +101,11 @@ function absorbers(now, shells, scale) {
   return nodes.length ? [{ key: "absorbers", path: "absorbers.offset", value: turned(Number(now.absorbers.offset) || 0), label: `Ring of ${drawn.length} absorbers`, parts: nodes }] : [];
 }
 
-function absorber({ angle = 0, inner_shell = 0, links = "both", grounded = false }, shells, scale) {
-  if (!shells[inner_shell + 1]) return [];
-  const [low, high] = [shells[inner_shell].radius * scale, shells[inner_shell + 1].radius * scale], middle = (low + high) / 2;
+function absorber(one, shells, scale) {
+  const { angle = 0, grounded = false } = one, alone = shells.length === 1, links = alone ? "outer" : one.links ?? "both", { inner, outer, gap } = reach(one);
+  if (!alone && !shells[outer]) return [];
+  const radii = alone ? [0.5, 0.75, 1].map((part) => part * shells[0].radius) : [shells[inner].radius, (shells[gap].radius + shells[gap + 1].radius) / 2, shells[outer].radius];
+  const [low, middle, high] = radii.map((radius) => radius * scale);
   const [x1, y1] = point(links === "outer" && !grounded ? middle : low, angle), [x2, y2] = point(links === "inner" && !grounded ? middle : high, angle), [x, y] = point(middle, angle);
   return [svg("circle", { class: "hold", cx: x, cy: y, r: 7 }), svg("line", { x1, y1, x2, y2, stroke: "var(--muted)", "stroke-width": 0.9 }), svg("circle", { class: "mass", cx: x, cy: y, r: 2.1 })];
 }
