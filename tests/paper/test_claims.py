@@ -114,8 +114,15 @@ def test_runs_are_solved_once_and_read_back_alike(tmp_path):
     assert not peaks["bare"].histories
     whole = dict(first.each(systems))
     assert whole["bare"].histories
+    for name, run in whole.items():  # the same numbers, those of the stress alone
+        for shell, stress in peaks[name].shells.items():
+            assert vars(stress).items() <= vars(run.shells[shell]).items()
+        assert not peaks[name].summaries
+    kept = dict(Runs(SMALL, solver=solver, store=Store(tmp_path / "peaks")).each({"bare": preset("bare")}, peaks_only=True))
+    stored = Runs(SMALL, solver=solver, store=Store(tmp_path / "peaks"))
+    assert next(stored.each({"bare": preset("bare")}, peaks_only=True))[1].shells == kept["bare"].shells
     again = dict(Runs(SMALL, solver=solver, store=Store(tmp_path)).each(systems))
-    assert solved == [*systems, *systems]
+    assert solved == [*systems, *systems, "bare"]
     for name, run in whole.items():
         assert again[name].shells == run.shells
         assert again[name].warnings == run.warnings
@@ -125,7 +132,7 @@ def test_runs_are_solved_once_and_read_back_alike(tmp_path):
             for key, values in run.histories.items():
                 np.testing.assert_array_equal(kept.histories[key], values)
     Runs(replace(SMALL, modes=8), solver=solver, store=Store(tmp_path))(preset("bare"))
-    assert len(solved) == 5
+    assert len(solved) == 6
 
 
 @pytest.mark.slow

@@ -192,7 +192,7 @@ def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates:
         if not quantity.given(motion, shell) or (quantity.rate and not rates):
             found |= dict.fromkeys(quantity.summary_keys)
         elif quantity.summary:
-            found |= _largest(quantity, motion, shell, span, length, judged)
+            found |= largest_magnitudes(quantity, motion, shell, span, length, judged=judged)
     return ShellSummary(
         name=shell_name(shell, len(problem.shells)),
         segment=length if wall.has("sensor") else None,
@@ -204,10 +204,23 @@ def _shell(motion: WallMotion, shell: int, span: slice, length: float, *, rates:
     )
 
 
-def _largest(
-    quantity: Quantity, motion: WallMotion, shell: int, span: slice, length: float, judged: bool
+def largest_magnitudes(
+    quantity: Quantity, motion: WallMotion, shell: int, span: slice, length: float = 0.0, *, judged: bool = True
 ) -> dict[str, Peak | float | None]:
-    """Return the largest magnitudes of a quantity that the summary shows, by their keys."""
+    """Return the largest magnitudes of a quantity of a shell that the summary shows, by their keys.
+
+    Parameters
+    ----------
+    quantity : Quantity
+    motion : WallMotion
+    shell : int
+    span : slice
+        Time indices.
+    length : float
+        Of the segment (m) that voltages are means over; 0 for a point.
+    judged : bool
+        Whether voltages are told with what the lower half of the orders gives.
+    """
     solution, wanted = motion.solution, quantity.summary
     if quantity.largest is not None:
         return {quantity.name: quantity.largest(solution, shell, span, length, halved=judged)}

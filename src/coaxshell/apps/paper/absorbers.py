@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +19,7 @@ from coaxshell.plotting.histories import QUANTITIES
 from coaxshell.plotting.offsets import figure_offsets
 
 if TYPE_CHECKING:
+    from coaxshell.apps.paper.observed import StressPeaks
     from coaxshell.model import System
     from coaxshell.response.summary import ShellSummary
 
@@ -48,7 +49,7 @@ def counts(
         if not all(isinstance(shell, Shell) for shell in (systems[0].shells[0], systems[0].shells[-1])):
             raise InputError("shells", "the innermost or the outermost one is rigid and has no stress", "give elastic ones")
         wanted = tuple(sorted({*fine, *coarse}))
-        stress: dict[str, dict[int, ShellSummary]] = {"inner": {}, "outer": {}}
+        stress: dict[str, dict[int, ShellSummary | StressPeaks]] = {"inner": {}, "outer": {}}
         warnings: list[tuple[str, str]] = []
         for name, run in runs.each(cases.count(systems[0], wanted), progress, peaks_only=True):
             for shell in stress:
@@ -64,7 +65,7 @@ def counts(
     return draw
 
 
-def _by_count(found: dict[int, ShellSummary], chosen: Sequence[int]) -> StressByCount:
+def _by_count(found: Mapping[int, ShellSummary | StressPeaks], chosen: Sequence[int]) -> StressByCount:
     summaries = [found[n] for n in chosen]
     head, tail, anywhere = (
         _MEGA * np.array([getattr(s, name).value for s in summaries]) for name in ("stress_head", "stress_tail", "stress")

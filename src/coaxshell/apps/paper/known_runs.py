@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coaxshell.apps.paper.fields import Fields, fields_of
-from coaxshell.apps.paper.observed import Observed, observe
+from coaxshell.apps.paper.observed import Observed, StressPeaks, observe
 from coaxshell.errors import PhysicsWarning
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.identity import origin
@@ -226,10 +226,12 @@ def unpacked(arrays: Mapping[str, Any], values: Mapping[str, Any]) -> Observed:
             return plain
         return WallPeak(**plain) if "depth" in plain else Peak(**plain)
 
-    def shell(plain: Mapping[str, Any]) -> ShellSummary:
+    def shell(plain: Mapping[str, Any]) -> ShellSummary | StressPeaks:
         def peaks(values: Mapping[str, Any]) -> dict[str, Any]:
             return {name: peak(one) for name, one in values.items()}
 
+        if "further" not in plain:
+            return StressPeaks(**peaks(plain))
         return ShellSummary(**{**peaks(plain), "further": peaks(plain.get("further", {}))})
 
     split = {tuple(name.split()): np.asarray(array, dtype=np.float64) for name, array in arrays.items()}

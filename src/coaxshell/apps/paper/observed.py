@@ -16,12 +16,31 @@ from coaxshell.numerics.arrays import FloatArray
 if TYPE_CHECKING:
     from coaxshell.model import System
     from coaxshell.response import Response
+    from coaxshell.response.peaks import Peak
     from coaxshell.response.summary import ShellSummary
 
 
 SHELLS = ("inner", "outer")
 SIDES = {"head": 0.0, "tail": 180.0}
 """Degrees from the head."""
+
+
+@dataclass(frozen=True)
+class StressPeaks:
+    """All that is read of a shell where many runs are compared by their peaks, each as in :class:`coaxshell.response.summary.ShellSummary`.
+
+    Attributes
+    ----------
+    stress_head, stress_tail, stress : Peak
+        Design stress of the core at the head, at the tail and anywhere, Pa.
+    stress_rms : float
+        Its root mean square over the surface and the window, Pa.
+    """
+
+    stress_head: Peak
+    stress_tail: Peak
+    stress: Peak
+    stress_rms: float
 
 
 @dataclass(frozen=True)
@@ -36,8 +55,9 @@ class Observed:
         Seconds in a transit.
     modes : int
         Highest order.
-    shells : mapping of str to ShellSummary
-        Peaks and root mean squares of the "inner" and the "outer" shell, those that are elastic.
+    shells : mapping of str to ShellSummary or StressPeaks
+        Peaks and root mean squares of the "inner" and the "outer" shell, those that are elastic; of their stress alone if only peaks
+        were kept.
     histories : mapping of (quantity, shell, side) to ndarray, shape (T,)
         "stress" (Pa) and "displacement" (m, inward) at "head" and "tail"; empty if only peaks were kept.
     circle : mapping of str to ndarray, shape (T,)
@@ -50,11 +70,16 @@ class Observed:
     time: FloatArray
     transit_time: float
     modes: int
-    shells: Mapping[str, ShellSummary]
+    shells: Mapping[str, ShellSummary | StressPeaks]
     histories: Mapping[tuple[str, str, str], FloatArray] = field(default_factory=dict)
     circle: Mapping[str, FloatArray] = field(default_factory=dict)
     absorber: FloatArray = field(default_factory=lambda: np.empty((3, 0)))
     warnings: tuple[str, ...] = ()
+
+    @property
+    def summaries(self) -> dict[str, ShellSummary]:
+        """The whole summaries among those of the shells: none if only peaks were kept."""
+        return {name: found for name, found in self.shells.items() if not isinstance(found, StressPeaks)}
 
     def at(self, quantity: str, shell: str, side: str) -> FloatArray:
         """Return a history at a point; InputError if the shell is rigid and has none."""
@@ -73,22 +98,42 @@ class Observed:
 
 
 def observe(response: Response, *, peaks_only: bool = False) -> Observed:
-    """Return what is kept of a response, of one in three dimensions at its first station; with *peaks_only* no histories."""
+    """Return what is kept of a response, of one in three dimensions at its first station; with *peaks_only* those of the stress alone."""
+    system = response.system
+    names = {name: system.shell_index(name) for name in SHELLS if isinstance(system.shells[system.shell_index(name)], Shell)}
+    if peaks_only:
+        return _peaks(response, names)
     summary: Any = response.summary(segment="point")  # the paper's voltages are those at points
     if response.stations is not None:
         summary = summary.at(response.stations[0])
-    system = response.system
-    names = {name: system.shell_index(name) for name in SHELLS if isinstance(system.shells[system.shell_index(name)], Shell)}
     elastic = system.shell_indices()
-    shells = {name: summary.shells[elastic.index(index)] for name, index in names.items()}
-    common = (response.time, float(summary.transit_time), response.modes, shells)
-    if peaks_only:
-        return Observed(*common, warnings=tuple(response.warnings))
     return Observed(
-        *common,
+        time=response.time,
+        transit_time=float(summary.transit_time),
+        modes=response.modes,
+        shells={name: summary.shells[elastic.index(index)] for name, index in names.items()},
         histories=_histories(response, tuple(names)),
         circle={name: _over_circle(response, name) for name in names},
         absorber=_absorber(response, system),
+        warnings=tuple(response.warnings),
+    )
+
+
+def _peaks(response: Response, shells: Mapping[str, int]) -> Observed:
+    """Return the peaks of the stress of some shells: a tenth of the time that a whole summary takes."""
+    from coaxshell.response.quantities import QUANTITIES
+    from coaxshell.response.summary import largest_magnitudes
+
+    motion = response.motions[0]
+    whole = slice(0, response.time.size)
+    peaks: dict[str, dict[str, Any]] = {
+        name: largest_magnitudes(QUANTITIES["stress"], motion, index, whole) for name, index in shells.items()
+    }
+    return Observed(
+        time=response.time,
+        transit_time=float(motion.solution.problem.scales.time),
+        modes=response.modes,
+        shells={name: StressPeaks(**found) for name, found in peaks.items()},
         warnings=tuple(response.warnings),
     )
 

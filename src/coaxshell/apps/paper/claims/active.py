@@ -39,8 +39,8 @@ def _falls(runs: Runs) -> tuple[Falls, Falls, Falls]:
 def voltage_is_within_the_limit(runs: Runs) -> Finding:
     """Compare the voltages with the limit."""
     run = _gained(runs)[-2e4, -150.0]
-    asked = {name: s.actuator_voltage.value for name, s in run.shells.items() if s.actuator_voltage}
-    limits = {name: s.actuator_limit for name, s in run.shells.items() if s.actuator_limit}
+    asked = {name: s.actuator_voltage.value for name, s in run.summaries.items() if s.actuator_voltage}
+    limits = {name: s.actuator_limit for name, s in run.summaries.items() if s.actuator_limit}
     over = {name: volts / limits[name] for name, volts in asked.items()}
     within = [ratio <= 1.0 for ratio in over.values()]
     why = "; ".join(
