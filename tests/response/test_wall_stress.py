@@ -7,7 +7,7 @@ import pytest
 
 import coaxshell as cx
 from coaxshell.plotting import plot_wall_stress
-from coaxshell.response.wall_stress import WallStress, stress_through
+from coaxshell.response.wall_stress import WallStress, layer_peaks, of_wall, stress_through, wall_peak
 from coaxshell.studies.metrics import metrics_of, require_readable
 from coaxshell.studies.reading import MetricSource
 
@@ -60,7 +60,7 @@ def test_bounds_leave_out_no_larger_stress(absorbers, monkeypatch):
     for component in ("von_mises", "hoop"):
         quick = [response.layer_peaks(shell, component) for shell in ("inner", "outer")]
         with monkeypatch.context() as changed:
-            changed.setattr(WallStress, "_bounded", lambda *_: None)
+            changed.setattr(WallStress, "bounded", lambda *_: None)
             assert quick == [response.layer_peaks(shell, component) for shell in ("inner", "outer")]
         made = WallStress(response.solution, 1)
         depths = [float(z) for z in np.concatenate(made.depths())]
@@ -68,6 +68,31 @@ def test_bounds_leave_out_no_larger_stress(absorbers, monkeypatch):
             most = np.abs(response.stress("outer", ANGLES, depth, component=component)).max(axis=-1)
             assert np.all(np.asarray(most) <= at._reach)
             assert np.all(np.abs(np.diff(np.asarray(most))) <= np.diff(at._way))
+
+
+@pytest.mark.parametrize("name", ["bare", "active"])
+@pytest.mark.parametrize("strengths", [(None, None, None), ("50 MPa", None, "20 MPa"), ("1 MPa", "2 MPa", "4 MPa")])
+def test_the_largest_of_a_wall_is_that_of_all_its_layers(name, strengths, monkeypatch):
+    system = cx.presets.load(name)
+    shells = [
+        shell.replace(
+            layers=[
+                layer.replace(material=layer.material.replace(strength=strength))
+                for layer, strength in zip(shell.layers, strengths, strict=True)
+            ]
+        )
+        for shell in system.shells
+    ]
+    response = cx.simulate(system.replace(shells=shells), duration=1.2, time_step=2e-2, modes=10)
+    whole = slice(0, response.time.size)
+    for shell, component in ((0, "von_mises"), (1, "von_mises"), (1, "hoop")):
+        found = wall_peak(response.motion, shell, component, whole)
+        assert found == of_wall(layer_peaks([(None, response.motion)], shell, component, whole))
+        with monkeypatch.context() as changed:  # with a voltage of the control law: rounding differs
+            changed.setattr(WallStress, "bounded", lambda *_: None)
+            plain = wall_peak(response.motion, shell, component, whole)
+        assert (found.value, found.margin or 0.0) == pytest.approx((plain.value, plain.margin or 0.0), rel=1e-12)
+        assert (found.time, found.angle, found.depth, found.weakest) == (plain.time, plain.angle, plain.depth, plain.weakest)
 
 
 def test_stress_is_linear_through_a_layer_without_a_field(steel):

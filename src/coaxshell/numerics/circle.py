@@ -79,6 +79,14 @@ def on_circle(modal: FloatArray, *, finer: int = 1) -> FloatArray:
     return np.asarray(scipy.fft.irfft(spectrum, n=points, axis=0, overwrite_x=True, norm="forward"), dtype=np.float64)
 
 
+def least_beside(orders: int, parities: int) -> float:
+    """Return cos(M h/2), the least share of its largest magnitude that a sum of M + 1 orders has at the nearest angle of the circle.
+
+    h is the step of :func:`circle_angles`. A norm of several sums has it too: that of the combination which it is at its largest.
+    """
+    return float(np.cos(0.5 * (orders - 1) * np.radians(circle_angles(orders, parities)[1])))
+
+
 def reachable(modal: FloatArray) -> FloatArray:
     """Return what no sum of the orders at an instant can exceed, at any angle: the sum over m of sqrt(c_m^2 + s_m^2), shape (T,)."""
     return np.asarray((np.abs(modal[0]) if len(modal) == 1 else np.hypot(*modal)).sum(axis=0), dtype=np.float64)
@@ -108,7 +116,9 @@ def peak_on_circle(modal: FloatArray, *, above: float = -1.0) -> CirclePeak | No
     if not instants.size:
         return None
     best = None
-    for place, members in _crests(np.abs(on_circle(modal[..., instants])), modal, above):
+    for most, place, members in _crests(np.abs(on_circle(modal[..., instants])), modal, above):
+        if best is not None and most < best.value:
+            break
         values = np.abs(around(modal[..., instants[members]], place)[1]).max(axis=1)
         found = CirclePeak(float(values.max()), place, int(instants[members[values.argmax()]]))
         if found.value > above and (best is None or (found.value, -found.instant) > (best.value, -best.instant)):
@@ -116,14 +126,14 @@ def peak_on_circle(modal: FloatArray, *, above: float = -1.0) -> CirclePeak | No
     return best
 
 
-def _crests(field: FloatArray, modal: FloatArray, above: float) -> list[tuple[int, npt.NDArray[np.int64]]]:
-    """Return where a magnitude (angles, instants) may be the largest between the angles: each angle with its instants, ascending.
+def _crests(field: FloatArray, modal: FloatArray, above: float) -> list[tuple[float, int, npt.NDArray[np.int64]]]:
+    """Return where a magnitude (angles, instants) may be the largest between the angles: angles and their instants, ascending.
 
-    At the angle nearest to the largest value a sum of M orders has cos(M h/2) of it or more, h the step.
+    With what it can reach at each of the angles, the most promising first.
     """
     parities, orders, _ = modal.shape
     step = (orders - 1) * np.radians(circle_angles(orders, parities)[1])
-    place, instant = np.nonzero(field >= np.cos(0.5 * step) * max(float(field.max()), above))
+    place, instant = np.nonzero(field >= least_beside(orders, parities) * max(float(field.max()), above))
     last = len(field) - 1
     if parities == 1:  # its mirror image goes on at both ends
         left, right = np.abs(place - 1), last - np.abs(last - place - 1)
@@ -135,8 +145,13 @@ def _crests(field: FloatArray, modal: FloatArray, above: float) -> list[tuple[in
     crest = (here >= before) & (here >= after)
     curved = np.minimum(_VERTEX * step**4, 4.0 * _VERTEX * np.divide(bend, here, out=np.ones_like(here), where=here > 0) ** 2)
     sure = max(float((top * (1.0 - curved))[crest].max(initial=0.0)), above)
-    high = crest & (top * (1.0 + curved + _ROUNDING) >= sure)
-    return [(int(one), instant[high & (place == one)]) for one in np.unique(place[high])]
+    most = top * (1.0 + curved + _ROUNDING)
+    high = crest & (most >= sure)
+    found = []
+    for one in np.unique(place[high]):
+        here_too = high & (place == one)
+        found.append((float(most[here_too].max()), int(one), instant[here_too]))
+    return sorted(found, key=lambda one: -one[0])
 
 
 def around(modal: FloatArray, place: int) -> tuple[FloatArray, FloatArray]:

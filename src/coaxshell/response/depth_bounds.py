@@ -5,7 +5,8 @@ which the first part is what stretches the wall and the second what bends it. Wi
 
     |sum over orders| <= sum_m |p_m/m| |e_m| + |q_m + p_m/m| |W_m|,
 
-and |e_m| and |W_m| are the same for all depths. V and W themselves would nearly cancel. With their changes from instant to instant it
+and |e_m| and |W_m| are the same for all depths; what a voltage asked for adds counts with the sum of its orders. V and W themselves would
+nearly cancel. With their changes from instant to instant it
 bounds those of the stress: beside an instant that has been summed around the circle no other can be larger by more.
 """
 
@@ -56,6 +57,10 @@ class DepthStressWhereLarge(DepthStress):
         super().__init__({})
         self._stresses, self._reach, self._way = stresses, reach, np.cumsum(change)
 
+    def most(self, window: slice) -> float:
+        """Return what the magnitude cannot exceed at any instant of a window."""
+        return float(self._reach[window].max(initial=0.0))
+
     def largest(self, window: slice, above: float) -> tuple[float, int, int]:
         """Return the largest magnitude with its instant and its place on the circle; -1 if none exceeds *above*.
 
@@ -98,7 +103,14 @@ class DepthStressWhereLarge(DepthStress):
         return DepthStress(self._stresses(window)).at_angles(theta, slice(None))
 
 
-def bounds(solution: ModalSolution, shell: int, gains: Sequence[Mapping[str, Gain]]) -> Bounds:
+class Driven(NamedTuple):
+    """The voltage that a control law asks for, (parities, M + 1, T), V, and what a volt adds to each component at every depth, Pa."""
+
+    voltage: FloatArray
+    per_volt: Sequence[Mapping[str, float]]
+
+
+def bounds(solution: ModalSolution, shell: int, gains: Sequence[Mapping[str, Gain]], driven: Driven | None = None) -> Bounds:
     """Return what stresses cannot exceed at each instant of a run in two dimensions, and from one instant to the next.
 
     Parameters
@@ -107,6 +119,7 @@ def bounds(solution: ModalSolution, shell: int, gains: Sequence[Mapping[str, Gai
     shell : int
     gains : sequence of mapping
         Of every depth: one component, or the hoop and the axial stress of which von Mises' is made.
+    driven : Driven, optional
     """
     normal, tangential = solution.normal[shell], solution.tangential[shell]
     m = np.arange(normal.shape[1], dtype=np.float64)
@@ -126,6 +139,10 @@ def bounds(solution: ModalSolution, shell: int, gains: Sequence[Mapping[str, Gai
         strain -= w
         found.reach[:, start : start + width] = stretched @ _size(strain[..., new]) + bent @ _size(w[..., new])
         found.change[:, first + 1 : start + width] = stretched @ _size(np.diff(strain)) + bent @ _size(np.diff(w))
+    if driven is not None:
+        volts = np.array([_norm({name: np.array([one]) for name, one in of_depth.items()}) for of_depth in driven.per_volt])
+        found.reach[:] += volts * _size(driven.voltage).sum(axis=0)
+        found.change[:, 1:] += volts * _size(np.diff(driven.voltage)).sum(axis=0)
     found.reach[:] *= 1.0 + _ROUNDING
     found.change[:] *= 1.0 + _ROUNDING
     return found

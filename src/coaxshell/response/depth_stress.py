@@ -69,10 +69,12 @@ class DepthStress:
 
     def on_circle(self, instants: Any) -> FloatArray:
         """Return the magnitude at the angles of :func:`~coaxshell.numerics.circle.circle_angles` and some instants, (A, T)."""
-        fields = {}
-        for name, modal in self.modal.items():
-            some = modal[..., instants]
-            fields[name] = on_circle(some) if SIDES[name] == "normal" else _sines(some)
+        some = {name: modal[..., instants] for name, modal in self.modal.items()}
+        if all(SIDES[name] == "normal" for name in some):  # all by one transform
+            together = on_circle(np.concatenate(list(some.values()), axis=-1))
+            fields = dict(zip(some, np.split(together, len(some), axis=-1), strict=True))
+        else:
+            fields = {name: on_circle(modal) if SIDES[name] == "normal" else _sines(modal) for name, modal in some.items()}
         if self._cut:
             parities, orders, _ = next(iter(self.modal.values())).shape
             volts = self._cut.volts(circle_angles(orders, parities), instants).T

@@ -22,10 +22,11 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.model.layers import Shell
+from coaxshell.model.materials import Material
 from coaxshell.numerics.arrays import FloatArray
-from coaxshell.numerics.circle import FINE, circle_angles
+from coaxshell.numerics.circle import FINE, circle_angles, least_beside
 from coaxshell.response.components import STRESSES
-from coaxshell.response.depth_bounds import DepthStressWhereLarge, bounds
+from coaxshell.response.depth_bounds import DepthStressWhereLarge, Driven, bounds
 from coaxshell.response.depth_stress import CutVoltage, DepthStress
 from coaxshell.response.modal import amplitudes, elastic_wall, stress_gain_of
 from coaxshell.response.peaks import Peak, folded
@@ -42,6 +43,7 @@ from coaxshell.structure.shell_model import SOLID_STRESSES, Gain
 
 _FIRST = 16
 """Instants summed before the others are judged by what they can reach."""
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -167,31 +169,46 @@ class WallStress:
 
     def at(self, depths: Sequence[float | None], component: str) -> Iterator[DepthStress]:
         """Yield a stress at each of some depths (m), or of the core at the mid-surface."""
-        names = self._made_of if component == "von_mises" else (component,)
-        bounded = self._bounded(depths, names)
+        bounded = self.bounded(depths, component)
         if bounded is not None:
             yield from bounded
             return
+        names = self._names(component)
         for depth in depths:
             modal = {name: self.amplitudes(depth, name) for name in names}
             per_volt = {name: self._per_volt(depth, name) for name in names}
             cut = CutVoltage(per_volt, self._most_volts, self.volts) if any(per_volt.values()) and self._by_point else None
             yield DepthStress(modal, cut)
 
-    def _bounded(self, depths: Sequence[float | None], names: Sequence[str]) -> list[DepthStressWhereLarge] | None:
-        """Return the stresses at all depths in two dimensions, made where they may be largest; None where other parts add to them."""
-        solution, shell = self.solution, self.shell
+    def _names(self, component: str) -> tuple[str, ...]:
+        """Return the components that a stress is made of."""
+        return self._made_of if component == "von_mises" else (component,)
+
+    def bounded(self, depths: Sequence[float | None], component: str) -> list[DepthStressWhereLarge] | None:
+        """Return a stress at all depths in two dimensions, made where it may be largest; None where it is no sum of orders of V and W.
+
+        Voltages that are nowhere cut are such sums too.
+        """
+        solution, shell, names = self.solution, self.shell, self._names(component)
         gains = [{name: stress_gain_of(solution, shell, depth, name) for name in names} for depth in depths]
         plain = [{name: gain for name, gain in one.items() if isinstance(gain, Gain)} for one in gains]
-        if any(len(one) < len(names) for one in plain) or any(self._per_volt(depth, name) for depth in depths for name in names):
+        volts = [{name: self._per_volt(depth, name) for name in names} for depth in depths]
+        drives = any(any(one.values()) for one in volts)
+        if any(len(one) < len(names) for one in plain) or (drives and self._by_point):
             return None
 
-        def stresses(of_depth: dict[str, Gain], instants: slice) -> dict[str, FloatArray]:
-            return {name: amplitudes(solution, shell, gain, instants) for name, gain in of_depth.items()}
+        def stresses(of_depth: dict[str, Gain], per_volt: dict[str, float], instants: slice) -> dict[str, FloatArray]:
+            normal, tangential = solution.normal[shell][..., instants], solution.tangential[shell][..., instants]
+            found = {name: gain.w[:, None] * normal + gain.v[:, None] * tangential for name, gain in of_depth.items()}
+            for name, volt in per_volt.items():
+                if volt:
+                    found[name] += volt * self._voltage[..., instants]
+            return found
 
+        reached = bounds(solution, shell, plain, Driven(self._voltage, volts) if drives else None)
         return [
-            DepthStressWhereLarge(partial(stresses, of_depth), reach, change)
-            for of_depth, reach, change in zip(plain, *bounds(solution, shell, plain), strict=True)
+            DepthStressWhereLarge(partial(stresses, of_depth, per_volt), reach, change)
+            for of_depth, per_volt, reach, change in zip(plain, volts, *reached, strict=True)
         ]
 
 
@@ -233,47 +250,98 @@ def layer_peaks(motions: Sequence[tuple[float | None, WallMotion]], shell: int, 
         If the shell is rigid or its depths are not known, or a material lacks constants along the axis.
     """
     stresses = [stress_through(motion, shell) for _, motion in motions]
-    described = motions[0][1].solution.problem.system.shells[shell]
-    layers = described.layers if isinstance(described, Shell) else ()
     found, through = [], stresses[0].depths()
     each = [stress.at([float(z) for z in np.concatenate(through)], component) for stress in stresses]  # as many together as it likes
     for number, depths in enumerate(through):
-        peaks = [_of_layer(stress, depths, islice(one, depths.size), component, window) for stress, one in zip(stresses, each, strict=True)]
+        asked = zip(stresses, each, strict=True)
+        peaks = [one for one in (_of_layer(s, depths, islice(at, depths.size), component, window) for s, at in asked) if one is not None]
         best = max(range(len(peaks)), key=lambda i: peaks[i][0].value)
-        (peak, depth), station = peaks[best], motions[best][0]
-        material = layers[number].material if number < len(layers) else None
-        strength = getattr(material, "strength", None)
-        margin = None if strength is None or peak.value == 0.0 else strength / peak.value
-        found.append(
-            WallPeak(
-                value=peak.value,
-                time=peak.time,
-                angle=peak.angle,
-                growing=peak.growing,
-                depth=depth,
-                layer=number,
-                material=getattr(material, "name", ""),
-                component=component,
-                margin=margin,
-                weakest=None if margin is None else number,
-                station=station,
-            )
-        )
+        found.append(_layer_peak(stresses[0], number, *peaks[best], component, motions[best][0]))
     return found
 
 
+def wall_peak(motion: WallMotion, shell: int, component: str, window: slice) -> WallPeak:
+    """Return the largest magnitude of a stress in a wall, as :func:`of_wall` of all :func:`layer_peaks`; in two dimensions.
+
+    Layers that can neither hold it nor come nearest to their strength are not searched to the end: at the angle of
+    :func:`~coaxshell.numerics.circle.circle_angles` nearest to its largest value a sum of orders, and so a norm of several, has a known
+    share of it.
+    """
+    stress = stress_through(motion, shell)
+    through = stress.depths()
+    each = stress.bounded([float(z) for z in np.concatenate(through)], component) if isinstance(stress, WallStress) else None
+    if each is None:
+        return of_wall(layer_peaks([(None, motion)], shell, component, window))
+    ends = np.cumsum([depths.size for depths in through])
+    of_layers = [each[end - depths.size : end] for depths, end in zip(through, ends, strict=True)]
+    share = least_beside(*reversed(motion.solution.normal.shape[1:3])) * (1.0 - _ROUNDING)
+    found: dict[int, WallPeak] = {}
+    for number in sorted(range(len(through)), key=lambda i: -max(at.most(window) for at in of_layers[i])):
+        enough = max((peak.value for peak in found.values()), default=0.0)
+        strength, margins = _strength(stress, number), [peak.margin for peak in found.values() if peak.margin is not None]
+        if strength is not None:
+            enough = min(enough, strength / min(margins)) if margins else 0.0
+        depths = through[number]
+        peak = _of_layer(stress, depths, of_layers[number], component, window, share * enough if enough else -1.0)
+        if peak is not None:
+            found[number] = _layer_peak(stress, number, *peak, component, None)
+    return of_wall([found[number] for number in sorted(found)])
+
+
+def _strength(stress: WallStress | SolidWallStress, layer: int) -> float | None:
+    """Return the strength of the material of a layer, Pa, where it is known."""
+    found: float | None = getattr(_material(stress, layer), "strength", None)
+    return found
+
+
+def _material(stress: WallStress | SolidWallStress, layer: int) -> Material | None:
+    described = stress.solution.problem.system.shells[stress.shell]
+    layers = described.layers if isinstance(described, Shell) else ()
+    return layers[layer].material if layer < len(layers) else None
+
+
+def _layer_peak(
+    stress: WallStress | SolidWallStress, layer: int, peak: Peak, depth: float, component: str, station: float | None
+) -> WallPeak:
+    """Return the largest stress of a layer with its place, material and margin."""
+    strength = _strength(stress, layer)
+    margin = None if strength is None or peak.value == 0.0 else strength / peak.value
+    return WallPeak(
+        value=peak.value,
+        time=peak.time,
+        angle=peak.angle,
+        growing=peak.growing,
+        depth=depth,
+        layer=layer,
+        material=getattr(_material(stress, layer), "name", ""),
+        component=component,
+        margin=margin,
+        weakest=None if margin is None else layer,
+        station=station,
+    )
+
+
 def _of_layer(
-    stress: WallStress | SolidWallStress, depths: FloatArray, each: Iterable[DepthStress], component: str, window: slice
-) -> tuple[Peak, float]:
-    """Return the largest magnitude in a layer, from the stress at each of its depths (m), and the depth where it is."""
-    best, kept, fields = (-1.0, window.start, 0, 0), None, []
+    stress: WallStress | SolidWallStress,
+    depths: FloatArray,
+    each: Iterable[DepthStress],
+    component: str,
+    window: slice,
+    above: float = -1.0,
+) -> tuple[Peak, float] | None:
+    """Return the largest magnitude in a layer, from the stress at each of its depths (m), and the depth where it is.
+
+    None where it is *above* some value at no angle of the circle.
+    """
+    best, kept, fields = (above, window.start, 0, 0), None, []
     for number, at in enumerate(each):
         value, instant, place = _largest(at, window, best[0])
         if value > best[0]:
             best, kept = (value, instant, place, number), at
         if isinstance(stress, SolidWallStress):
             fields.append(at)
-    assert kept is not None
+    if kept is None:
+        return None
     _, instant, place, number = best
     near, depth = _beside(instant, window), float(depths[number])
     if isinstance(stress, SolidWallStress):
@@ -352,7 +420,7 @@ def usual_component(solution: ModalSolution, shell: int) -> str:
 
 def largest_through_wall(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
     """Return the largest stress anywhere in a wall within a window; a mean over a segment is not taken."""
-    return of_wall(layer_peaks([(None, WallMotion(solution))], shell, usual_component(solution, shell), window))
+    return wall_peak(WallMotion(solution), shell, usual_component(solution, shell), window)
 
 
 def largest_of_the_core(solution: ModalSolution, shell: int, window: slice, length: float, *, halved: bool = True) -> Peak:
