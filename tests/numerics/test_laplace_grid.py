@@ -95,3 +95,15 @@ def test_a_sparser_grid_has_every_so_many_of_the_nodes(step: float, steps: int) 
 def test_the_roll_off_is_shared_and_stays_as_it_is() -> None:
     with pytest.raises(ValueError, match="read-only"):
         LaplaceGrid(1e-2, 100).taper()[0] = 2.0
+
+
+def test_many_transforms_are_inverted_as_one_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    from coaxshell.numerics import laplace_grid
+
+    grid = LaplaceGrid(2e-2, 60)
+    spectra = (grid.nodes + DECAY * np.arange(1, 7)[:, None]).reshape(2, 3, -1) ** -2
+    whole = grid.invert(spectra)
+    assert whole.shape == (2, 3, 61)
+    monkeypatch.setattr(laplace_grid, "_BLOCK", 2 * grid.nodes.size)
+    np.testing.assert_allclose(grid.invert(spectra), whole, rtol=1e-13, atol=0)
+    assert grid.invert(spectra[:0]).shape == (0, 3, 61)

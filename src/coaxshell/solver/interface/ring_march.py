@@ -25,7 +25,7 @@ from coaxshell.solver.interface.block_response import LinkConstants, block_respo
 from coaxshell.solver.interface.laws import CubicSprings, relative_size
 from coaxshell.solver.structure_spectra import StructureSpectra
 
-LINKS = 24
+LINKS = 10
 """Links 2N from which on a ring is marched so: fewer take less by one matrix."""
 _BLOCK_NUMBERS = 2048
 """Classes times steps of a block at most: above, what a class answers leaves the processor's cache."""
