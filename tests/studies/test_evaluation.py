@@ -61,6 +61,19 @@ def test_a_batch_pickles(hybrid, cases, resolution):
     assert [o.values for o in evaluate(copy)] == [o.values for o in evaluate(batch)]
 
 
+def test_a_search_is_not_told_warnings_nor_estimates(hybrid, resolution, monkeypatch):
+    import importlib
+
+    solve = importlib.import_module("coaxshell.solver.solve")  # the package has a function of that name
+    judged, original = [], solve.judgement
+    monkeypatch.setattr(solve, "judgement", lambda *given, **named: judged.append(1) or original(*given, **named))
+    metrics = metrics_of(ASKED, hybrid)
+    (told,) = evaluate(batches([Case(0, hybrid)], metrics, resolution, 1)[0])
+    assert (len(judged), bool(told.warnings)) == (1, True)
+    (silent,) = evaluate(batches([Case(0, hybrid)], metrics, resolution, 1, judged=False)[0])
+    assert (len(judged), silent.warnings, silent.values) == (1, (), told.values)
+
+
 def test_a_refused_case_is_nan_with_its_reason(hybrid, resolution):
     unstable = varied(hybrid, {"control.proportional": 1e6, "control.derivative": 1e4})
     (batch,) = batches([Case(0, unstable)], metrics_of(ASKED, hybrid), resolution, 1)

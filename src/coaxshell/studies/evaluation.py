@@ -32,11 +32,21 @@ class Case:
 
 @dataclass(frozen=True)
 class Batch:
-    """Cases of one structure, what to read from each, at which resolution; pickles."""
+    """Cases of one structure, what to read from each, at which resolution; pickles.
+
+    Attributes
+    ----------
+    cases : tuple of Case
+    metrics : tuple of Metric
+    resolution : Settings
+    judged : bool
+        Whether the physics warnings of each run are wanted: they need its error estimates, which take nearly as long as itself.
+    """
 
     cases: tuple[Case, ...]
     metrics: tuple[Metric, ...]
     resolution: Settings
+    judged: bool = True
 
 
 @dataclass(frozen=True)
@@ -52,7 +62,7 @@ class Outcome:
     expected : bool
         Whether the failure is the case's own (input or physics refused) and would come again, or an accident (a worker that died).
     warnings : tuple of str
-        Physics warnings of the run.
+        Physics warnings of the run, where they were wanted.
     seconds : float
         What it took.
     """
@@ -95,7 +105,7 @@ def evaluate(batch: Batch) -> list[Outcome]:
     if structures is None or structures.resolution != batch.resolution:
         structures = _kept.structures = Structures(batch.resolution)
     with one_blas_thread():
-        return [evaluated(case.system, batch.metrics, structures.response) for case in batch.cases]
+        return [evaluated(case.system, batch.metrics, structures.response, judged=batch.judged) for case in batch.cases]
 
 
 def forget() -> None:
@@ -103,8 +113,8 @@ def forget() -> None:
     _kept.structures = None
 
 
-def evaluated(system: System, metrics: tuple[Metric, ...], solved: Callable[[System], Response]) -> Outcome:
-    """Return what became of one system: its metrics, or why it has none; *solved* gives its response."""
+def evaluated(system: System, metrics: tuple[Metric, ...], solved: Callable[[System], Response], *, judged: bool = True) -> Outcome:
+    """Return what became of one system: its metrics, or why it has none; *solved* gives its response, with its warnings if *judged*."""
     start = time.perf_counter()
     try:
         response = solved(system)
@@ -116,10 +126,10 @@ def evaluated(system: System, metrics: tuple[Metric, ...], solved: Callable[[Sys
         place = traceback.extract_tb(error.__traceback__)[-1]
         text = f"unexpected {type(error).__name__}: {error} ({place.name}, line {place.lineno})"
         return failure(metrics, text, expected=False, seconds=time.perf_counter() - start)
-    return Outcome(values, warnings=response.warnings, seconds=time.perf_counter() - start)
+    return Outcome(values, warnings=response.warnings if judged else (), seconds=time.perf_counter() - start)
 
 
-def batches(cases: Iterable[Case], metrics: tuple[Metric, ...], resolution: Settings, workers: int) -> list[Batch]:
+def batches(cases: Iterable[Case], metrics: tuple[Metric, ...], resolution: Settings, workers: int, *, judged: bool = True) -> list[Batch]:
     """Return the cases in batches, each of one structure and small enough that all workers stay busy to the end.
 
     Cases that share a structure stay together whatever their order, so that its kernels are prepared once a worker.
@@ -130,5 +140,5 @@ def batches(cases: Iterable[Case], metrics: tuple[Metric, ...], resolution: Sett
     made = []
     for group in groups.values():
         size = min(LARGEST_BATCH, max(1, len(group) // (4 * workers)))
-        made += [Batch(tuple(group[i : i + size]), metrics, resolution) for i in range(0, len(group), size)]
+        made += [Batch(tuple(group[i : i + size]), metrics, resolution, judged) for i in range(0, len(group), size)]
     return made

@@ -50,6 +50,7 @@ def run_cases(
     store: StudyStore | None = None,
     *,
     keep: bool = False,
+    judged: bool = True,
 ) -> list[Outcome]:
     """Return the outcome of every case, in order.
 
@@ -64,6 +65,8 @@ def run_cases(
         Where finished cases are kept, and looked for first.
     keep : bool
         Leave the last structure's kernels in this process for the next call; :func:`coaxshell.studies.evaluation.forget` ends that.
+    judged : bool
+        Whether outcomes tell the physics warnings of their runs.
 
     Raises
     ------
@@ -84,7 +87,7 @@ def run_cases(
     waiting = [Case(i, system) for i, system in enumerate(systems) if i not in outcomes and isinstance(system, System)]
     if executor is None:
         require_room(case_cost([case.system for case in waiting], resolution), len(waiting), workers_at_once)
-    planned = batches(waiting, metrics, resolution, workers_at_once)
+    planned = batches(waiting, metrics, resolution, workers_at_once, judged=judged)
     processes = 1 if executor is None and len(planned) == 1 else execution.workers
     try:
         for batch, result in completed(_still_needed(planned, store, keys, outcomes), evaluate, executor=executor, workers=processes):
@@ -100,7 +103,7 @@ def run_cases(
 
 
 class WorkerPool:
-    """Run cases again and again by workers that stay in between; a pool that breaks is replaced.
+    """Run cases again and again by workers that stay in between; a pool that breaks is replaced. Outcomes tell no physics warnings.
 
     Parameters
     ----------
@@ -129,12 +132,12 @@ class WorkerPool:
         if given.executor is None and self._pool is None and given.capacity > 1:
             self._pool = self._stack.enter_context(process_pool(given.capacity))
         ready = given if self._pool is None else replace(given, executor=self._pool)
-        outcomes = run_cases(systems, self._metrics, resolution, ready, self._store, keep=True)
+        outcomes = run_cases(systems, self._metrics, resolution, ready, self._store, keep=True, judged=False)
         lost = [k for k, outcome in enumerate(outcomes) if outcome.reason.startswith("WorkerDiedError")]
         if lost and given.executor is None:
             self._stack.close()
             self._pool = None
-            again = run_cases([systems[k] for k in lost], self._metrics, resolution, given, self._store, keep=True)
+            again = run_cases([systems[k] for k in lost], self._metrics, resolution, given, self._store, keep=True, judged=False)
             for k, outcome in zip(lost, again, strict=True):
                 outcomes[k] = outcome
         return outcomes
@@ -166,7 +169,7 @@ def _still_needed(
         _look_up({case.number: keys[case.number] for case in batch.cases if case.number in keys}, store, outcomes)
         left = tuple(case for case in batch.cases if case.number not in outcomes)
         if left:
-            yield Batch(left, batch.metrics, batch.resolution)
+            yield replace(batch, cases=left)
 
 
 def _told(result: list[Outcome] | Exception, batch: Batch) -> list[Outcome]:
