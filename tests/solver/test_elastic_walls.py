@@ -15,8 +15,10 @@ from coaxshell.response.energy.shells import shell_energy
 from coaxshell.response.energy.work import SurfaceWork
 from coaxshell.solver.cascade import CascadeSystem
 from coaxshell.solver.cost import run_cost
+from coaxshell.solver.run_size import size_of
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.settings import Settings
+from coaxshell.structure import elastic_basis as bases
 from coaxshell.structure.elastic_basis import PotentialOfLayer, elastic_basis
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
 
@@ -292,3 +294,14 @@ def test_the_memory_of_a_run_counts_what_elastic_walls_keep():
     settings = Settings(duration=4.0, time_step=1e-3, modes=100)
     thin, solid = (run_cost(thick(**theory), settings).memory for theory in ({}, {"theory": "elastic"}))
     assert 1.5 * thin < solid < 4.0 * thin
+
+
+def test_the_memory_of_a_run_counts_the_shapes_that_outlast_it():
+    bases._known.clear()
+    cx.simulate(thick(theory="elastic"), duration=0.3, time_step=1e-2, modes=12)
+    kept = bases._known.bytes
+    assert kept > 0
+    size = size_of(dimensionless(thick(theory="elastic")), Settings(duration=0.3, time_step=1e-2, modes=12))
+    assert size.shapes == kept
+    finer = size_of(dimensionless(thick(theory="elastic")), Settings(duration=0.3, time_step=5e-3, modes=12))
+    assert size.shapes < finer.shapes < 6 * size.shapes

@@ -52,7 +52,7 @@ def run_cost(system: System | Problem, settings: Settings, *, retunable: bool = 
         memory = max(memory, _sampled_bytes(size, 2.0 * MAX_MODES))
     kept = min(float(ROOM), (3.0 * size.shells + 2.0) * size.plane) if retunable else 0.0
     seconds = _direct_seconds(size) if direct else _reflected_seconds(size)
-    return Cost(memory + kept + 200.0 * size.samples, seconds + 2e-5 * size.samples)
+    return Cost(memory + kept + size.shapes + 200.0 * size.samples, seconds + 2e-5 * size.samples)
 
 
 def require_room(problem: Problem, settings: Settings, *, retunable: bool = False) -> None:

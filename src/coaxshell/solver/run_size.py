@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from coaxshell.model.gains import saturates
 from coaxshell.model.pulses import Sampled
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -15,6 +17,8 @@ from coaxshell.solver.rounds import rounds
 from coaxshell.solver.sampled_orders import crossing_order
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
+from coaxshell.solver.solid_spectra import band
+from coaxshell.structure.elastic_basis import plane_bytes
 from coaxshell.structure.elastic_wall import ElasticWall
 
 COMPLEX, REAL = 16.0, 8.0
@@ -66,6 +70,8 @@ class Size:
 
     solids: int = 0
     """Transforms of each shell beside W and V, where walls are elastic solids: hoop stress, faces, loads on them, potentials."""
+    shapes: float = 0.0
+    """Bytes of the shapes of elastic walls in two dimensions, which outlast the run."""
     reflections: int = 0
     """Rounds of the series that planes of the sea send back."""
     surfaces: int = 0
@@ -119,8 +125,16 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         sampled_top=min(2.0 * MAX_MODES, max(4.0 * orders, 2.2 * crossing_order(problem), orders + 32.0)),
         tabulated=sum(source.geometry == "spherical" for source in problem.emitters),
         solids=5 + max(wall.shown_potentials for wall in solids) if solids else 0,
+        shapes=_shapes(problem.resolving(band(grid)), orders, band(grid)) * (2.0 if feedback else 1.0),  # whose stability has its own
         reflections=rounds(problem, settings.duration).done if settings.dimensions == 2 else 0,
         surfaces=len(problem.surfaces),
         kernels=channels(problem, links, orders - 1).kernels,
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
     )
+
+
+def _shapes(problem: Problem, orders: int, frequency: float) -> float:
+    """Return the bytes of the shapes of all elastic walls in two dimensions."""
+    solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
+    numbers = np.arange(orders, dtype=np.float64)
+    return float(sum(plane_bytes(layers, numbers, frequency) for wall in solids for layers in wall.shaped))

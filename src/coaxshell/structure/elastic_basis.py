@@ -143,9 +143,22 @@ def stiffness_powers(mesh: WallMesh) -> FloatArray:
     return _linear_rows(mesh)[1]
 
 
+def plane_bytes(layers: tuple[SolidLayer, ...], orders: FloatArray, frequency: float) -> int:
+    """Return the bytes that the shapes of a plane problem take, with what is made of them where they outlast a run."""
+    meshes = [(mesh, members.stop - members.start) for members, mesh in order_meshes(layers, orders, 0.0, frequency)]
+    kept = sum(_bytes(*one) for one in meshes)
+    return kept if kept <= _known.most else sum(8 * count * (displacements(0.0) * mesh.radius.size) ** 2 for mesh, count in meshes)
+
+
 def _own_bytes(parts: tuple[OrdersBasis, ...]) -> int:
-    """Return bytes of shapes with what is made of them: up to four times their own."""
-    return 4 * sum(part.shapes.nbytes for part in parts)
+    return sum(_bytes(part.mesh, part.orders.size) for part in parts)
+
+
+def _bytes(mesh: WallMesh, orders: int) -> int:
+    """Return the bytes of the shapes of so many orders, and of the rows and potentials of ceramics that may be made of them."""
+    size = displacements(0.0) * mesh.radius.size
+    points = [part.radius.size for part in mesh.layers if part.layer.coupling is not None]
+    return 8 * orders * (size**2 + sum(5 * p * p + p * size for p in points))
 
 
 _known: ByteBoundedCache[tuple[OrdersBasis, ...]] = ByteBoundedCache(2**26, _own_bytes)

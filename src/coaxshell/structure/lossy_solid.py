@@ -67,6 +67,11 @@ class LossySolidWall(ElasticWall):
         counted = (layer for piece in self.pieces if not piece.by_potentials for layer in piece.layers)
         return 3 * (1 + sum(degree(layer, order, wavenumber, self.frequency) for layer in counted))
 
+    @property
+    def shaped(self) -> tuple[tuple[SolidLayer, ...], ...]:
+        """The layers of its pieces that have shapes."""
+        return tuple(piece.layers for piece in self.pieces if not piece.by_potentials)
+
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Refuse: its pieces have shapes, some of them."""
         raise NotImplementedError("a wall with losses has no shapes of its own")
