@@ -57,3 +57,13 @@ def test_what_exists_is_not():
     assert remarks(plain) == remarks(bare.replace_path("source", cx.PlaneShock(peak_pressure=1.0, decay_time=1.0))) == []
     for name in fluids.names():
         assert remarks(bare.replace_path("fluids[1]", name)) == []
+
+
+@pytest.mark.parametrize(
+    ("ceramic", "s55", "s66", "d15"), [(cx.materials.PZT5A, 47.5, 44.3, 584.0), (cx.materials.PZT5H, 43.5, 42.6, 741.0)], ids=["5A", "5H"]
+)
+def test_shear_constants_of_ceramics_are_those_of_a_table_of_compliances(ceramic, s55, s66, d15):
+    # Erturk and Inman, Piezoelectric Energy Harvesting, Wiley 2011, Table E.1: s in pm^2/N, d15 in pm/V
+    assert ceramic.c44 == pytest.approx(1e12 / s55, rel=4e-3)
+    assert ceramic.c66 == pytest.approx(1e12 / s66, rel=4e-3)
+    assert ceramic.e15 == pytest.approx(d15 / s55, rel=4e-3)

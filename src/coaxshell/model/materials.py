@@ -46,6 +46,7 @@ VESAL = "Vesal, Hasheminejad, Lissek"  # the paper that this package starts from
 BERLINCOURT = (
     "Jaffe and Berlincourt, Piezoelectric transducer materials, Proc. IEEE 53 (1965) 1372-1386; field_limit is PZT-4's, ask the maker"
 )
+ERTURK = "c44, c66 and e15 as the compliances and d15 of Erturk and Inman, Piezoelectric Energy Harvesting (2011), Table E.1, give them"
 LIU = "Liu, Wang, Quek, Int. J. Solids Struct. 39 (2002) 2129-2151, whose other constants are the same"
 VACUUM_PERMITTIVITY = 8.8541878128e-12  # F/m, CODATA 2018
 
@@ -96,7 +97,8 @@ TITANIUM_TI6AL4V = Elastic(
     youngs_modulus=113.8e9,
     poisson_ratio=0.342,
     strength=880e6,
-    reference="Boyer, Welsch, Collings (eds), Materials Properties Handbook: Titanium Alloys, ASM International (1994); annealed",
+    reference="ASM material data sheet MTP641, Ti-6Al-4V (Grade 5), annealed; Boyer, Welsch, Collings (eds), Materials Properties "
+    "Handbook: Titanium Alloys, ASM International (1994)",
 )
 BRASS = Elastic(
     name="brass",
@@ -159,7 +161,7 @@ PZT5A = Piezoelectric(
     e31=-5.4,
     e15=12.3,
     permittivity_11=916 * VACUUM_PERMITTIVITY,
-    reference=BERLINCOURT,
+    reference=f"{BERLINCOURT}; {ERTURK}",
 )
 PZT5H = Piezoelectric(
     name="PZT-5H",
@@ -174,12 +176,12 @@ PZT5H = Piezoelectric(
     c11=126e9,
     c12=79.5e9,
     c13=84.1e9,
-    c66=23.0e9,
+    c66=23.5e9,
     c44=23.0e9,
     e31=-6.5,
     e15=17.0,
     permittivity_11=1700 * VACUUM_PERMITTIVITY,
-    reference=BERLINCOURT,
+    reference=f"{BERLINCOURT}; {ERTURK}",
 )
 
 CREMER = "Cremer, Heckl, Structure-Borne Sound, 2nd ed. (1988), table of bending loss factors at about 20 degrees C"

@@ -20,6 +20,7 @@ from coaxshell.solver.settings import MAX_MODES, Settings
 from coaxshell.solver.solid_spectra import band
 from coaxshell.structure.elastic_basis import plane_bytes
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.lossy_solid import shaped_layers
 
 COMPLEX, REAL = 16.0, 8.0
 """Bytes of a number."""
@@ -137,4 +138,4 @@ def _shapes(problem: Problem, orders: int, frequency: float) -> float:
     """Return the bytes of the shapes of all elastic walls in two dimensions."""
     solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
     numbers = np.arange(orders, dtype=np.float64)
-    return float(sum(plane_bytes(layers, numbers, frequency) for wall in solids for layers in wall.shaped))
+    return float(sum(plane_bytes(layers, numbers, frequency) for wall in solids for layers in shaped_layers(wall)))

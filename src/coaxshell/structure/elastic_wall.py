@@ -462,11 +462,6 @@ class ElasticWall(ShellModel):
 
     # What else is asked of a wall
 
-    @property
-    def shaped(self) -> tuple[tuple[SolidLayer, ...], ...]:
-        """The layers that have shapes, those together that share them."""
-        return (self.layers,)
-
     def shape_count(self, order: float, wavenumber: float) -> int:
         """Return how many shapes there are in a wave along the axis."""
         return 3 * (1 + sum(degree(layer, order, wavenumber, self.frequency) for layer in self.layers))

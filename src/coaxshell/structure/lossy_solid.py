@@ -67,11 +67,6 @@ class LossySolidWall(ElasticWall):
         counted = (layer for piece in self.pieces if not piece.by_potentials for layer in piece.layers)
         return 3 * (1 + sum(degree(layer, order, wavenumber, self.frequency) for layer in counted))
 
-    @property
-    def shaped(self) -> tuple[tuple[SolidLayer, ...], ...]:
-        """The layers of its pieces that have shapes."""
-        return tuple(piece.layers for piece in self.pieces if not piece.by_potentials)
-
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Refuse: its pieces have shapes, some of them."""
         raise NotImplementedError("a wall with losses has no shapes of its own")
@@ -143,3 +138,10 @@ class LossySolidWall(ElasticWall):
 
 def _receptance(chain: PieceChain) -> FaceReceptance:
     return FaceReceptance(*(np.asarray(x, dtype=np.complex128) for x in (chain.inner, chain.across, chain.outer)))
+
+
+def shaped_layers(wall: ElasticWall) -> tuple[tuple[SolidLayer, ...], ...]:
+    """Return the layers of a wall that have shapes, those together that share them."""
+    if not isinstance(wall, LossySolidWall):
+        return (wall.layers,)
+    return tuple(piece.layers for piece in wall.pieces if not piece.by_potentials)
