@@ -192,6 +192,30 @@ def test_one_law_for_all_becomes_one_for_each_shell(linked_page):
     cx.System.model_validate(held(page, SYSTEM))
 
 
+def test_limits_of_current_and_a_bridge_out_of_balance_are_typed_and_refused_at_their_fields(linked_page):
+    law = cx.Feedback(numerator=[0.0, 1e-3], denominator=[1.0], transducers="electrodes")
+    page = linked_page(preset=cx.presets.load("electrodes").replace(control=law))
+    page.locator('details[data-group="control"]').evaluate("box => { box.open = true; }")
+    field = {name: page.locator(f'input[type=text][data-path="control.{name}"]') for name in ("current_limit", "bridge_imbalance")}
+
+    def typed(name, text):
+        field[name].fill(text)
+        field[name].press("Enter")
+
+    typed("current_limit", "20 A/m^2")
+    until(page, f"{SYSTEM}.control.current_limit === 20 && !document.documentElement.classList.contains('stale')")
+    typed("current_limit", "-1")
+    page.locator("#field-problem").wait_for()
+    assert field["current_limit"].get_attribute("aria-invalid") == "true"
+    typed("current_limit", "")
+    until(page, f"{SYSTEM}.control.current_limit === null && !window.coaxshell.state.problems.length")
+    typed("bridge_imbalance", "0.01")
+    until(page, f"{SYSTEM}.control.bridge_imbalance === 0.01 && !document.documentElement.classList.contains('stale')")
+    typed("bridge_imbalance", "-2")
+    page.locator("#field-problem").wait_for()
+    assert field["bridge_imbalance"].get_attribute("aria-invalid") == "true"
+
+
 @pytest.mark.slow
 def test_each_shell_has_a_law_of_its_own_by_keyboard(opened):
     system = cx.presets.load("electrodes").with_overrides({"control.derivative": [2.0, 1.0]})
