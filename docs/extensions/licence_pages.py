@@ -95,6 +95,7 @@ def licence_table() -> str:
         "coaxshell itself is under the BSD-3-Clause licence. This page is written at every build from the metadata of the packages "
         "installed there; an extra that is not installed is not listed. A test refuses a core dependency whose licence is not on a "
         "list of permissive and weak-copyleft ones: " + ", ".join(sorted(ALLOWED)) + ".",
+        "The studio's page brings plotly.js itself, under the MIT licence, which lies beside it.",
     ]
     for extra, found in extras().items():
         if found:

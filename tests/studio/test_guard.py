@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import stat
 
 import pytest
@@ -10,6 +11,8 @@ from asking import KEY, PORT
 from coaxshell.apps.studio.guard import kept_key
 
 PAGE = "/"
+PUBLISHED = "79542150855a52c567260e3137095dbe2b744e6d702a5cabe67da246942fba7a"
+"""SHA-256 of plotly-cartesian.min.js in plotly.js-cartesian-dist-min 4.1.1 of npm, so that nobody changes it by hand."""
 WITH_KEY = {"Cookie": "", "Authorization": f"Bearer {KEY}"}
 
 
@@ -19,7 +22,8 @@ def test_the_page_and_plotly_are_served_from_here(client):
     assert "coaxshell studio" in page.text
     script = client.get("/vendor/plotly.min.js")
     assert script.headers["content-type"].startswith("text/javascript")
-    assert "plotly.js v" in script.text[:200]
+    assert "plotly.js (cartesian - minified) v" in script.text[:200]
+    assert hashlib.sha256(script.content).hexdigest() == PUBLISHED
 
 
 @pytest.mark.parametrize(

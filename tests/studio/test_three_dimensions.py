@@ -101,6 +101,23 @@ def test_a_job_is_told_on_the_way_and_can_be_cancelled(client):
     assert solved(client, described("bare"))[0]["ok"], "the worker is free"
 
 
+@pytest.mark.parametrize("entries", [{"kind": "field", "every": 1, "size": 200}, {"kind": "energy", "every": 1}])
+def test_panels_are_cancelled_on_the_way(client, answer, entries):
+    job = start(client, run=answer[0]["run"], **entries)
+    while (now := client.get(f"/api/jobs/{job['id']}").json()["job"])["state"] == "waiting":
+        pass
+    assert now["state"] == "running"
+    assert client.delete(f"/api/jobs/{job['id']}").status_code == 204
+    assert ended(client, job)["state"] == "cancelled"
+
+
+def test_margins_of_three_dimensions_are_told_to_be_those_of_two(client):
+    run = solved(client, described("active"), resolution={**SPACE, "duration": 0.5, "modes": 2})[0]["run"]
+    told = client.post("/api/jobs", json={"client": "tab", "kind": "loops", "run": run}).json()["problem"]
+    assert told["where"] == "dimensions"
+    assert told["remedy"] == "use dimensions=2"
+
+
 @pytest.mark.parametrize("quantity", ["stress", "shear_stress"])
 def test_a_wall_laid_flat(client, answer, library, quantity):
     header, _ = answer

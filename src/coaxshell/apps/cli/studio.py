@@ -31,7 +31,7 @@ def studio(
 
     Prints an address with a key, which only you should have, and opens it. Ctrl-C ends it. Needs the extra 'studio'.
     """
-    missing = [name for name in ("starlette", "uvicorn", "plotly") if find_spec(name) is None]
+    missing = [name for name in ("starlette", "uvicorn") if find_spec(name) is None]
     if missing:
         raise InputError("studio", f"needs {', '.join(missing)}", 'install what is missing: pip install "coaxshell[studio]"')
     for name in allow_host or ():

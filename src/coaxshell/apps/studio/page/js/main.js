@@ -416,6 +416,7 @@ function wire() {
   by("form").addEventListener("submit", (event) => event.preventDefault());
   document.addEventListener("theme", () => { if (page.runs.current) drawRuns(); });
   tabs.onTab((name) => { drawTab(name); if (name === "studies") studies.fit(); if (page.system) keepLink(); });
+  addEventListener("load", () => Object.keys(page.runs).length && drawRuns()); // plotly is read after the first request has gone: by now it is there
   addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "a link", "/api/link/open"));
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
