@@ -1,4 +1,4 @@
-"""Make the pictures of the pages anew, all or those named.
+"""Make the pictures of the pages anew, and the pages that are kept with their numbers; all or those named.
 
 Run: python docs/pictures [--into FOLDER] [NAME ...], or make pictures
 """
@@ -10,8 +10,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import of_conformance
 import of_control
 import of_runs
+import of_statements
 import of_studies
 import of_studio
 
@@ -44,21 +46,26 @@ RECIPES: dict[str, Recipe] = {
     "studio-designs.png": of_studio.designs,
 }
 """Every picture in docs/figures, and what makes it."""
+PAGES: dict[str, Recipe] = {"conformance.md": of_conformance.write, "statements.md": of_statements.write}
+"""Pages in docs whose numbers take too long for every build."""
 
 
 def main() -> None:
     """Make them one after the other, and say how long each took."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help="file names in docs/figures; all unless given")
-    parser.add_argument("--into", type=Path, default=Path(__file__).parents[1] / "figures", metavar="FOLDER")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="file names in docs/figures and docs; all unless given")
+    parser.add_argument("--into", type=Path, metavar="FOLDER", help="instead of docs/figures and docs")
     asked = parser.parse_args()
-    unknown = set(asked.names) - RECIPES.keys()
+    known = RECIPES | PAGES
+    unknown = set(asked.names) - known.keys()
     if unknown:
-        parser.error(f"no such picture: {', '.join(sorted(unknown))}; there are {', '.join(RECIPES)}")
-    asked.into.mkdir(parents=True, exist_ok=True)
-    for name in asked.names or RECIPES:
+        parser.error(f"there is no {', '.join(sorted(unknown))}; there are {', '.join(known)}")
+    docs = Path(__file__).parents[1]
+    for name in asked.names or known:
         begun = time.perf_counter()
-        RECIPES[name](asked.into / name)
+        folder = asked.into or (docs / "figures" if name in RECIPES else docs)
+        folder.mkdir(parents=True, exist_ok=True)
+        known[name](folder / name)
         print(f"{name}  {time.perf_counter() - begun:.0f} s", flush=True)
 
 

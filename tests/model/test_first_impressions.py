@@ -26,6 +26,12 @@ def test_rooms_named_in_the_readme_are_there_after_import(name: str) -> None:
     assert found.stdout.split() == [f"coaxshell.{name}", "True"]
 
 
+def test_studies_and_the_paper_import_nothing_slow_before_it_is_used() -> None:
+    code = "import sys, coaxshell.studies, coaxshell.apps.paper; print({'scipy.stats', 'xarray', 'matplotlib'} & set(sys.modules))"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.split() == ["set()"]
+
+
 @pytest.mark.parametrize(("name", "meant"), list(fluids.ALIASES.items()))
 def test_fluids_by_the_names_people_use(name: str, meant: str) -> None:
     assert fluids.get(name) is fluids.get(meant)

@@ -192,8 +192,8 @@ ELASTIC = (
     Mutation(
         "solid-paper-push",
         "structure/solid_transducers.py",
-        "push = -transducers.push * (",
-        "push = transducers.push * (",
+        "np.asarray(-push * (basis.shapes",
+        "np.asarray(push * (basis.shapes",
         "the paper's pressure pushes inward",
         "solver/test_exact_control.py",
     ),

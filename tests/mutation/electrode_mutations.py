@@ -128,6 +128,22 @@ ELECTRODES = (
         "structure/test_axial_electrodes.py",
     ),
     Mutation(
+        "tied-wave-along",
+        "solver/axial/tied_wave.py",
+        "axial[i] += response.slid_axially[place] * voltage[place]",
+        "axial[i] -= response.slid_axially[place] * voltage[place]",
+        "voltages that tie orders of a wave pull along the axis",
+        "solver/test_ties_in_space.py",
+    ),
+    Mutation(
+        "waves-looked-at-closer",
+        "solver/axial/stability.py",
+        "min(known[a], known[b]) <= rate * (b - a)",
+        "min(known[a], known[b]) <= 0.1 * rate * (b - a)",
+        "between wavenumbers a pole may pass where the least ratio of determinants changes by more than it is",
+        "solver/test_control_in_space.py",
+    ),
+    Mutation(
         "passive-along-the-wall",
         "structure/electroded_wall.py",
         "return np.minimum((matrix.eliminated().impedance / s).real, matrix.along_resistance(s))",

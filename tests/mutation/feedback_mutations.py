@@ -100,7 +100,7 @@ FEEDBACK = (
         "loops-together",
         "solver/margins.py",
         "np.vander(places, len(shells) + 1, increasing=True)[:, 1:]",
-        "np.vander(places, len(shells) + 1, increasing=False)[:, 1:]",
+        "np.vander(places, len(shells) + 1, increasing=True)[:, :-1]",
         "a polynomial in the common factor, from where it was evaluated",
         "solver/test_several_laws.py",
     ),

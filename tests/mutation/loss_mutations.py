@@ -110,6 +110,22 @@ LOSSES = (
         "structure/test_lossy_solids.py",
     ),
     Mutation(
+        "solid-inertia-of-voltages",
+        "structure/solid_driven.py",
+        "strengths = np.stack([s * s]",
+        "strengths = np.stack([0.0 * s]",
+        "the inertia along the wall that a voltage finds in pieces",
+        "solver/test_exact_lossy_control.py",
+    ),
+    Mutation(
+        "solid-pieces-apart",
+        "structure/solid_chain.py",
+        "force = joint.solve([apart[i] - moved[i] for i in each])",
+        "force = joint.solve([apart[i] + moved[i] for i in each])",
+        "the force that closes pieces which voltages move apart",
+        "solver/test_exact_lossy_control.py",
+    ),
+    Mutation(
         "rubber-shear-by-psi",
         "structure/solid_potentials.py",
         "2.0 * self.shear * (d / r - m * m * y) - across * y",

@@ -12,7 +12,7 @@ import coaxshell as cx
 from coaxshell.numerics.modes import Modes
 from coaxshell.response import load_response
 from coaxshell.solver import stability
-from coaxshell.solver.axial.stability import doubtful_waves, sample
+from coaxshell.solver.axial.stability import doubtful_waves, look_closer, sample
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.stability import unstable_poles
@@ -134,3 +134,14 @@ class TestStability:
         assert (found[0], found[-1]) == (0.0, 39.0)
         assert len(found) == 16
         assert sample([]) == []
+
+    def test_waves_are_counted_closer_where_a_pole_may_be_near(self):
+        falls = np.concatenate([np.linspace(0.9, 0.05, 12), [0.01, 0.0, 0.02, 0.3]])
+        asked = look_closer(lambda j: float(falls[j]), 16)
+        assert 13 in asked
+        assert len(asked) < 16
+        assert look_closer(lambda j: 0.8 - 0.01 * j, 16) == [0, 4, 8, 11, 15]
+        assert look_closer(lambda j: np.inf, 16) == [0, 4, 8, 11, 15]
+        assert {5, 6, 7} <= set(look_closer(lambda j: abs(j - 6) * 0.1, 16))  # as near on both sides of it
+        assert look_closer(lambda j: 1.0, 2) == [0, 1]
+        assert look_closer(lambda j: 1.0, 0) == []

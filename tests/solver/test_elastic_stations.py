@@ -72,6 +72,15 @@ def test_a_wave_across_the_axis_is_that_of_two_dimensions(theory):
     assert not np.any(space.displacement(2, component="axial"))
 
 
+def test_what_is_odd_along_the_axis_vanishes_beside_the_source():
+    found = run()
+    for shell in (1, 2):
+        reads = [partial(found.stress, shell, [20, 90], component=name) for name in ("shear", "radial_axial")]
+        reads += [partial(found.displacement, shell, [20, 90], "axial")]
+        for read in reads:
+            assert np.abs(read(station=0.0)).max() < 1e-12 * np.abs(read(station=0.5)).max()
+
+
 def test_integrals_along_the_axis_are_those_of_the_longest_wave():
     """The trapezoidal rule over a period leaves k = 0 alone, two of it: the wave that nothing changes along the axis of."""
     period, half = 16.0, 6  # more than k_max L/(4 pi)

@@ -183,12 +183,3 @@ def test_what_is_not_known_is_refused() -> None:
     for changed, dimensions, message in ((limited, 3, "in two dimensions alone"), (limited.replace(absorbers=ring), 2, "beside absorbers")):
         with pytest.raises(cx.InputError, match=rf"control\.saturation: .*{message}"):
             cx.simulate(changed, duration=0.5, time_step=2e-2, modes=4, dimensions=dimensions)
-
-
-def test_feedback_on_walls_with_losses_is_refused() -> None:
-    described = system("paper")
-    lossy = list(described.shells[0].layers)
-    lossy[1] = lossy[1].replace(material=lossy[1].material.replace(loss_factor=0.05))
-    shells = [described.shells[0].replace(layers=lossy), described.shells[1]]
-    with pytest.raises(cx.InputError, match=r"control: shells\[0\] is elastic and has losses"):
-        cx.simulate(described.replace(shells=shells), duration=0.5, time_step=2e-2, modes=4)

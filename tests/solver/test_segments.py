@@ -214,3 +214,12 @@ def test_a_modal_filter_of_segments_weighs_their_patterns():
     with pytest.raises(InputError, match="modal filter"):
         law.replace(dead=[1])
     assert replace(patterns, parities=2).numbers.count == 8
+
+
+@pytest.mark.parametrize("dead", [(), (1,)])
+def test_ideal_loops_of_segments_are_warned_of(dead):
+    system = cut(segments=6, dead=list(dead))
+    (told,) = [text for text in cx.simulate(system, duration=1.0, time_step=0.02, modes=12).warnings if "the loop is ideal" in text]
+    least = 1e6 * float(cx.stability_margins(cut(segments=6), duration=1.0, modes=12)["delay_margin"].min())
+    assert float(told.split("delay: ")[1].split(" µs")[0]) == pytest.approx(least, rel=0.01)
+    assert "order 3 with 9, ..., which 6 segments tie to it, grow" in told

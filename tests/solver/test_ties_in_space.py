@@ -189,6 +189,9 @@ def test_margins_of_waves_are_where_poles_cross():
     assert told[-1] == 1.0
     assert dict(margins.sizes) == {"shell": 2, "wavenumber": 6, "order": 3}
     assert margins.attrs["segments"] == 5
+    gain = margins["gain_margin"].to_numpy()
+    assert not np.any(np.isfinite(gain) & (gain > 1e3))  # rounding of patterns without orders is no loop
+    assert np.isnan(gain[:, -1, 1:]).all()
     k = float(margins["wavenumber"][3]) * system.reference_radius
     delay = float(margins["delay_margin"][:, 3].min())
     top = int(6 * np.sqrt(1 - (k / 6) ** 2) + 1e-9)

@@ -49,6 +49,9 @@ def test_the_bench_does_what_a_run_does():
         assert found.volts[shell] == pytest.approx(float(abs(volts).max()), rel=1e-6)
         faces = [run.stress(shell, places, depth=z) for z in (-2.9994e-3, 2.9994e-3)]
         assert found.core[shell] == pytest.approx(max(float(abs(one).max()) for one in faces), rel=1e-4)
+        # Ceramics are 3 mm beside a core of 6: each carries the most at its outer face, the actuator also by its own field.
+        ceramics = [run.stress(shell, places, depth=z) for z in (-3.0003e-3, 5.9997e-3)]
+        assert found.ceramic[shell] == pytest.approx(max(float(abs(one).max()) for one in ceramics), rel=1e-4)
     assert (found.core < bench.without.core).all()
 
 

@@ -1,7 +1,7 @@
 """What takes long to import, imported when something of it is first used.
 
-xarray brings pandas, half a second and more; a run that only prints its peaks labels nothing. Functions that a room offers although they
-live above it, such as the figure of a response, are supplied by the root of the package, which alone knows all rooms.
+xarray brings pandas, half a second and more, scipy.stats as much; a run that only prints its peaks needs neither. Functions that a room
+offers although they live above it, such as the figure of a response, are supplied by the root of the package, which alone knows all rooms.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-__all__ = ["integrate", "linalg", "signal", "supplied", "supply", "xarray"]
+__all__ = ["integrate", "linalg", "signal", "stats", "supplied", "supply", "xarray"]
 
 
 class Late(ModuleType):
@@ -25,9 +25,9 @@ class Late(ModuleType):
 
 if TYPE_CHECKING:
     import xarray
-    from scipy import integrate, linalg, signal
+    from scipy import integrate, linalg, signal, stats
 else:
-    integrate, linalg, signal, xarray = map(Late, ("scipy.integrate", "scipy.linalg", "scipy.signal", "xarray"))
+    integrate, linalg, signal, stats, xarray = map(Late, ("scipy.integrate", "scipy.linalg", "scipy.signal", "scipy.stats", "xarray"))
 
 _HOMES: dict[str, str] = {}
 

@@ -176,7 +176,8 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
         for shell, (margins, response) in each.items():
             for name in _VARIABLES:
                 known = found.setdefault(name, {}).setdefault(shell, np.full((count, orders.count), np.nan))
-                known[place, : margins.orders.size] = _entry(margins, name, problem)
+                there = min(margins.orders.size, modes.count)  # patterns above the orders of a wave have none of them
+                known[place, :there] = _entry(margins, name, problem)[:there]
             known = found["delay_margin"][shell]
             if shell not in worst or margins.delay.min() * problem.scales.time <= np.nanmin(known):
                 worst[shell] = response._replace(wavenumber=float(modes.wavenumber) / problem.scales.length)

@@ -82,7 +82,7 @@ class SpatialEffort:
 
     def __str__(self) -> str:
         """Return the aligned table."""
-        rows = [("shell", "effort", "value", "limit", "share", "z [m]")]
+        rows: list[tuple[str, ...]] = [("shell", "effort", "value", "limit", "share", "z [m]")]
         for place, shell in enumerate(self.each[0].shells):
             for name, words, unit in ROWS[:-1]:  # energy is told over the whole length
                 total = bool(shell.segments) and name.endswith("power")

@@ -13,7 +13,7 @@ from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.bubble import first_pulse
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, saturates, segments_of, wired
+from coaxshell.model.gains import law_of, saturates, wired
 from coaxshell.model.parts import laws_of
 from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
@@ -202,7 +202,7 @@ def actuators(*motions: ModalSolution) -> list[str]:
 def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
     """Return the warning that feedback by electrodes is computed without any delay, with that which it would stand."""
     laws = [law for law in laws_of(problem.system) if law.transducers == "electrodes"]
-    if not laws or segments_of(problem.system) is not None:
+    if not laws:
         return []
     assert isinstance(settings.modes, int)
     margin = delay_margin(problem, settings.modes, settings.duration)
@@ -211,12 +211,12 @@ def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
     known = max(law.delay if isinstance(law, Feedback) else 0.0 for law in laws)
     if known:
         return [
-            f"control: {engineering(margin.delay, 's')} more than the loop's delay of {engineering(known, 's')} would make order "
-            f"{margin.order} grow, and electronics take about {engineering(USUAL_DELAY, 's')}; lower the gains, or feed fewer orders back"
+            f"control: {engineering(margin.delay, 's')} more than the loop's delay of {engineering(known, 's')} would make "
+            f"{margin.grows} grow, and electronics take about {engineering(USUAL_DELAY, 's')}; lower the gains, or feed fewer orders back"
         ]
     return [
-        f"control: the loop is ideal, without delay: {engineering(margin.delay, 's')} of it would make order {margin.order} grow, and "
-        f"electronics take about {engineering(USUAL_DELAY, 's')}; read the run as the limit of what feedback can do, or lower the gains"
+        f"control: the loop is ideal, without delay: {engineering(margin.delay, 's')} of it would make {margin.grows} grow, "
+        f"and electronics take about {engineering(USUAL_DELAY, 's')}; read the run as the limit of what feedback can do, or lower the gains"
     ]
 
 

@@ -14,7 +14,6 @@ from typing import NamedTuple
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.acoustics.images import Planes
 from coaxshell.acoustics.sources import SourceGeometry
-from coaxshell.errors import InputError
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
 from coaxshell.model.gains import gains_of, law_of, reads_of
@@ -291,19 +290,10 @@ def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band)
     density = system.exterior.density
     layers = tuple(layer.in_units(scales.length, scales.pressure, density) for layer in solid_layers(shell, scales.time, band))
     gains, core = _gains(system, index, scales.time), shell.layers.index(shell.core)
-    if any(layer.factor is not None for layer in layers):
-        if gains is not None:
-            remedy = f'leave them out, or use shells[{index}].theory = "thin"'
-            raise InputError(
-                "control", f"shells[{index}] is elastic and has losses, or layers as soft as rubber, where no feedback is known", remedy
-            )
-        return LossySolidWall.of(layers, core)
-    wall = ElasticWall.of(layers, core)
-    return (
-        wall
-        if gains is None
-        else replace(wall, gains=gains, transducers=_transducers(system, index, scales), segments=_segments(system, index))
-    )
+    wall = (LossySolidWall if any(layer.factor is not None for layer in layers) else ElasticWall).of(layers, core)
+    if gains is None:
+        return wall
+    return replace(wall, gains=gains, transducers=_transducers(system, index, scales), segments=_segments(system, index))
 
 
 def _transducers(system: System, index: int, scales: Scales) -> Transducers:

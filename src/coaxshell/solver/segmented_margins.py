@@ -18,13 +18,15 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import ShareDone
 from coaxshell.solver.electrode_loops import ElectrodeLoops
-from coaxshell.solver.electrode_patterns import Patterns, patterns_of
+from coaxshell.solver.electrode_patterns import Patterns, patterns_of, segments_of
 from coaxshell.solver.margins import FURTHER, Loop, LoopMargins, followed, margins_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import Contour, along_alone
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 128
+_ROUNDING = 1e-9
+"""Of the largest loop of a wall: what is smaller everywhere is none, as of a pattern whose orders are not there."""
 
 
 class CutLoop(NamedTuple):
@@ -58,13 +60,32 @@ def segmented_loops(problem: Problem, modes: Modes, least: float, told: ShareDon
     found = {}
     values = _values(problem, modes, patterns, nodes, told)
     for place, shell in enumerate(walls):
-        if not values[place].any():
+        size = np.abs(values[place]).max(axis=1, keepdims=True)
+        if not size.any():
             continue
-        loop = Loop(nodes, values[place])
+        loop = Loop(nodes, np.where(size > _ROUNDING * size.max(), values[place], 0.0))
         each = margins_of(np.arange(float(len(loop.values))), *loop)
         numbers = _resembled(problem, modes, patterns, place, loop, each) if patterns.dead else shown
         found[shell] = CutLoop(loop, numbers, _by_pattern(each, numbers, shown))
     return found
+
+
+def common_patterns(problem: Problem, max_order: int, numbers: FloatArray, least: float) -> list[Loop]:
+    """Return the eigenvalues of the loops of all walls together in some patterns q, one Loop each of (patterns, nodes).
+
+    Dead segments count as if they were alive. With a common factor z on all laws the determinant of a pattern is prod (1 - z lambda), as
+    of orders (:func:`coaxshell.solver.margins.common_loop`). Only the orders that are tied in these patterns are made.
+    """
+    walls = controlled(problem)
+    count, orders = segments_of(problem, walls)[0].count, np.arange(max_order + 1.0)
+    modes = Modes(orders[np.isin(np.abs(orders - count * np.rint(orders / count)), numbers)], sparse=True)
+    patterns, rows = patterns_of(problem, walls, modes.orders, 1), numbers.astype(int)
+    contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
+    found = []
+    for start in range(0, contour.nodes.size, 4 * _BLOCK):
+        matrix = _at(problem, modes, patterns, contour.nodes[start : start + 4 * _BLOCK]).matrix[rows]
+        found.append(np.linalg.eigvals(np.eye(len(walls)) - matrix))
+    return [Loop(contour.nodes, one) for one in followed(np.moveaxis(np.concatenate(found, axis=1), -1, 0))]
 
 
 def _count(patterns: Patterns) -> int:

@@ -115,7 +115,8 @@ class FacedSystem:
 
     def _given(self, shell: int, wall: ElasticWall) -> UnderVoltage:
         if shell not in self._volts:
-            self._volts[shell] = wall.under_voltage(self._modes, self._s, wall.asked_of_port)
+            given = wall.under_voltage(self._modes, self._s, wall.asked_of_port)
+            self._volts[shell] = given._replace(shown=wall.signs_of(wall.asked_of_port)[..., 0] * given.shown)
         return self._volts[shell]
 
     def _together(self, each: Sequence[Sequence[FaceMotion]]) -> list[WallAnswer]:

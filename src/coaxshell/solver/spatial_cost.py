@@ -16,6 +16,7 @@ from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.line_march import block_steps
 from coaxshell.solver.axial.lines import LineLayout, line_layout
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
+from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.faced_forces import PARTS
 from coaxshell.solver.orders_left_out import COUPLED_POINTS
 from coaxshell.solver.run_size import COMPLEX, REAL, Size
@@ -39,6 +40,8 @@ _INCLINED = 2e-4
 """Seconds of the equations of a wall of 48 displacements at one order and node of an inclined wave, without shapes."""
 _WAVE = 5e-3
 """Seconds that a wavenumber takes at a few orders and nodes, each time that it is solved."""
+_TIED = 1.6
+"""How much longer a wave takes whose orders or walls feedback ties to each other."""
 _STEP = 2e-3
 """Seconds of a step of the march of a single absorber along the axis, by Newton's method."""
 
@@ -58,13 +61,13 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     problem = dimensionless(system, dimensions=3, settings=settings).resolving(band(grid))
     sampling = _sampling(problem, settings, size.orders - 1)
     pairs = float(sampling.tops.sum() + sampling.tops.size) * size.nodes
-    stations, amplitudes = len(settings.stations), size.shells * size.source_parities
+    stations, amplitudes = len(settings.stations), size.shells * motion_parities(problem)
     solids, points = _solids_cost(problem, sampling, size), bool(system.point_absorbers)
     fields = _FIELDS + (len(SOLID_STRESSES) if size.solids else 0)
     kept = stations * amplitudes * (fields * (size.plane + size.history) + 6.0 * size.plane)
     turns = 2.0 if size.nodes < _SIDE_BY_SIDE else 1.0
     lines = _lines_cost(line_layout(problem, sampling), size, pairs) if system.absorber_list else Cost(0.0)
-    waves = turns * pairs * 0.3e-6 * size.shells
+    waves = turns * pairs * 0.3e-6 * size.shells * (_TIED if problem.tied else 1.0)
     again = _passes(problem, size) if lines.seconds or points else 0.0  # for what absorbers feel and do
     return Cost(
         lines.memory

@@ -54,10 +54,11 @@ _STARTS = 12
 
 
 class UnstablePoles(NamedTuple):
-    """Orders with unstable poles and how many each has."""
+    """Orders with unstable poles, how many each has, and the least |D_m/D0_m| met on the contour: infinite where nothing was counted."""
 
     orders: FloatArray
     counts: FloatArray
+    nearest: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -230,18 +231,22 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
         return UnstablePoles(doubtful, np.zeros(0))
     if doubtful.size < modes.count:
         modes = Modes(doubtful, modes.wavenumber, modes.sparse or 2 * doubtful.size < modes.count)
-    counts = np.rint(-_turned(along_alone(problem, modes), modes, Contour.of(problem, modes, least), shared) / np.pi)
-    return UnstablePoles(doubtful[counts > 0], counts[counts > 0])
+    turned, nearest = _turned(along_alone(problem, modes), modes, Contour.of(problem, modes, least), shared)
+    counts = np.rint(-turned / np.pi)
+    return UnstablePoles(doubtful[counts > 0], counts[counts > 0], nearest)
 
 
-def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedParts | None) -> FloatArray:
-    """Return how far D_m/D0_m turns along a contour, of each order."""
+def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedParts | None) -> tuple[FloatArray, float]:
+    """Return how far D_m/D0_m turns along a contour, of each order, and how near the nearest comes to 0."""
+    nearest = np.inf
     turned, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
     faced, passive = problem.two_faced, problem.open_loop
     limits = np.full(modes.count, contour.limits.max()) if faced else contour.limits  # shapes of all orders are made once
     for block in contour.blocks():
         some = modes if faced else Modes(modes.orders[left], modes.wavenumber, modes.sparse)
-        turned[left] += turning(_ratio(problem, block, some, shared, passive))
+        ratio = _ratio(problem, block, some, shared, passive)
+        turned[left] += turning(ratio)
+        nearest = min(nearest, float(np.abs(ratio).min()))
         reached[left] = block[-1].imag
         left = left[limits[left] > block[-1].imag]
         if not left.size:
@@ -259,7 +264,7 @@ def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedPart
         nodes, ratio = nodes[ascending], ratio[:, ascending]
     for end in ends:
         turned[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
-    return turned + np.angle(1.0 / ratio[:, -1])  # beyond the last node it tends to 1 without turning
+    return turned + np.angle(1.0 / ratio[:, -1]), min(nearest, float(np.abs(ratio).min()))  # beyond the last node it tends to 1
 
 
 def _ratio(problem: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None, passive: Problem) -> ComplexArray:
@@ -327,13 +332,16 @@ def _pole(problem: Problem, modes: Modes, least: float) -> complex:
     return complex(least, nearest[0].imag)
 
 
-def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0) -> None:
-    """Raise InputError, naming gain and order, if the closed loop is unstable at an axial wavenumber."""
+def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0) -> float:
+    """Raise InputError, naming gain and order, if the closed loop is unstable at an axial wavenumber; else return how near it is.
+
+    That is the least |D_m/D0_m| on the contour, infinite where nothing had to be counted.
+    """
     if all(shell.gains is None for shell in problem.shells):
-        return
+        return np.inf
     unstable = unstable_poles(problem, max_order, duration, shared, wavenumber)
     if unstable.orders.size == 0:
-        return
+        return unstable.nearest
     fastest = fastest_growth(problem, unstable.orders, 1.0 / duration, wavenumber)
     names, said = _guilty(problem, max_order, duration, wavenumber)
     where = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""

@@ -113,15 +113,25 @@ def _factors(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArr
 
 def growing(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> PatternPoles | None:
     """Return the patterns with poles that grow, at an axial wavenumber, by more than a rate per transit; None if there can be none."""
+    return _growing(problem, max_order, least, wavenumber)[0]
+
+
+def _growing(problem: Problem, max_order: int, least: float, wavenumber: float) -> tuple[PatternPoles | None, float]:
+    """Return them, and the least ratio of determinants on the contour, infinite where nothing had to be counted."""
     modes = Modes.up_to(max_order, wavenumber)
     contour = Contour.of(problem, modes, least)
     if collocated(problem, max_order, wavenumber) and never_gives(problem, contour, max_order):
-        return None
-    return counted(along_alone(problem, modes), modes, contour)
+        return None, np.inf
+    return _counted(along_alone(problem, modes), modes, contour)
 
 
 def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
     """Return the patterns with poles right of a contour; where the determinant turns fast between nodes there are more of them."""
+    return _counted(problem, modes, contour)[0]
+
+
+def _counted(problem: Problem, modes: Modes, contour: Contour) -> tuple[PatternPoles | None, float]:
+    """Return them, and the least ratio of determinants on the contour."""
     passive, nodes = problem.open_loop, contour.nodes
     ratio, tied = _factors(problem, passive, modes, nodes)
     for _ in range(_HALVINGS):
@@ -133,12 +143,12 @@ def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | 
         ratio = np.append(ratio, _factors(problem, passive, modes, between)[0], axis=1)
         ascending = np.argsort(nodes.imag)
         nodes, ratio = nodes[ascending], ratio[:, ascending]
-    turned = turning(ratio) + np.angle(1.0 / ratio[:, -1])
+    turned, nearest = turning(ratio) + np.angle(1.0 / ratio[:, -1]), float(np.abs(ratio).min())
     if tied:  # the product of many turns too far between nodes
         turned, ratio = turned.sum(keepdims=True), ratio.prod(axis=0, keepdims=True)
     counts = np.rint(-turned / np.pi)
     bad = np.flatnonzero(counts > 0)
-    return PatternPoles(bad.astype(np.float64), counts[bad], nodes, ratio[bad]) if bad.size else None
+    return (PatternPoles(bad.astype(np.float64), counts[bad], nodes, ratio[bad]) if bad.size else None), nearest
 
 
 class PatternGrowth(NamedTuple):
@@ -188,16 +198,17 @@ def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: 
     return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
 
 
-def require_stable_ties(problem: Problem, max_order: int, duration: float, wavenumber: float = 0.0) -> None:
+def require_stable_ties(problem: Problem, max_order: int, duration: float, wavenumber: float = 0.0) -> float:
     """Raise InputError if loops that are tied would grow by a factor e within the duration, or if a plane run does not resolve segments.
 
-    At an axial *wavenumber* above 0 patterns have the orders that the wave has, which may be none.
+    At an axial *wavenumber* above 0 patterns have the orders that the wave has, which may be none. What is returned of a stable loop is how
+    near it is: the least ratio of determinants on the contour, infinite where nothing had to be counted.
     """
     if wavenumber == 0.0:
         require_resolved(problem, max_order)
-    found = growing(problem, max_order, 1.0 / duration, wavenumber)
+    found, nearest = _growing(problem, max_order, 1.0 / duration, wavenumber)
     if found is None:
-        return
+        return nearest
     cut, laws = segments_of(problem.system), laws_of(problem.system)
     fastest = fastest_growth(problem, max_order, found, 1.0 / duration, wavenumber)
     turns = fastest.frequency if not fastest.frequency < 1e-9 * fastest.rate else 0.0  # rounding of a real pole

@@ -184,7 +184,7 @@ class ElasticWall(ShellModel):
             return self._inclined(modes, s, [])[0]
         found = self._summed(modes, s, [of_faces(part) for part in self.basis(modes)])
         loop = self.loop(modes, s)
-        return FaceReceptance(*found) if loop is None else self._closed(found, loop)
+        return FaceReceptance(*found) if loop is None else self._under_loop(FaceReceptance(*found), loop)
 
     def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes).
@@ -197,8 +197,10 @@ class ElasticWall(ShellModel):
         if self.transducers is None:
             return FaceReceptance(*found[:3]), shown
         loop = self._loop(modes, s, self._law(modes, s))
-        shown = shown + self._by_volts(modes, s, self.asked_of_port, loop)
-        return self._closed(found[:3], loop), np.concatenate([shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
+        shown = shown + self.signs_of(self.asked_of_port) * self._by_volts(modes, s, self.asked_of_port, loop)
+        return self._under_loop(FaceReceptance(*found[:3]), loop), np.concatenate(
+            [shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]]
+        )
 
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes).
@@ -261,6 +263,10 @@ class ElasticWall(ShellModel):
         assert self.transducers is not None
         return tuple(driven_of(part, self.transducers) for part in self.basis(modes))
 
+    def capacitances(self, modes: Modes) -> FloatArray:
+        """Return C of each driven layer per radian, shape (driven, orders)."""
+        return np.concatenate([one.capacitance for one in self.driven(modes)]).T
+
     @kept_with_modes
     def _circuits(self, modes: Modes) -> tuple[Driven, ...]:
         """Return the same of the circuits that close the loop."""
@@ -270,11 +276,11 @@ class ElasticWall(ShellModel):
     def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
         return 0.0 if self.gains is None or self.segments is not None else self.gains.at(s, modes)
 
-    def _closed(self, open_loop: ComplexArray, loop: Loop) -> FaceReceptance:
-        """Return the receptances H_ii, H_io and H_oo with what the transducers add."""
+    def _under_loop(self, open_loop: FaceReceptance, loop: Loop) -> FaceReceptance:
+        """Return receptances with what the transducers add to them."""
         inner, outer = self.wetted
         added = under_volts(loop.moved, loop.volts) / np.array([inner, outer])[:, None, None]
-        h_ii, h_io, h_oo = open_loop
+        h_ii, h_io, h_oo = open_loop.inner, open_loop.across, open_loop.outer
         return FaceReceptance(h_ii + added[0, 0], h_io + added[0, 1], h_oo + added[1, 1], loop.characteristic, h_io + added[1, 0])
 
     def _by_volts(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], loop: Loop) -> ComplexArray:
@@ -285,10 +291,7 @@ class ElasticWall(ShellModel):
         """Return quantities per volt of each circuit: by the motion that it makes, in its layers by their field."""
         parts = []
         for part, driven in zip(self.basis(modes), self._circuits(modes), strict=True):
-            shown = self._shown(part, asked)
-            for row, one in enumerate(asked):
-                shown[:, row] *= -1.0 if one.what == "potential" and one in self._asked_potentials else 1.0
-            parts.append(self._per_volt(part, driven, shown, asked))
+            parts.append(self._per_volt(part, driven, self._shown(part, asked), asked))
         return per_volt(self._summed(modes, s, [rows for rows, _ in parts]), [resting for _, resting in parts])
 
     def _per_volt(self, part: OrdersBasis, driven: Driven, shown: FloatArray, asked: Sequence[Asked]) -> tuple[FloatArray, FloatArray]:
@@ -363,7 +366,7 @@ class ElasticWall(ShellModel):
             whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
             by_volts = under_volts(per_volt(whole, [one.resting for one in volts]), loop.volts)
             per_load = np.concatenate([per_load + by_volts, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
-        return self._closed(found[:3], loop), per_load
+        return self._under_loop(FaceReceptance(*found[:3]), loop), per_load
 
     @kept_with_modes
     def ports(self, modes: Modes) -> tuple[Port, ...]:
@@ -408,6 +411,11 @@ class ElasticWall(ShellModel):
     @property
     def _asked_potentials(self) -> list[Asked]:
         return [Asked("potential", 0.5 * (self.layers[i].inner + self.layers[i].outer) - self.radius) for i in self.piezoelectric]
+
+    def signs_of(self, asked: Sequence[Asked]) -> FloatArray:
+        """Return -1 for the potentials that ports show, in the sign of the sensor equation, else 1, shape (quantities, 1, 1, 1)."""
+        held = self._asked_potentials
+        return np.array([-1.0 if one in held else 1.0 for one in asked]).reshape(-1, 1, 1, 1)
 
     @kept_with_modes
     def _of_port(self, modes: Modes) -> list[FloatArray]:

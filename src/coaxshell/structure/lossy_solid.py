@@ -7,8 +7,9 @@ with the impedance rho c_L sqrt(g).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,7 +23,10 @@ from coaxshell.structure.elastic_wall import Asked, ElasticWall
 from coaxshell.structure.shell_model import FaceReceptance
 from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_chain import PieceChain, WallReading
+from coaxshell.structure.solid_driven import DrivenAnswer, DrivenReading, WallDrive
 from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, Place, pieces
+from coaxshell.structure.solid_ports import UnderVoltage, under_volts
+from coaxshell.structure.solid_transducers import Loop, field_of_volts, loop_closed
 
 SOFT_DEGREE = 64
 """A wall without losses of which a layer needs a higher degree at the top of the band answers by pieces too."""
@@ -36,7 +40,7 @@ def is_soft(layer: SolidLayer, frequency: float) -> bool:
 def resolved(wall: ElasticWall, frequency: float) -> ElasticWall:
     """Return a wall that resolves waves up to a frequency, radians per transit: by pieces if a layer is too soft for shapes.
 
-    A wall that senses or acts keeps its shapes, as pieces know no feedback.
+    A wall without losses that senses or acts keeps its shapes.
     """
     plain = wall.gains is None and wall.transducers is None and not isinstance(wall, LossySolidWall)
     if plain and any(is_soft(layer, frequency) for layer in wall.layers):
@@ -50,13 +54,19 @@ class LossySolidWall(ElasticWall):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """Consecutive layers that answer together, from the inside out."""
-        return pieces(self.layers, self.frequency, self.meshed_as)
+        """Consecutive layers that answer together, from the inside out; under control layers keep their shapes as long as they can."""
+        return pieces(self.layers, self.frequency, self.meshed_as, MOST_DEGREE if self.transducers is None else SOFT_DEGREE)
+
+    @cached_property
+    def driven_pieces(self) -> WallDrive | None:
+        """The transducers on its pieces; None where it is not under control."""
+        return None if self.transducers is None else WallDrive(self.pieces, self.transducers, self.silent < math.inf)
 
     @cached_property
     def stiffest(self) -> ElasticWall:
         """The wall without losses, every layer as stiff as it ever is within the run."""
-        return ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
+        found = ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
+        return replace(found, transducers=self.transducers, gains=self.gains, segments=self.segments, frequency=self.frequency)
 
     def degree_of(self, layer: SolidLayer, order: float, wavenumber: float = 0.0) -> int:
         """Return the degree for the waves of a layer that are worth a search: with losses they die within it as they become short."""
@@ -74,19 +84,28 @@ class LossySolidWall(ElasticWall):
     def prepare(self, modes: Modes) -> None:
         """Make the shapes of its pieces."""
         self._port.prepare(modes)
+        if self.driven_pieces is not None:
+            self._driven(self.asked_of_port).prepare(modes)
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
-        return _receptance(self._faces.at(modes, s)[0])
+        if not self.closes_a_loop:
+            return _receptance(self._faces.at(modes, s)[0])
+        found = self.answered(modes, s)
+        return self._under_loop(found.receptance, self._closed_by(found, self._law(modes, s)))
 
     def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes)."""
+        if self.driven_pieces is not None:
+            return self._port_under_loop(self.asked_of_port, modes, s)
         chain, shown = self._port.at(modes, s)
         shown[3:] *= -1.0  # potentials, as without losses
         return _receptance(chain), self._per_load(shown)
 
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
         """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it."""
+        if self.closes_a_loop:
+            return self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)
         chain, shown = (self._stations if reads else self._faces).at(modes, s)
         shown[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
         return _receptance(chain), self._per_load(shown)
@@ -95,10 +114,94 @@ class LossySolidWall(ElasticWall):
         """Make the shapes of its pieces."""
         self._stations.prepare(modes)
         self._faces.prepare(modes)
+        if self.closes_a_loop:
+            for asked in (self.asked_of_stations, []):
+                self._driven(asked).prepare(modes)
 
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
-        return self._per_load(self._reading(asked).at(modes, s)[1])
+        if not self.closes_a_loop:
+            return self._per_load(self._reading(asked).at(modes, s)[1])
+        found = self._driven(asked).at(modes, s)
+        loop = self._closed_by(found, self._law(modes, s) if fed_back else 0.0)
+        return self._per_load(found.shown) + under_volts(found.by_volts + self._fields(modes, asked), loop.volts)
+
+    # Control
+
+    def _port_under_loop(
+        self, asked: Sequence[Asked], modes: Modes, s: ComplexArray, *, tells: bool = True
+    ) -> tuple[FaceReceptance, ComplexArray]:
+        """Return how its faces answer and what it shows per load on them, last what the law reads and gives if it *tells* that."""
+        found, signs = self._driven(asked).at(modes, s), self.signs_of(asked)
+        loop = self._closed_by(found, self._law(modes, s))
+        by_volts = signs * (found.by_volts + self._fields(modes, asked))
+        shown = signs * self._per_load(found.shown) + under_volts(by_volts, loop.volts)
+        if tells:
+            shown = np.concatenate([shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
+        return self._under_loop(found.receptance, loop), shown
+
+    def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
+        """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
+        found = self._driven(asked).at(modes, s)
+        loop = self._closed_by(found, 0.0)
+        shown = found.by_volts + self._fields(modes, asked)
+        both = under_volts(np.concatenate([-found.moved, shown]), loop.given[:, None])[:, 0]
+        return UnderVoltage(both[:2], both[2:], loop.heard)
+
+    def answered(self, modes: Modes, s: ComplexArray) -> DrivenAnswer:
+        """Return what its faces and its transducers answer while no voltage does."""
+        return self._driven([]).at(modes, s)
+
+    def _loop(self, modes: Modes, s: ComplexArray, law: ComplexArray | float) -> Loop:
+        return self._closed_by(self.answered(modes, s), law)
+
+    def _closed_by(self, found: DrivenAnswer, law: ComplexArray | float) -> Loop:
+        assert self.transducers is not None
+        return loop_closed(-found.moved, self._per_load(found.read), found.answer, self.transducers.circuits, law)
+
+    def _fields(self, modes: Modes, asked: Sequence[Asked]) -> FloatArray:
+        """Return what fields add to quantities per volt of each circuit, shape (quantities, circuits, orders, 1)."""
+        assert self.transducers is not None
+        every, found = self.transducers, np.zeros((len(asked), modes.count, len(self.transducers.driven)))
+        for piece in (piece for piece in self.pieces if not piece.by_potentials):
+            numbers = [one - piece.first for one in every.driven if 0 <= one - piece.first < len(piece.layers)]
+            if not numbers:
+                continue
+            places = [every.driven.index(number + piece.first) for number in numbers]
+            own = replace(every, sensors=(), actuators=tuple(numbers), shorted=())
+            for row, one in enumerate(asked):
+                if (layer := self.layer_at(one.depth) - piece.first) in numbers:
+                    each = [field_of_volts(part, own, layer, self.radius + one.depth, one.what) for part in piece.basis(modes)]
+                    found[row][:, places] = np.concatenate(each)
+        return np.moveaxis(found @ every.circuits.shares, 2, 1)[..., None]
+
+    def _driven(self, asked: Sequence[Asked]) -> DrivenReading:
+        key = tuple(asked)
+        if key not in self._readings:
+            assert self.driven_pieces is not None
+            self._readings[key] = DrivenReading(self.driven_pieces, self._places(asked))
+        return self._readings[key]
+
+    @cached_property
+    def _readings(self) -> dict[tuple[Asked, ...], DrivenReading]:
+        return {}
+
+    def strokes(self, modes: Modes, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return d'x of every driven layer per inward load on either face and per volt of each circuit, (driven, ..., orders, nodes)."""
+        found = self.answered(modes, s)
+        return self._per_load(found.strokes), found.strokes_by_volts
+
+    def capacitances(self, modes: Modes) -> FloatArray:
+        """Return C of each driven layer per radian, shape (driven, orders)."""
+        assert self.driven_pieces is not None
+        loads = [one for one in self.driven_pieces.loads(modes) if one is not None]
+        return np.asarray(sum(np.concatenate([part.capacitance for part in parts]) for parts in loads)).T
+
+    def feedback_frequency(self, modes: Modes) -> float:
+        """Return that of the wall at its stiffest."""
+        return 0.0 if self.gains is None else self.stiffest.feedback_frequency(modes)
+
+    # Readings
 
     @cached_property
     def _port(self) -> WallReading:
@@ -113,8 +216,10 @@ class LossySolidWall(ElasticWall):
         return WallReading(self.pieces)
 
     def _reading(self, asked: Sequence[Asked]) -> WallReading:
-        places = (Place(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked)
-        return WallReading(self.pieces, tuple(places))
+        return WallReading(self.pieces, self._places(asked))
+
+    def _places(self, asked: Sequence[Asked]) -> tuple[Place, ...]:
+        return tuple(Place(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked)
 
     def _per_load(self, shown: ComplexArray) -> ComplexArray:
         """Return what outward forces show as what inward loads do: q at r is a force -r q."""

@@ -5,16 +5,24 @@ A joint shares its displacements, two or in waves along the axis three, and is a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.solid_pieces import Entry, Piece, PieceAnswer, PieceReading, Place, wavenumber_of
+
+
+class Joined(NamedTuple):
+    """Forces on the faces of each piece of a wall that join them, and how the wall's inner and outer face move."""
+
+    forces: list[list[Entry]]
+    inside: list[Entry]
+    outside: list[Entry]
 
 
 class PieceChain:
@@ -56,6 +64,34 @@ class PieceChain:
         under_inner = both[0][0]
         self.inner = _under(first[0], under_inner)
         self.across, self.outer = moved[0], seen[0][0]
+
+    def moved_apart(self, offsets: Sequence[Sequence[Entry]]) -> Joined:
+        """Return what joins pieces whose faces would move without any force.
+
+        With the displacements a of the faces, f = (Y + G_ii)^-1 (G_io F + a_i - e) and e -> a_o + G_oi (Y + G_ii)^-1 (e - a_i).
+
+        Parameters
+        ----------
+        offsets : sequence of sequence
+            Of each piece, a of its inner and of its outer face, as many as forces on it.
+        """
+        each, count = self._each, len(self._each)
+        moved, held = list(offsets[0][count:]), []
+        for faces, (joint, _), apart in zip(self._faces[1:], self._joints, offsets[1:], strict=True):
+            through = _block(faces, 0, 1)
+            force = joint.solve([apart[i] - moved[i] for i in each])
+            moved = [apart[count + j] - _product([row[j] for row in through], force) for j in each]
+            held.append(force)
+        beyond: list[Entry] = [0.0] * count
+        found: list[list[Entry]] = []
+        for faces, (joint, _), force in zip(self._faces[:0:-1], self._joints[::-1], held[::-1], strict=True):
+            more = joint.solve([_product(row, beyond) for row in _block(faces, 0, 1)])
+            force = [a + b for a, b in zip(force, more, strict=True)]
+            found.append([*(-x for x in force), *beyond])
+            beyond = force
+        found.append([*([0.0] * count), *beyond])
+        inside = [offsets[0][i] + _product(self._faces[0][i][count:], beyond) for i in each]
+        return Joined(found[::-1], inside, moved)
 
     def _forces(self, on_inner: float, on_outer: float) -> list[list[Entry]]:
         """Return the four forces on each piece under forces along r on the wall's faces."""
@@ -164,47 +200,70 @@ class WallReading:
     pieces : tuple of Piece
     places : tuple of Place
         With the layers' numbers in the wall.
+    beside : callable or None
+        From the number of a piece to what else is read of it (:class:`PieceReading`), each row the sum over all pieces; None of a piece
+        by potentials.
+    rows : int
+        How many rows that are.
     """
 
     pieces: tuple[Piece, ...]
     places: tuple[Place, ...] = ()
+    beside: Callable[[int], Callable[[Modes], Sequence[FloatArray]] | None] | None = None
+    rows: int = 0
 
     @cached_property
-    def _parts(self) -> list[tuple[PieceReading, list[int]]]:
+    def parts(self) -> list[tuple[PieceReading, list[int]]]:
         """Each piece's reading, and which of the wall's places lie in it."""
         found, last = [], len(self.pieces) - 1
         for number, piece in enumerate(self.pieces):
             own = range(piece.first, piece.first + len(piece.layers))
             members = [i for i, place in enumerate(self.places) if place.layer in own]
             places = tuple(self.places[i]._replace(layer=self.places[i].layer - piece.first) for i in members)
-            found.append((PieceReading(piece, (number > 0, number < last), places), members))
+            beside = None if self.beside is None else self.beside(number)
+            rows = [] if beside is None else range(len(self.places), len(self.places) + self.rows)
+            found.append((PieceReading(piece, (number > 0, number < last), places, beside), [*members, *rows]))
         return found
 
     def prepare(self, modes: Modes) -> None:
         """Make what all blocks of nodes share, before all threads ask for it."""
-        for reading, _ in self._parts:
+        for reading, _ in self.parts:
             reading.prepare(modes)
 
     def at(self, modes: Modes, s: ComplexArray) -> tuple[PieceChain, ComplexArray]:
-        """Return the joined pieces, and the places per outward force on the inner and the outer face, (places, 2, orders, nodes)."""
-        answers, wavenumber = [reading.at(modes, s) for reading, _ in self._parts], wavenumber_of(modes)
+        """Return the joined pieces, and the places per outward force on the inner and the outer face, (places, 2, orders, nodes).
+
+        What else is read comes after the places.
+        """
+        answers = [reading.at(modes, s) for reading, _ in self.parts]
         chain = PieceChain(answers)
-        shown = np.zeros((len(self.places), 2, modes.count, s.size), np.complex128)
-        for (reading, members), answer, forces in zip(self._parts, answers, chain.forces, strict=True):
+        return chain, self.shown(modes, s, answers, chain.forces)
+
+    def shown(
+        self, modes: Modes, s: ComplexArray, answers: Sequence[PieceAnswer], forces: Sequence[Sequence[Sequence[Entry]]]
+    ) -> ComplexArray:
+        """Return what is shown under forces on the faces of all pieces, (places, loads, orders, nodes), forces by piece, load and face."""
+        wavenumber = wavenumber_of(modes)
+        found = np.zeros((len(self.places) + self.rows, len(forces[0]), modes.count, s.size), np.complex128)
+        for (reading, members), answer, each in zip(self.parts, answers, forces, strict=True):
             if answer.fields is not None:
-                shown[members] = _of_waves(answer, forces)
+                found[members] = _of_waves(answer, each)
                 continue
             active = reading.active(wavenumber)
             for row, place in zip(answer.shown, members, strict=True):
-                for side in range(2):
-                    shown[place, side] = _under([row[a] for a in active], [forces[side][a] for a in active])
-        return chain, shown
+                for load, acting in enumerate(each):
+                    one = _under([row[a] for a in active], [acting[a] for a in active])
+                    if place < len(self.places):
+                        found[place, load] = one
+                    else:
+                        found[place, load] += one
+        return found
 
 
 def _of_waves(answer: PieceAnswer, forces: Sequence[Sequence[Entry]]) -> ComplexArray:
-    """Return what is shown in a piece by its potentials under the forces on its faces, (places, 2, orders, nodes)."""
+    """Return what is shown in a piece by its potentials under the forces on its faces, (places, loads, orders, nodes)."""
     assert answer.fields is not None
-    given = np.zeros((len(forces[0]), 2, *answer.shown.shape[2:]), np.complex128)
+    given = np.zeros((len(forces[0]), len(forces), *answer.shown.shape[2:]), np.complex128)
     for side, each in enumerate(forces):
         for number, force in enumerate(each):
             given[number, side] = force

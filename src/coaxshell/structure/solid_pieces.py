@@ -15,7 +15,7 @@ the axis; a force is r times the traction on the piece.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import NamedTuple
@@ -36,6 +36,8 @@ MOST_DEGREE = 24
 """A layer of a wall in pieces that needs a higher degree at the top of the band answers by its potentials."""
 
 
+RIGID = 1.0
+"""omega^2 of the spring that a piece without inertia moves on as it is."""
 MANY_PLACES = 8
 """Quantities of a piece above which its waves are found before them."""
 
@@ -83,12 +85,15 @@ class Piece:
         Up to which waves are resolved, radians per transit.
     meshed_as : tuple of SolidLayer or None
         Layers beside its own that decide on its mesh.
+    most_degree : int
+        Above which a layer answers by its potentials.
     """
 
     first: int
     layers: tuple[SolidLayer, ...]
     frequency: float
     meshed_as: tuple[SolidLayer, ...] | None = None
+    most_degree: int = MOST_DEGREE
 
     @property
     def factor(self) -> Relaxation | None:
@@ -98,7 +103,7 @@ class Piece:
     @property
     def by_potentials(self) -> bool:
         """Whether it is one layer that answers by its potentials."""
-        return by_potentials((self.meshed_as or self.layers)[0], self.frequency)
+        return by_potentials((self.meshed_as or self.layers)[0], self.frequency, self.most_degree)
 
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
@@ -106,20 +111,22 @@ class Piece:
         return elastic_basis(self.layers, modes, self.frequency, self.meshed_as)
 
 
-def by_potentials(layer: SolidLayer, frequency: float) -> bool:
+def by_potentials(layer: SolidLayer, frequency: float, most_degree: int = MOST_DEGREE) -> bool:
     """Return whether a layer answers by its potentials in a wall in pieces."""
-    return layer.isotropic and (layer.shear_alone or degree(layer, 0.0, 0.0, frequency) > MOST_DEGREE)
+    return layer.isotropic and (layer.shear_alone or degree(layer, 0.0, 0.0, frequency) > most_degree)
 
 
-def pieces(layers: Sequence[SolidLayer], frequency: float, meshed_as: Sequence[SolidLayer] | None = None) -> tuple[Piece, ...]:
+def pieces(
+    layers: Sequence[SolidLayer], frequency: float, meshed_as: Sequence[SolidLayer] | None = None, most_degree: int = MOST_DEGREE
+) -> tuple[Piece, ...]:
     """Return the pieces of a wall, from the inside out; divided and meshed as those of other layers nearby, if given."""
     divided = meshed_as or layers
-    keys = [(number if by_potentials(layer, frequency) else -1, layer.factor) for number, layer in enumerate(divided)]
+    keys = [(number if by_potentials(layer, frequency, most_degree) else -1, layer.factor) for number, layer in enumerate(divided)]
     found: list[Piece] = []
     for _, members in groupby(range(len(layers)), key=lambda number: keys[number]):
         numbers = list(members)
         held = None if meshed_as is None else tuple(meshed_as[i] for i in numbers)
-        found.append(Piece(numbers[0], tuple(layers[i] for i in numbers), frequency, held))
+        found.append(Piece(numbers[0], tuple(layers[i] for i in numbers), frequency, held, most_degree))
     return tuple(found)
 
 
@@ -160,11 +167,14 @@ class PieceReading:
     joined : tuple of bool
         Whether other pieces are bonded to its inner and its outer face: all forces then act there, else that along r alone.
     places : tuple of Place
+    beside : callable or None
+        From modes to what else is read, weights of the shapes in displacements, (orders, rows, shapes) of each part of the basis.
     """
 
     piece: Piece
     joined: tuple[bool, bool]
     places: tuple[Place, ...] = ()
+    beside: Callable[[Modes], Sequence[FloatArray]] | None = None
 
     def active(self, wavenumber: float) -> tuple[int, ...]:
         """Return the numbers of the forces that act."""
@@ -198,8 +208,13 @@ class PieceReading:
     # By shapes
 
     @kept_with_modes
-    def _weights(self, modes: Modes) -> list[_Weights]:
-        return [_Weights.of(self, part) for part in self.piece.basis(modes)]
+    def _weights(self, modes: Modes) -> list[Weights]:
+        parts = self.piece.basis(modes)
+        beside = [None] * len(parts) if self.beside is None else self.beside(modes)
+        return [
+            Weights.of(part, on_faces(part)[:, self.active(part.wavenumber)], self.places, rows, lossy=self.piece.factor is not None)
+            for part, rows in zip(parts, beside, strict=True)
+        ]
 
     def _by_shapes(self, modes: Modes, s: ComplexArray) -> PieceAnswer:
         factor = self.piece.factor
@@ -214,22 +229,23 @@ class PieceReading:
         for row, (i, j) in zip(whole, pairs, strict=False):
             a, b = active[i], active[j]
             faces[a][b] = faces[b][a] = row
-        shown = np.zeros((len(self.places), forces, *whole.shape[1:]), np.complex128)
-        shown[:, active] = whole[len(pairs) :].reshape(len(self.places), count, *whole.shape[1:])
+        read = whole[len(pairs) :].reshape(-1, count, *whole.shape[1:])
+        shown = np.zeros((len(read), forces, *whole.shape[1:]), np.complex128)
+        shown[:, active] = read
         return PieceAnswer(faces, shown)
 
 
 @dataclass(frozen=True, eq=False)
-class _Weights:
+class Weights:
     """What the weights of the shapes of some orders in all sums of a reading are made of: pairs of forces, then parts of places per force.
 
-    Forces are those on the faces and, last, those on the rows of potentials. The products are made anew for each block of nodes: kept, they
-    would be five times as much for every wave.
+    Forces are those on the faces and beside, and last those on the rows of potentials. The products are made anew for each block of
+    nodes: kept, they would be five times as much for every wave.
 
     Attributes
     ----------
     active, electric, places : int
-        Numbers of forces on faces and on rows, and of places.
+        Numbers of forces on faces and beside, of those on rows, and of places with what is read beside them.
     parts : tuple of (int, bool)
         Place of each part, and whether g weighs it not: a displacement or the field of a ceramic; stresses of strains are g times that.
     squares : ndarray, shape (orders, shapes)
@@ -246,18 +262,36 @@ class _Weights:
     shown: FloatArray
 
     @classmethod
-    def of(cls, reading: PieceReading, part: OrdersBasis) -> _Weights:
-        """Return those of a reading on the shapes of some orders."""
-        lossy, active = reading.piece.factor is not None, reading.active(part.wavenumber)
+    def of(
+        cls, part: OrdersBasis, forces: FloatArray, places: Sequence[Place], beside: FloatArray | None = None, *, lossy: bool
+    ) -> Weights:
+        """Return those on the shapes of some orders.
+
+        Parameters
+        ----------
+        part : OrdersBasis
+        forces : ndarray, shape (orders, forces, shapes)
+            Those on the faces and beside.
+        places : sequence of Place
+        beside : ndarray, shape (orders, rows, shapes), optional
+            What else is read, of displacements.
+        lossy : bool
+            Whether the piece has losses.
+        """
         rows = lossless_rows(part)[:, : None if lossy else 0]
-        forces = np.concatenate([on_faces(part)[:, active], rows], axis=1)
         shown, parts = [np.zeros((part.orders.size, 0, part.squares.shape[1]))], []
         fields = _Fields(part)
-        for number, place in enumerate(reading.places):
+        for number, place in enumerate(places):
             for one, unweighted in _parts_of(place, part, fields if lossy else None):
                 parts.append((number, unweighted))
                 shown.append(one[:, None])
-        return cls(len(active), rows.shape[1], len(reading.places), tuple(parts), part.squares, forces, np.concatenate(shown, axis=1))
+        count = len(places)
+        if beside is not None:
+            parts += [(count + row, True) for row in range(beside.shape[1])]
+            shown.append(beside)
+            count += beside.shape[1]
+        every = np.concatenate([forces, rows], axis=1)
+        return cls(forces.shape[1], rows.shape[1], count, tuple(parts), part.squares, every, np.concatenate(shown, axis=1))
 
     @property
     def weights(self) -> FloatArray:
@@ -269,7 +303,15 @@ class _Weights:
 
     def answer(self, s: ComplexArray, g: ComplexArray | None) -> ComplexArray:
         """Return displacements of the faces for pairs of forces on them and what is shown per force, shape (rows, orders, nodes)."""
-        sums = modal_sums(self.weights, self.squares, s if g is None else s / np.sqrt(g))
+        return self._lossy(modal_sums(self.weights, self.squares, s if g is None else s / np.sqrt(g)), g)
+
+    def at_rest(self, s: ComplexArray, g: ComplexArray | None) -> ComplexArray:
+        """Return the same where nothing has inertia, each rigid motion on a spring of :data:`RIGID`."""
+        sums = np.einsum("mrn,mn->rm", self.weights, 1.0 / np.where(self.squares == 0.0, RIGID, self.squares))
+        return self._lossy(np.repeat(sums[..., None].astype(np.complex128), s.size, axis=-1), g)
+
+    def _lossy(self, sums: ComplexArray, g: ComplexArray | None) -> ComplexArray:
+        """Return the sums over all shapes under the factor g, in place."""
         count = self.active + self.electric
         pairs, parts = np.split(sums, [count * (count + 1) // 2])
         parts = parts.reshape(-1, count, *sums.shape[1:])
@@ -286,7 +328,7 @@ class _Weights:
                 shown[place] += part
         elif g is None:
             return sums
-        return _without_rows(pairs, shown, self.active, self.electric, np.zeros_like(s) if g is None else 1.0 - g)
+        return _without_rows(pairs, shown, self.active, self.electric, np.zeros(1, np.complex128) if g is None else 1.0 - g)
 
 
 class _Fields:

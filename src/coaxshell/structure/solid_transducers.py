@@ -157,11 +157,7 @@ def by_circuits(driven: Driven, circuits: Circuits) -> Driven:
 def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
     """Return the loads and readings of the transducers of a wall."""
     if not transducers.electrodes:
-        actuator, sensor = (basis.mesh.layers[one[0]] for one in (transducers.actuators, transducers.sensors))
-        mean = actuator.weights / (actuator.radius * actuator.layer.thickness)
-        push = -transducers.push * (basis.shapes[:, :, 0, actuator.nodes] @ mean)
-        middle = 0.5 * (sensor.layer.inner + sensor.layer.outer)
-        read = -shown_by_shapes(basis, transducers.sensors[0], middle, "potential")
+        push, read = pushed_evenly(basis, transducers.actuators[0], transducers.push), read_in_middle(basis, transducers.sensors[0])
         return Driven(push[:, None], read[:, None], np.zeros((basis.orders.size, 1)))
     found = [_between_electrodes(basis.mesh.layers[number], basis.orders, basis.wavenumber) for number in transducers.driven]
     loads, readings = [], []
@@ -173,6 +169,19 @@ def driven_of(basis: OrdersBasis, transducers: Transducers) -> Driven:
         opened = number not in transducers.actuators and number not in transducers.shorted
         readings.append(-read / (layer.capacitance if opened else layer.free)[:, None])
     return Driven(np.stack(loads, axis=1), np.stack(readings, axis=1), np.stack([one.capacitance for one in found], axis=1))
+
+
+def pushed_evenly(basis: OrdersBasis, number: int, push: float) -> FloatArray:
+    """Return the force of the paper's actuator, a layer, on each shape per volt, shape (orders, shapes)."""
+    actuator = basis.mesh.layers[number]
+    mean = actuator.weights / (actuator.radius * actuator.layer.thickness)
+    return np.asarray(-push * (basis.shapes[:, :, 0, actuator.nodes] @ mean))
+
+
+def read_in_middle(basis: OrdersBasis, number: int) -> FloatArray:
+    """Return what the paper's sensor, a layer, reads per unit of each shape, V, shape (orders, shapes)."""
+    sensor = basis.mesh.layers[number].layer
+    return -shown_by_shapes(basis, number, 0.5 * (sensor.inner + sensor.outer), "potential")
 
 
 class _Electroded(NamedTuple):
@@ -314,11 +323,30 @@ def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], circ
     law : ndarray or float
         Broadcast to (orders, nodes).
     """
-    shares, _, opened, acting, sensing, listening = circuits
-    count, shape = opened.size, sums.shape[1:]
+    count, shape = circuits.opened.size, sums.shape[1:]
     moved = sums[: 2 * count].reshape(2, count, *shape) + np.moveaxis(resting[0], 0, -1)[..., None]
     read = sums[2 * count : 4 * count].reshape(count, 2, *shape)
-    answer = sums[4 * count :].reshape(count, count, *shape) + np.moveaxis(resting[1] * listening[:, None], 0, -1)[..., None]
+    at_once = np.moveaxis(resting[1] * circuits.listening[:, None], 0, -1)[..., None]
+    return loop_closed(moved, read, sums[4 * count :].reshape(count, count, *shape) + at_once, circuits, law)
+
+
+def loop_closed(moved: ComplexArray, read: ComplexArray, answer: ComplexArray, circuits: Circuits, law: ComplexArray | float) -> Loop:
+    """Return the loop from what the wall does while no voltage answers.
+
+    Parameters
+    ----------
+    moved : ndarray, shape (2, circuits, orders, nodes)
+        Inward displacement of each face per volt.
+    read : ndarray, shape (circuits, 2, orders, nodes)
+        Readings per inward load on either face.
+    answer : ndarray, shape (circuits, circuits, orders, nodes)
+        Readings per volt.
+    circuits : Circuits
+    law : ndarray or float
+        H(s), broadcast to (orders, nodes).
+    """
+    shares, _, opened, acting, sensing, _ = circuits
+    count, shape = opened.size, answer.shape[2:]
     gains = np.broadcast_to(law, shape)
     if count == 1:
         own = opened[0] + acting[0] * sensing[0] * gains

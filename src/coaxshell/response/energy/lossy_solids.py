@@ -11,7 +11,7 @@ energy of s tau/(1 + s tau) of the motion, and turns 2/tau of it per time into h
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple, Self
 
@@ -22,6 +22,7 @@ from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS
 from coaxshell.numerics.late import integrate
 from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.solid_transducers import of_circuits, open_fields, volts_of
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.structure.elastic_basis import OrdersBasis, displacements
 from coaxshell.structure.elastic_mesh import degree
@@ -29,7 +30,8 @@ from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.shell_model import WallEnergy
 from coaxshell.structure.solid_chain import WallReading
-from coaxshell.structure.solid_pieces import Piece, lossless_rows, on_faces
+from coaxshell.structure.solid_driven import PieceLoads
+from coaxshell.structure.solid_pieces import RIGID, Piece, lossless_rows, on_faces
 from coaxshell.structure.solid_potentials import Potentials
 
 MOST_POINTS = 20
@@ -61,11 +63,16 @@ def lossy_solid_energy(motion: Motion, shell: int) -> tuple[WallEnergy, FloatArr
     """Return the energies of a wall of solids in pieces and the heat in it, None without losses, at the kept instants."""
     wall = motion.problem.shells[shell]
     assert isinstance(wall, LossySolidWall)
+    volts = volts_of(motion, shell)
     forces = _forces(motion, wall, shell)
+    driven: list[_AtRest | None] = [None] * len(wall.pieces)
+    if volts is not None:
+        forces, driven = _with_voltages(motion, wall, forces, of_circuits(wall, volts))
     total = _Tally.none(motion)
-    for piece, given in zip(wall.pieces, forces, strict=True):
-        total = total.plus((_of_potentials if piece.by_potentials else _of_shapes)(motion, piece, given))
-    energy = WallEnergy(total.kinetic, total.strain, total.electric)
+    for piece, given, still in zip(wall.pieces, forces, driven, strict=True):
+        total = total.plus(_of_potentials(motion, piece, given) if piece.by_potentials else _of_shapes(motion, piece, given, still))
+    electric = total.electric if volts is None else total.electric + open_fields(motion, shell, volts)
+    energy = WallEnergy(total.kinetic, total.strain, electric)
     if not wall.dissipates:
         return energy, None
     heat = integrate.cumulative_simpson(total.power, dx=motion.grid.time_step, initial=0.0)[motion.kept]
@@ -92,6 +99,61 @@ def _forces(motion: Motion, wall: LossySolidWall, shell: int) -> ComplexArray:
     with one_blas_thread():
         map_node_blocks(node_blocks(grid, modes.max_order), work, None, "forces within walls")
     return found
+
+
+class _AtRest(NamedTuple):
+    """What pushes a piece that finds no inertia (:mod:`coaxshell.structure.solid_driven`).
+
+    Attributes
+    ----------
+    loads : sequence of PieceLoads
+        Of each part of its basis.
+    faces : ndarray, shape (4 or 6, parities, M + 1, nodes)
+        Forces on its faces.
+    volts : ndarray, shape (circuits, parities, M + 1, nodes)
+    pushed : ndarray, shape (2 or 3 + 1, parities, M + 1, nodes)
+        Of the columns of B and of its spring.
+    """
+
+    loads: Sequence[PieceLoads]
+    faces: ComplexArray
+    volts: ComplexArray
+    pushed: ComplexArray
+
+
+def _with_voltages(
+    motion: Motion, wall: LossySolidWall, forces: ComplexArray, volts: ComplexArray
+) -> tuple[ComplexArray, list[_AtRest | None]]:
+    """Return the forces on the faces of all pieces with those that voltages make, and what pushes pieces that find no inertia."""
+    assert wall.driven_pieces is not None
+    modes, along, found = motion.modes, displacements(motion.wavenumber), forces.copy()
+    driven: list[_AtRest | None] = [None] * len(wall.pieces)
+    every = wall.driven_pieces.loads(modes)
+    for number in (number for numbers in wall.driven_pieces.stacks for number in numbers):
+        pushed, loads = np.zeros((along + 1, *volts.shape[1:]), np.complex128), every[number]
+        assert loads is not None
+        driven[number] = _AtRest(loads, np.zeros_like(forces[number]), volts, pushed)
+
+    def work(block: slice) -> None:
+        answer, given = wall.answered(modes, motion.grid.nodes[block]), volts[..., block]
+        for number, each in enumerate(answer.forces):
+            for circuit, acting in enumerate(each):
+                for a, force in enumerate(acting):
+                    found[number, a, ..., block] += force * given[circuit]
+        assert wall.driven_pieces is not None
+        for numbers, stack in zip(wall.driven_pieces.stacks, answer.stacks, strict=True):
+            for place, number in enumerate(numbers):
+                still = driven[number]
+                assert still is not None
+                for circuit, pieces in enumerate(stack.forces):
+                    for a, force in enumerate(pieces[place]):
+                        still.faces[a, ..., block] += force * given[circuit]
+                columns = stack.pushed[[*range(along), along + place]]
+                still.pushed[..., block] = np.einsum("lcmk,chmk->lhmk", columns, given)
+
+    with one_blas_thread():
+        map_node_blocks(node_blocks(motion.grid, modes.max_order), work, None, "forces within walls")
+    return found, driven
 
 
 Share = ComplexArray | float
@@ -121,23 +183,28 @@ def _stores(motion: Motion, factor: Relaxation | None, whole: Callable[[Share], 
     return strain[motion.kept], power
 
 
-def _of_shapes(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally:
+def _of_shapes(motion: Motion, piece: Piece, forces: ComplexArray, still: _AtRest | None) -> _Tally:
     """Return what a piece holds by the amplitudes of its shapes."""
 
     def fields(part: OrdersBasis) -> FloatArray:
         return np.concatenate(part.electric_rows, axis=1) if piece.factor is None else lossless_rows(part)
 
     tasks = [
-        (part, place, rows, parity)
-        for part in piece.basis(motion.modes)
+        (number, part, place, rows, parity)
+        for number, part in enumerate(piece.basis(motion.modes))
         for place, rows in enumerate(fields(part))
         for parity in range(forces.shape[1])
     ]
 
-    def of_order(task: tuple[OrdersBasis, int, FloatArray, int]) -> _Tally:
-        part, place, rows, parity = task
-        order = part.members.start + place
-        amplitude = _amplitudes(motion, piece, part, place, rows, forces[:, parity, order])
+    def of_order(task: tuple[int, OrdersBasis, int, FloatArray, int]) -> _Tally:
+        number, part, place, rows, parity = task
+        order, s, squares = part.members.start + place, motion.grid.nodes, part.squares[place]
+        amplitude = _amplitudes(motion, piece, squares, s * s, rows, on_faces(part)[place].T @ forces[:, parity, order])
+        if still is not None:
+            loads = still.loads[number]
+            pushing = on_faces(part)[place].T @ still.faces[:, parity, order] + loads.volts[place].T @ still.volts[:, parity, order]
+            pushing -= np.concatenate([loads.along[place], loads.rigid[place]]).T @ still.pushed[:, parity, order]
+            amplitude = amplitude + _amplitudes(motion, piece, np.where(squares == 0.0, RIGID, squares), np.zeros_like(s), rows, pushing)
         return _of_amplitudes(motion, piece, part.squares[place], rows, amplitude, 0.5 * motion.circle[order])
 
     total = _Tally.none(motion)
@@ -147,12 +214,14 @@ def _of_shapes(motion: Motion, piece: Piece, forces: ComplexArray) -> _Tally:
     return total
 
 
-def _amplitudes(motion: Motion, piece: Piece, part: OrdersBasis, place: int, rows: FloatArray, forces: ComplexArray) -> ComplexArray:
-    """Return the amplitudes of the shapes of one order, shape (shapes, nodes), potentials without losses."""
+def _amplitudes(
+    motion: Motion, piece: Piece, squares: FloatArray, inertia: ComplexArray, rows: FloatArray, forces: ComplexArray
+) -> ComplexArray:
+    """Return the amplitudes of the shapes of one order under forces on them, shape (shapes, nodes), potentials without losses."""
     s = motion.grid.nodes
     g = np.ones_like(s) if piece.factor is None else piece.factor.at(s)
-    per_force = 1.0 / (g * part.squares[place][:, None] + s * s)
-    amplitude = per_force * (on_faces(part)[place].T @ forces)
+    per_force = 1.0 / (g * squares[:, None] + inertia)
+    amplitude = per_force * forces
     if piece.factor is None or not rows.size:
         return np.asarray(amplitude)
     lent = 1.0 - g

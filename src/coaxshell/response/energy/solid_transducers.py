@@ -7,7 +7,9 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.work import SurfaceWork
+from coaxshell.solver.spectral import node_blocks
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.lossy_solid import LossySolidWall
 from coaxshell.structure.solid_transducers import along_wall, inertia_left_out
 
 
@@ -16,12 +18,23 @@ def volts_of(motion: Motion, shell: int) -> ComplexArray | None:
     wall, solid = motion.problem.shells[shell], motion.solid
     assert isinstance(wall, ElasticWall)
     assert solid is not None
-    loop = wall.loop(motion.modes, motion.grid.nodes, fed_back=motion.voltage is None)
-    if loop is None:
+    if not wall.closes_a_loop:
         return None
-    found = np.einsum("jbmk,bhmk->jhmk", loop.volts, solid.loads[:, shell])
-    of_circuits = found if motion.voltage is None else found + loop.given[:, None] * motion.voltage[shell]
-    return np.asarray(np.tensordot(loop.shares, of_circuits, axes=1))
+    nodes, parts = motion.grid.nodes, []
+    blocks = node_blocks(motion.grid, motion.modes.max_order) if isinstance(wall, LossySolidWall) else [slice(0, nodes.size)]
+    for block in blocks:
+        loop = wall.loop(motion.modes, nodes[block], fed_back=motion.voltage is None)
+        assert loop is not None
+        found = np.einsum("jbmk,bhmk->jhmk", loop.volts, solid.loads[:, shell, ..., block])
+        of_circuits = found if motion.voltage is None else found + loop.given[:, None] * motion.voltage[shell][..., block]
+        parts.append(np.tensordot(loop.shares, of_circuits, axes=1))
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1)
+
+
+def of_circuits(wall: ElasticWall, volts: ComplexArray) -> ComplexArray:
+    """Return the voltages of the circuits of a wall from those of its driven layers, (circuits, ...)."""
+    assert wall.transducers is not None
+    return np.asarray(np.tensordot(np.linalg.pinv(wall.transducers.circuits.shares), volts, axes=1))
 
 
 def driven_at(wall: ElasticWall, motion: Motion, order: int) -> FloatArray:
@@ -37,6 +50,8 @@ def strokes(motion: Motion, shell: int, volts: ComplexArray) -> ComplexArray:
     wall, solid, s = motion.problem.shells[shell], motion.solid, motion.grid.nodes
     assert isinstance(wall, ElasticWall)
     assert solid is not None
+    if isinstance(wall, LossySolidWall):
+        return _strokes_in_pieces(motion, wall, solid.loads[:, shell], of_circuits(wall, volts))
     found, along = np.empty_like(volts), along_wall(motion.wavenumber)
     for part, driven in zip(wall.basis(motion.modes), wall.driven(motion.modes), strict=True):
         for place in range(part.orders.size):
@@ -48,6 +63,16 @@ def strokes(motion: Motion, shell: int, volts: ComplexArray) -> ComplexArray:
                 forces = pushed - part.faces[place].T @ loads
                 found[:, parity, order] = driven.loads[place] @ (forces * share)
     return found
+
+
+def _strokes_in_pieces(motion: Motion, wall: LossySolidWall, loads: ComplexArray, volts: ComplexArray) -> ComplexArray:
+    """Return the strokes of a wall in pieces under loads on its faces and voltages of its circuits."""
+    parts, grid = [], motion.grid
+    for block in node_blocks(grid, motion.modes.max_order):
+        by_loads, by_volts = wall.strokes(motion.modes, grid.nodes[block])
+        moved = np.einsum("jbmk,bhmk->jhmk", by_loads, loads[..., block])
+        parts.append(moved + np.einsum("jcmk,chmk->jhmk", by_volts, volts[..., block]))
+    return np.concatenate(parts, axis=-1)
 
 
 def solid_actuator_work(motion: Motion, shell: int) -> FloatArray:
@@ -64,7 +89,7 @@ def solid_actuator_work(motion: Motion, shell: int) -> FloatArray:
 
 def capacitances(wall: ElasticWall, motion: Motion) -> FloatArray:
     """Return C of each driven layer per radian, shape (driven, M + 1)."""
-    return np.concatenate([one.capacitance for one in wall.driven(motion.modes)]).T
+    return wall.capacitances(motion.modes)
 
 
 def open_fields(motion: Motion, shell: int, volts: ComplexArray) -> FloatArray:

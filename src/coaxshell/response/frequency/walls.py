@@ -68,6 +68,8 @@ def sensor_voltage(steady: Steady, shell: int, theta: FloatArray) -> ComplexArra
     """Return the open-circuit voltage of the sensor, V."""
     wall = steady.problem.shells[shell]
     if isinstance(wall, ElasticWall):
+        if wall.gains is not None:
+            return steady.around(_read_by_law(steady, shell, wall), theta)
         number = wall.layer_number("sensor")
         assert number is not None
         layer = wall.layers[wall.piezoelectric[number]]
@@ -99,7 +101,17 @@ def _of_motion(steady: Steady, shell: int, wall: ShellModel, gain: Gain) -> Comp
 def _demanded(steady: Steady, shell: int, wall: ShellModel) -> ComplexArray:
     """Return the modal control voltage, V."""
     assert wall.gains is not None
-    return np.asarray(wall.gains.at(steady.s, steady.system.modes) * _of_motion(steady, shell, wall, wall.sensor_gain(steady.system.modes)))
+    solid = isinstance(wall, ElasticWall)
+    read = _read_by_law(steady, shell, wall) if solid else _of_motion(steady, shell, wall, wall.sensor_gain(steady.system.modes))
+    return np.asarray(wall.gains.at(steady.s, steady.system.modes) * read)
+
+
+def _read_by_law(steady: Steady, shell: int, wall: ShellModel) -> ComplexArray:
+    """Return what the law of an elastic wall reads, the mean of its sensors, V."""
+    assert isinstance(wall, ElasticWall)
+    loop, motion = wall.loop(steady.system.modes, steady.s), steady.motion
+    assert loop is not None
+    return np.asarray(loop.sensed[0] * motion.load_inner[shell] + loop.sensed[1] * motion.load_outer[shell])
 
 
 def _within(steady: Steady, shell: int, wall: ElasticWall, what: Shown, depth: float) -> ComplexArray:

@@ -23,11 +23,11 @@ from queue import Queue
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.stats import qmc
 
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import stats
 from coaxshell.studies.gradients.sensitivity import neighbours
 from coaxshell.studies.gradients.slopes import slope_metrics
 from coaxshell.studies.optimisation.targets import Limit, Target, Targets
@@ -294,7 +294,7 @@ def search_by_gradient(tables: Tables, slopes: Slopes, start: FloatArray, starts
     shares = [[(k + 0.5) / len(one.levels) for k in range(len(one.levels))] if one.levels else [math.nan] for one in slopes.variables]
     combinations = np.array(list(product(*shares)))  # NaN where a variable is not counted
     count = starts or (STARTS if len(combinations) == 1 else 1)
-    points = qmc.LatinHypercube(start.size, rng=seed).random(count)
+    points = stats.qmc.LatinHypercube(start.size, rng=seed).random(count)
     points[0] = start
     placed = [np.where(np.isnan(one), point, one) for one in combinations for point in points]
     runners = [_Start(number, point, slopes, seed, number // count) for number, point in enumerate(placed)]

@@ -12,10 +12,10 @@ from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.stats import qmc, rankdata
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import stats
 from coaxshell.studies.optimisation.targets import energy
 
 Evaluate = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -81,7 +81,7 @@ def generation_size(method: str, setting: Setting) -> int:
 
 def _first(setting: Setting, size: int) -> FloatArray:
     """Return the base system and a Latin hypercube, shape (size, n)."""
-    points = qmc.LatinHypercube(len(setting.levels), rng=setting.seed).random(size)
+    points = stats.qmc.LatinHypercube(len(setting.levels), rng=setting.seed).random(size)
     points[0] = setting.start
     return points
 
@@ -122,7 +122,7 @@ def _cma_run(evaluate: Evaluate, setting: Setting, mean: FloatArray, size: int, 
         points = np.clip(np.array([one[0] if countable else one for one in asked]), 0.0, 1.0)
         objectives, violation = evaluate(points[:, :n])
         order = energy(objectives[:, 0], violation)
-        ranks = rankdata(order, method="min")
+        ranks = stats.rankdata(order, method="min")
         optimiser.tell([(one[1] if countable else one, float(rank)) for one, rank in zip(asked, ranks, strict=True)])
         idle, best = (0, float(order.min())) if order.min() < best else (idle + 1, best)
         if float(points[:, :n].std(axis=0).max()) < SPREAD:

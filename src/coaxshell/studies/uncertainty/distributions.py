@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-from scipy.stats import qmc
-
 from coaxshell.errors import InputError
 from coaxshell.model.system import System
 from coaxshell.model.units import DIMENSIONS, to_si
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import stats
 from coaxshell.numerics.scalars import plain
 from coaxshell.studies.uncertainty.laws import ENTRIES, Distribution, LogNormal, Normal, Uniform, check, law_of
 from coaxshell.studies.varied_fields import Field, field_of, varied
@@ -140,7 +139,7 @@ def unit_points(dimensions: int, samples: int, seed: int) -> FloatArray:
         raise InputError("samples", f"{samples!r} is not allowed", f"give a whole number from 2 to {MOST_SAMPLES}")
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError("seed", f"{seed!r} is not allowed", "give a whole number of 0 or more")
-    return qmc.Sobol(dimensions, rng=seed).random(2 ** math.ceil(math.log2(samples)))[:samples]
+    return stats.qmc.Sobol(dimensions, rng=seed).random(2 ** math.ceil(math.log2(samples)))[:samples]
 
 
 def coordinates_of(system: System, given: Mapping[str, Any], where: str) -> tuple[Coordinate, ...]:

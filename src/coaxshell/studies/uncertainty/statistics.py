@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import bootstrap, sobol_indices
 
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.late import stats
 from coaxshell.studies.uncertainty.distributions import unit_points
 
 RESAMPLES = 999
@@ -61,7 +61,7 @@ def statistics_with_intervals(values: FloatArray, confidence: float, seed: int) 
     def all_of(sample: FloatArray, axis: int = -1) -> FloatArray:
         return np.stack([one(np.moveaxis(sample, axis, -1)) for one in STATISTICS.values()])
 
-    found = bootstrap(
+    found = stats.bootstrap(
         (values,),
         all_of,
         n_resamples=RESAMPLES,
@@ -121,11 +121,11 @@ def indices_with_intervals(values: FloatArray, confidence: float, seed: int) -> 
 
     def both(chosen: npt.NDArray[np.int64]) -> FloatArray:
         at: FloatArray = values[:, chosen]
-        found: Any = sobol_indices(func={"f_A": at[None, 0], "f_B": at[None, 1], "f_AB": at[2:, None]}, n=samples)
+        found: Any = stats.sobol_indices(func={"f_A": at[None, 0], "f_B": at[None, 1], "f_AB": at[2:, None]}, n=samples)
         return np.stack([found.first_order, found.total_order])
 
     numbers = np.arange(samples)
-    ends = bootstrap(
+    ends = stats.bootstrap(
         (numbers,),
         both,
         n_resamples=RESAMPLES,
