@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import coaxshell as cx
 from coaxshell.plotting import plot_wall_stress
+from coaxshell.response.depth_bounds import bounds
 from coaxshell.response.wall_stress import WallStress, layer_peaks, of_wall, stress_through, wall_peak
+from coaxshell.structure.shell_model import Gain
 from coaxshell.studies.metrics import metrics_of, require_readable
 from coaxshell.studies.reading import MetricSource
 
@@ -68,6 +72,18 @@ def test_bounds_leave_out_no_larger_stress(absorbers, monkeypatch):
             most = np.abs(response.stress("outer", ANGLES, depth, component=component)).max(axis=-1)
             assert np.all(np.asarray(most) <= at._reach)
             assert np.all(np.abs(np.diff(np.asarray(most))) <= np.diff(at._way))
+
+
+@pytest.mark.parametrize(("stretch", "bend"), [(1.0, 0.0), (0.0, 1.0)], ids=["stretched alone", "bent alone"])
+def test_bounds_are_met_by_one_order_that_only_stretches_or_bends(stretch, bend):
+    order, drive = np.arange(6) == 4, np.sin(np.linspace(0.0, 3.0, 40))
+    w = bend * order[None, :, None] * drive
+    v = (stretch * order[None, :, None] * drive + w) / 4.0  # the membrane strain is m V - W
+    gain = Gain(np.linspace(2.0, 3.0, 6), np.linspace(-1.0, 4.0, 6))
+    found = bounds(SimpleNamespace(normal=[w], tangential=[v]), 0, [{"hoop": gain}])
+    stress = (gain.v[:, None] * v[0] + gain.w[:, None] * w[0])[4]
+    np.testing.assert_allclose(found.reach[0], np.abs(stress), rtol=1e-8, atol=1e-12)
+    np.testing.assert_allclose(found.change[0, 1:], np.abs(np.diff(stress)), rtol=1e-8, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["bare", "active"])
