@@ -34,8 +34,12 @@ SHELLS, LAYERS, ABSORBERS = STUDIO_SHELLS.value, STUDIO_LAYERS.value, STUDIO_ABS
 DESIGNS, PROJECT_BYTES = STUDIO_DESIGNS.value, STUDIO_PROJECT.value
 SOURCES, SAMPLES, STATIONS = STUDIO_SOURCES.value, STUDIO_SAMPLES.value, STUDIO_STATIONS.value
 PREVIEW, FULL = Settings(time_step=4e-3, modes=60), Settings()
-PREVIEW_SPATIAL, FULL_SPATIAL = Settings(time_step=1e-2, modes=32, dimensions=3), Settings(time_step=4e-3, modes=60, dimensions=3)
-"""In three dimensions, where the bare double shell at one station takes about 3 and 12 s of a processor."""
+PREVIEW_SPATIAL, FULL_SPATIAL = Settings(time_step=1e-2, modes=24, dimensions=3), Settings(time_step=4e-3, modes=60, dimensions=3)
+"""In three dimensions, where the bare double shell at one station takes about 1.5 and 12 s of a processor.
+
+The preview's 24 orders and axial wavenumbers leave 1.2 % of the bare stress against 48, 4 % of the hybrid system's against 40
+(relative RMS of the worse shell; peaks 0.7 %).
+"""
 ENTRIES = ("duration", "time_step", "modes", "refinement", "dimensions", "stations", "axial_modes", "axial_period")
 """Entries of a resolution that a page may choose; the engine is the spectral one, and there are no orders to be found by a tolerance."""
 PREVIEW_MODES, PREVIEW_STEPS = 100, 2_500
