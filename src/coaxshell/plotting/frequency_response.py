@@ -54,8 +54,9 @@ def figure_frequency_response(found: Mapping[str, xr.DataArray] | xr.DataArray, 
             figure = new_figure(PAGE_WIDTH, 5.0)
             axes = list(figure.subplots(2, 1, sharex=True, height_ratios=(2, 1)))
         single = all(len(list(curves_of(one))) == 1 for one in named.values())
-        for number, (dash, (name, one)) in enumerate(zip(DASHES, named.items(), strict=False)):
+        for number, (dash, (name, answer)) in enumerate(zip(DASHES, named.items(), strict=False)):
             first_colour = number if single else 0
+            one = answer.assign_attrs({**first.attrs, **answer.attrs})  # older xarray loses them where answers are added to or scaled
             plot_frequency_response(one, axes[0], name=name, dash=dash, first_colour=first_colour)
             if len(axes) == 2:
                 plot_frequency_response(one, axes[1], name=name, dash=dash, first_colour=first_colour, part="phase")
