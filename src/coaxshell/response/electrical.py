@@ -194,6 +194,8 @@ def _of_solids(motion: Motion, shell: int, wall: ElasticWall) -> tuple[ComplexAr
     volts = volts_of(motion, shell)
     assert volts is not None
     acting = np.flatnonzero(wall.transducers.acting)
+    if not acting.size:
+        return np.zeros_like(volts[0]), np.zeros_like(volts[0])
     moved, held = strokes(motion, shell, volts), capacitances(wall, motion)
     total = sum(moved[j] + held[j][:, None] * volts[j] for j in acting)
     return volts[acting[0]], np.asarray(total / wall.radius)

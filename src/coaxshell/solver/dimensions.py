@@ -88,9 +88,6 @@ def _require_ties(system: System, dimensions: int) -> None:
         require_loops_alone(system, "the sum over axial wavenumbers beside absorbers", f"use dimensions=2, leave the absorbers or {whole}")
     if solid is not None and system.absorber_list:
         require_loops_alone(system, f"shells[{solid}], an elastic wall beside absorbers,", f'use theory = "thin", or {whole}')
-    if solid is not None and ties_shells(system):
-        problem = f"the sensors of one shell drive another, which shells[{solid}], an elastic wall, does not know yet"
-        raise InputError("control.matrix", problem, 'use theory = "thin", or leave matrix out')
 
 
 def require_cubic_springs(system: System, what: str, remedy: str) -> None:

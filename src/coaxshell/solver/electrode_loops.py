@@ -23,7 +23,6 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.solver.electrode_patterns import Patterns
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.voltage_response import VoltageResponse, gains_of_wall
-from coaxshell.structure.tied_wall import TiedWall
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +110,7 @@ def shares_of(problem: Problem, shells: Sequence[int]) -> FloatArray:
     """Return by how much the actuators of each wall under control answer the reading of each, (walls, walls)."""
     found = np.eye(len(shells))
     for place, shell in enumerate(shells):
-        wall = problem.shells[shell]
-        shares = wall.shares if isinstance(wall, TiedWall) else None
+        shares = problem.shells[shell].shares
         if shares is not None:
             found[place] = [shares.get(other, 0.0) for other in shells]
     return found

@@ -16,7 +16,7 @@ from coaxshell.acoustics.images import Planes
 from coaxshell.acoustics.sources import SourceGeometry
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.fluids import Fluid
-from coaxshell.model.gains import gains_of, law_of, reads_of
+from coaxshell.model.gains import gains_of, law_of, reads_of, ties_shells
 from coaxshell.model.layers import serves
 from coaxshell.model.shells import RigidShell, Shell
 from coaxshell.model.sources import Source
@@ -195,7 +195,8 @@ class Problem:
     @property
     def tied(self) -> bool:
         """Whether feedback runs from wall to wall or from segment to segment, so that it ties walls or orders to each other."""
-        return any((isinstance(wall, TiedWall) or wall.electrode_segments is not None) and wall.gains is not None for wall in self.shells)
+        tied = (wall.shares is not None or wall.electrode_segments is not None for wall in self.shells if wall.gains is not None)
+        return any(tied)
 
     @cached_property
     def open_loop(self) -> Problem:
@@ -221,7 +222,7 @@ def dimensionless(system: System, dimensions: int = 2, settings: Settings | None
     exterior = system.exterior
     a, c, rho = system.reference_radius, exterior.sound_speed, exterior.density
     scales = Scales(length=a, time=a / c, pressure=rho * c**2)
-    shells = _reading_each_other(system, [_wall(system, i, scales, band) for i in range(len(system.shells))])
+    shells = _reading_each_other(system, [_wall(system, i, scales, band) for i in range(len(system.shells))], scales, band)
     fluids = tuple(FluidRegion(fluid.density / rho, c / fluid.sound_speed) if isinstance(fluid, Fluid) else None for fluid in system.fluids)
     heard = emitters(system, dimensions, (settings or Settings()).duration)
     sources, images = tuple(one.geometry for one in heard), tuple(one.source for one in heard[len(system.sources) :])
@@ -234,6 +235,10 @@ def _wall(system: System, index: int, scales: Scales, band: Band) -> ShellModel:
         return RigidWall(radius=shell.radius / scales.length)
     if shell.theory == "elastic":
         return _solid(system, shell, index, scales, band)
+    return _thin(system, shell, index, scales, band)
+
+
+def _thin(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ThinWall:
     gains, faces = _gains(system, index, scales.time), shell.wetted == "faces"
     thin: type[ThinWall] = ThinWall
     lossy: type[LossyWall] = LossyWall
@@ -256,23 +261,30 @@ def _cut(wall: ThinWall, system: System, index: int) -> ThinWall:
     return kind(**vars(wall), segments=segments)
 
 
-def _reading_each_other(system: System, walls: list[ShellModel]) -> tuple[ShellModel, ...]:
-    """Return the walls, those under a matrix with what their actuators answer."""
-    found = list(walls)
-    for index, wall in enumerate(walls):
+def _reading_each_other(system: System, walls: list[ShellModel], scales: Scales, band: Band) -> tuple[ShellModel, ...]:
+    """Return the walls, those under a matrix with what their actuators answer: how strongly, an elastic one tells as its thin wall."""
+    if not ties_shells(system):
+        return tuple(walls)
+    found, thin = list(walls), list(walls)
+    for index, shell in enumerate(system.shells):
+        if isinstance(shell, Shell) and shell.theory == "elastic":
+            thin[index] = _thin(system, shell.replace(theory="thin"), index, scales, band)
+    for index, wall in enumerate(thin):
         shares = reads_of(system, index)
         if shares is None:
             continue
-        assert isinstance(wall, ElectrodedWall)  # nothing else was let through (coaxshell.solver.dimensions)
+        assert isinstance(wall, ElectrodedWall)  # no other transducers have a matrix
         reads = []
-        for shell, factor in sorted(shares.items()):
-            read = walls[shell].with_gains(None)
+        for shell_, factor in sorted(shares.items()):
+            read = thin[shell_].with_gains(None)
             assert isinstance(read, ElectrodedWall)
-            reads.append(Read(shell, factor, read))
+            reads.append(Read(shell_, factor, read))
         if isinstance(wall, TiedWall):
-            found[index] = replace(wall, reads=tuple(reads))
+            tied = replace(wall, reads=tuple(reads))
         else:
-            found[index] = (LossyTiedWall if isinstance(wall, LossyElectrodedWall) else TiedWall)(**vars(wall), reads=tuple(reads))
+            tied = (LossyTiedWall if isinstance(wall, LossyElectrodedWall) else TiedWall)(**vars(wall), reads=tuple(reads))
+        solid = walls[index]
+        found[index] = replace(solid, tied_as=tied) if isinstance(solid, ElasticWall) else tied
     return tuple(found)
 
 
@@ -306,7 +318,7 @@ def _transducers(system: System, index: int, scales: Scales) -> Transducers:
     in_units = thin.in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     sensors, actuators = (tuple(i for i, layer in enumerate(shell.layers) if serves(layer.role, role)) for role in ("sensor", "actuator"))
     acting = [layer for layer in in_units.piezoelectric if serves(layer.role, "actuator")]
-    limit = min(layer.field_limit * layer.thickness for layer in acting)
+    limit = min((layer.field_limit * layer.thickness for layer in acting), default=math.inf)
     shorted = tuple(i for i, layer in enumerate(shell.layers) if layer.role == "charge-sensor")
     return Transducers(electrodes, sensors, actuators, 0.0 if electrodes else -acting[0].actuator_coupling, limit, shorted)
 

@@ -30,7 +30,7 @@ from coaxshell.structure.segments import Segments
 from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
-from coaxshell.structure.solid_inclined import InclinedPlace, inclined_answers
+from coaxshell.structure.solid_inclined import InclinedPlace, inclined_port
 from coaxshell.structure.solid_ports import Port, UnderVoltage, VoltPort, of_faces, per_volt, products, under_volts
 from coaxshell.structure.solid_transducers import (
     Driven,
@@ -44,7 +44,9 @@ from coaxshell.structure.solid_transducers import (
     driven_of,
     field_of_volts,
     loop_part,
+    loop_sizes,
 )
+from coaxshell.structure.tied_wall import TiedWall
 
 UNSTATED_FREQUENCY = 300.0
 """Up to which waves are resolved where no run has said so, radians per transit."""
@@ -86,12 +88,15 @@ class ElasticWall(ShellModel):
         Layers beside its own that decide on its mesh.
     segments : Segments or None
         Of its electrodes. Where they are cut its feedback, which ties orders to each other, is closed by the solver, not by the wall.
+    tied_as : TiedWall or None
+        The thin wall of its layers where its actuators answer other walls too; the solver closes such a loop.
     """
 
     layers: tuple[SolidLayer, ...]
     core: int
     transducers: Transducers | None = None
     segments: Segments | None = None
+    tied_as: TiedWall | None = None
     frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
     depth_read: float | None = field(default=None, compare=False)
     keeps_shapes: bool = field(default=False, compare=False)
@@ -215,12 +220,9 @@ class ElasticWall(ShellModel):
 
     def _inclined(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> tuple[FaceReceptance, ComplexArray]:
         """Return the receptances of its faces and quantities per inward load on either of them in a wave that runs along the axis."""
-        last = len(self.layers) - 1
-        faces = [InclinedPlace("normal", self.wetted[0], 0), InclinedPlace("normal", self.wetted[1], last)]
         places = [InclinedPlace(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked]
-        found = inclined_answers(self.layers, modes, s, self.frequency, [*faces, *places])
-        found *= -1.0  # an inward load q at r is a force -r q
-        return FaceReceptance(found[0, 0], found[0, 1], found[1, 1]), found[2:] * np.array(self.wetted)[:, None, None]
+        faces, found = inclined_port(self.layers, modes, s, self.frequency, places)
+        return FaceReceptance(*faces), found * np.array(self.wetted)[:, None, None]
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
@@ -235,6 +237,11 @@ class ElasticWall(ShellModel):
     def electrode_segments(self) -> Segments | None:
         """Segments of its electrodes."""
         return self.segments
+
+    @property
+    def shares(self) -> dict[int, float] | None:
+        """What its actuators answer, by the number of the wall that reads; None for their own wall alone."""
+        return None if self.tied_as is None else self.tied_as.shares
 
     def loop(self, modes: Modes, s: ComplexArray, *, fed_back: bool = True) -> Loop | None:
         """Return what its transducers do to it; None without any, or where none acts and none is open."""
@@ -274,7 +281,7 @@ class ElasticWall(ShellModel):
         return tuple(by_circuits(one, self.transducers.circuits) for one in self.driven(modes))
 
     def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
-        return 0.0 if self.gains is None or self.segments is not None else self.gains.at(s, modes)
+        return 0.0 if self.gains is None or self.segments or self.tied_as else self.gains.at(s, modes)
 
     def _under_loop(self, open_loop: FaceReceptance, loop: Loop) -> FaceReceptance:
         """Return receptances with what the transducers add to them."""
@@ -289,9 +296,8 @@ class ElasticWall(ShellModel):
 
     def _shown_per_volt(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
         """Return quantities per volt of each circuit: by the motion that it makes, in its layers by their field."""
-        parts = []
-        for part, driven in zip(self.basis(modes), self._circuits(modes), strict=True):
-            parts.append(self._per_volt(part, driven, self._shown(part, asked), asked))
+        pairs = zip(self.basis(modes), self._circuits(modes), strict=True)
+        parts = [self._per_volt(part, driven, self._shown(part, asked), asked) for part, driven in pairs]
         return per_volt(self._summed(modes, s, [rows for rows, _ in parts]), [resting for _, resting in parts])
 
     def _per_volt(self, part: OrdersBasis, driven: Driven, shown: FloatArray, asked: Sequence[Asked]) -> tuple[FloatArray, FloatArray]:
@@ -320,22 +326,19 @@ class ElasticWall(ShellModel):
         """Return the least of field limit times thickness of all actuators."""
         if self.transducers is None or field is None:
             return float("inf") if self.transducers is None else self.transducers.limit
-        return min(field * self.layers[one].thickness for one in self.transducers.actuators)
+        return min((field * self.layers[one].thickness for one in self.transducers.actuators), default=float("inf"))
 
     def feedback_frequency(self, modes: Modes) -> float:
         """Return a frequency above which feedback is less than half of its inertia, as far as orders bend and stretch along the wall."""
         if self.gains is None or self.transducers is None:
             return 0.0
-        top, size = float(self.highest_frequency(modes).max()), []
-        for part, driven in zip(self.basis(modes), self.driven(modes), strict=True):
-            along = part.squares < (1.5 * top) ** 2
-            products = np.einsum("mjn,min->mn", np.abs(driven.loads), np.abs(driven.readings))
-            size.append((products * along).sum(axis=1))
-        sizes = np.concatenate(size)
-        if self.segments is not None:  # of a pattern that of all its orders together
-            pattern = np.abs(modes.orders - self.segments.count * np.rint(modes.orders / self.segments.count))
-            sizes = (self.segments.loop_shares(modes.orders, 1) @ sizes)[pattern.astype(int)]
-        fades = self.gains.fades(sizes * np.abs(self.gains.weight(modes.orders)))
+        top = float(self.highest_frequency(modes).max())
+        if self.tied_as is not None:
+            fades = self.tied_as.feedback_frequency(modes)
+        else:
+            sizes = loop_sizes(self.basis(modes), self.driven(modes), 1.5 * top)
+            sizes = sizes if self.segments is None else self.segments.of_patterns(sizes, modes.orders)
+            fades = self.gains.fades(sizes * np.abs(self.gains.weight(modes.orders)))
         return max(fades, 1.2 * top) if fades > 0.0 else 0.0
 
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
@@ -385,9 +388,8 @@ class ElasticWall(ShellModel):
 
     def _volts_of(self, part: OrdersBasis, shown: FloatArray) -> VoltPort | None:
         """Return what voltages do to what stations read, None where no loop is closed."""
-        if not self.closes_a_loop:
+        if self.transducers is None or not self.closes_a_loop:
             return None
-        assert self.transducers is not None
         driven = by_circuits(driven_of(part, self.transducers), self.transducers.circuits)
         return VoltPort(loop_part(part, driven, self.wetted), *self._per_volt(part, driven, shown, self.asked_of_stations))
 
@@ -414,8 +416,7 @@ class ElasticWall(ShellModel):
 
     def signs_of(self, asked: Sequence[Asked]) -> FloatArray:
         """Return -1 for the potentials that ports show, in the sign of the sensor equation, else 1, shape (quantities, 1, 1, 1)."""
-        held = self._asked_potentials
-        return np.array([-1.0 if one in held else 1.0 for one in asked]).reshape(-1, 1, 1, 1)
+        return np.array([-1.0 if one in self._asked_potentials else 1.0 for one in asked]).reshape(-1, 1, 1, 1)
 
     @kept_with_modes
     def _of_port(self, modes: Modes) -> list[FloatArray]:

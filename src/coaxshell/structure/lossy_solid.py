@@ -66,7 +66,8 @@ class LossySolidWall(ElasticWall):
     def stiffest(self) -> ElasticWall:
         """The wall without losses, every layer as stiff as it ever is within the run."""
         found = ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
-        return replace(found, transducers=self.transducers, gains=self.gains, segments=self.segments, frequency=self.frequency)
+        held = {"transducers": self.transducers, "gains": self.gains, "segments": self.segments, "tied_as": self.tied_as}
+        return replace(found, **held, frequency=self.frequency)  # type: ignore[arg-type]
 
     def degree_of(self, layer: SolidLayer, order: float, wavenumber: float = 0.0) -> int:
         """Return the degree for the waves of a layer that are worth a search: with losses they die within it as they become short."""

@@ -94,6 +94,11 @@ class Segments:
         shown = numbers < modal.shape[1]
         return np.tensordot((self.patterns(parities) / own)[:, shown], modal[parity[shown], numbers[shown]], 1)
 
+    def of_patterns(self, sizes: FloatArray, orders: FloatArray) -> FloatArray:
+        """Return for each order the sum of the sizes of loops, (orders,), that its pattern goes around by."""
+        pattern = np.abs(orders - self.count * np.rint(orders / self.count))
+        return np.asarray((self.loop_shares(orders, 1) @ sizes)[pattern.astype(int)])
+
     def loop_shares(self, orders: FloatArray, parities: int) -> FloatArray:
         """Return r_m of each order in each pattern, shape (patterns, orders); no pattern moves another one."""
         return np.asarray(np.einsum("qhm,hmq->qm", self.readings(orders, parities), self.loads(orders, parities)))

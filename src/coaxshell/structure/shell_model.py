@@ -340,8 +340,7 @@ class ShellModel(ABC):
         """Return mass and damping at once: its own, and what derivative feedback adds."""
         if self.gains is None:
             return Leading(self.mass, self.damping)
-        sensed = self.sensor_gain(modes).columns.w
-        return Leading(self.mass, self.damping - self.actuator_pressure * self.gains.at_once(modes) * sensed)
+        return Leading(self.mass, self.damping - self.actuator_pressure * self.gains.at_once(modes) * self.sensor_gain(modes).columns.w)
 
     # Transducers
 
@@ -355,6 +354,11 @@ class ShellModel(ABC):
 
     def layer_number(self, role: str) -> int | None:
         """Return the number of the layer of a role among the piezoelectric layers, from the inside out; None if it has none."""
+        return None
+
+    @property
+    def shares(self) -> dict[int, float] | None:
+        """By how much its actuators answer the reading of each wall, by number; None for their own alone."""
         return None
 
     @property

@@ -253,3 +253,16 @@ def inclined_answers(
             for order in range(members.start, members.stop):
                 found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows)
     return found
+
+
+def inclined_port(
+    layers: Sequence[SolidLayer], modes: Modes, s: ComplexArray, frequency: float, places: Sequence[InclinedPlace]
+) -> tuple[tuple[ComplexArray, ComplexArray, ComplexArray], ComplexArray]:
+    """Return the receptances H_ii, H_io and H_oo of the faces of a wall, and what places show per -1 on either, (places, 2, orders, nodes).
+
+    An inward load q at r is a force -r q.
+    """
+    faces = [InclinedPlace("normal", layers[0].inner, 0), InclinedPlace("normal", layers[-1].outer, len(layers) - 1)]
+    found = inclined_answers(layers, modes, s, frequency, [*faces, *places])
+    found *= -1.0
+    return (found[0, 0], found[0, 1], found[1, 1]), found[2:]

@@ -26,6 +26,7 @@ field's hoop stress does through u_r/r, with the paper's pressure per volt, spre
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -99,7 +100,7 @@ class Transducers:
         """The share of each reading in what the control law reads: the mean of all sensors."""
         if not self.electrodes:
             return np.ones(1)
-        return np.array([float(one in self.sensors) / len(self.sensors) for one in self.driven])
+        return np.array([float(one in self.sensors) / max(1, len(self.sensors)) for one in self.driven])
 
     @property
     def circuits(self) -> Circuits:
@@ -299,6 +300,12 @@ class LoopPart(NamedTuple):
 def loop_part(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -> LoopPart:
     """Return it from the shapes of some orders and their transducers."""
     return LoopPart(loop_rows(basis, driven, wetted), at_rest(basis, -basis.faces, driven), at_rest(basis, driven.readings, driven))
+
+
+def loop_sizes(bases: Sequence[OrdersBasis], driven: Sequence[Driven], highest: float) -> FloatArray:
+    """Return the sum of |d||p| over all shapes below a frequency, shape (orders,), from all parts of a basis."""
+    products = (np.einsum("mjn,min->mn", np.abs(one.loads), np.abs(one.readings)) for one in driven)
+    return np.concatenate([(each * (basis.squares < highest**2)).sum(axis=1) for basis, each in zip(bases, products, strict=True)])
 
 
 def inertia_left_out(squares: FloatArray, s: ComplexArray, along: int) -> ComplexArray:
