@@ -193,7 +193,7 @@ LOSS_FACTORS: dict[str, tuple[float, float, str]] = {
 }
 """Least and largest loss factor of metals by themselves, and where it comes from; structures with joints lose far more."""
 
-ASHBY = "Ashby, Materials Selection in Mechanical Design, 3rd ed. (2005), Appendix C"
+ASHBY = "Ashby, Materials Selection in Mechanical Design, 3rd ed. (2005), Appendix C (typical: not checked against the book)"
 
 
 class RubberRange(NamedTuple):
