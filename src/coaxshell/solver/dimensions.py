@@ -86,8 +86,6 @@ def _require_ties(system: System, dimensions: int) -> None:
         require_loops_alone(system, found, f'use dimensions=2, shells[{solid}].theory = "thin", or {whole}')
     if dimensions == 3 and (system.absorber_list or system.point_absorbers):
         require_loops_alone(system, "the sum over axial wavenumbers beside absorbers", f"use dimensions=2, leave the absorbers or {whole}")
-    if solid is not None and system.absorber_list:
-        require_loops_alone(system, f"shells[{solid}], an elastic wall beside absorbers,", f'use theory = "thin", or {whole}')
 
 
 def require_cubic_springs(system: System, what: str, remedy: str) -> None:

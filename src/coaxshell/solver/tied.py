@@ -21,6 +21,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
+from coaxshell.solver.faced_voltages import moved_by_voltages
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import forces_at
 from coaxshell.solver.interface.march import MarchResult
@@ -29,7 +30,7 @@ from coaxshell.solver.links.histories import LawHistories, middles_transform
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
-from coaxshell.solver.tied_points import StructureOfTies, fed_back
+from coaxshell.solver.tied_points import StructureOfTies, faced_receptance, fed_back, surfaces_moved
 from coaxshell.solver.voltage_response import VoltageResponse, driven, of_all, read_of, response_of
 
 _BLOCK_BYTES = 32 * 1024 * 1024
@@ -74,7 +75,15 @@ class TiedLoops:
         free = Moved(bare.normal, bare.tangential, bare.solid) if pressure is None else bare.forced_spectra(pressure)
         found = self.loops.voltages(self.patterns.readings(read_of(self.structure, free)))
         voltage: ComplexArray = of_all(self.structure.problem, self.response, self.patterns.in_orders(found))
-        return driven(self.structure, self.response, voltage, pressure), voltage, found
+        return self._driven(free, voltage, pressure), voltage, found
+
+    def _driven(self, free: Moved, voltage: ComplexArray, pressure: ComplexArray | None) -> Moved:
+        """Return the motion without voltages, *free*, and that by voltages in orders together."""
+        if free.solid is None:
+            return driven(self.structure, self.response, voltage, pressure)
+        bare = self.structure.open_loop
+        whole = free.solid.plus(moved_by_voltages(bare.problem, bare.grid, bare.modes, voltage))
+        return Moved(whole.normal, whole.tangential, whole)
 
     def on_segments(self, found: ComplexArray) -> FloatArray | None:
         """Return the voltages of the segments of all shells, V, (shells, N, T), from those of patterns; None where nothing is cut."""
@@ -136,12 +145,17 @@ def _transform(structure: StructureSpectra, result: MarchResult) -> ComplexArray
 def _linear(loops: TiedLoops, absorbers: AbsorberSet, points: InterfacePoints, alone: Moved) -> tuple[ComplexArray, ComplexArray]:
     """Return the transforms of the forces and of the masses' displacements of linear absorbers, exact up to the modal truncation."""
     bare, nodes = loops.structure.open_loop, loops.structure.grid.nodes
-    excited = points.evaluate(alone.normal)
+    excited = points.evaluate(surfaces_moved(bare.problem, alone))
     force, mass = np.empty_like(excited), np.empty_like(excited[: absorbers.count])
-    back = fed_back(loops.structure, points, loops.patterns, nodes, bare.compliance, bare.tangential_ratio)
+    if bare.problem.two_faced:
+        back = faced_receptance(loops.structure.problem, bare.problem, bare.modes, points, loops.patterns, nodes)
+    else:
+        back = fed_back(loops.structure, points, loops.patterns, nodes, bare.compliance, bare.tangential_ratio)
     width = max(4, _BLOCK_BYTES // (16 * points.count**2))
     for start in range(0, nodes.size, width):
         some = slice(start, start + width)
-        receptance = points.receptance(bare.compliance[..., some]) + np.moveaxis(back[..., some], -1, 0)
+        receptance = np.moveaxis(back[..., some], -1, 0)
+        if not bare.problem.two_faced:
+            receptance = points.receptance(bare.compliance[..., some]) + receptance
         force[:, some], mass[:, some] = forces_at(absorbers, nodes[some], receptance, excited[:, some])
     return force, mass
