@@ -29,6 +29,7 @@ from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall
 from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.segments import Segments
+from coaxshell.structure.solid_charges import free_capacity
 
 
 class Electrical(NamedTuple):
@@ -76,9 +77,26 @@ def electrical(motion: WallMotion, shell: int) -> Electrical:
 def of_segments(motion: WallMotion, shell: int) -> OfSegments | None:
     """Return what the segments of a wall hold and take, made once; None where its electrodes are whole."""
     wall = motion.solution.problem.shells[shell]
+    if isinstance(wall, ElasticWall) and wall.gains is not None and wall.segments is not None:
+        cut = wall.segments
+        return motion.kept(("segments", shell), lambda: _segments_of_solids(motion, shell, wall, cut))
     if not isinstance(wall, SegmentedWall) or wall.gains is None:
         return None
     return motion.kept(("segments", shell), lambda: _of_segments(motion, shell, wall))
+
+
+def _segments_of_solids(motion: WallMotion, shell: int, wall: ElasticWall, cut: Segments) -> OfSegments:
+    """Return what the segments of an elastic wall hold and take.
+
+    Orders end at M, and the voltage of a segment does not: what it puts in at once is that of the segment, the rest that of its orders.
+    """
+    whole, at_once = _whole(motion), free_capacity(wall)
+    volts, charge = _of_solids(whole, shell, wall)
+    voltage = cut.values(volts)
+    charge = cut.means(charge - at_once * volts) + at_once * voltage
+    voltage[list(cut.dead)] = 0.0
+    metres = 2.0 * np.pi * wall.radius * cut.covered / cut.count * motion.solution.problem.scales.length
+    return OfSegments(cut, metres, *_inverted(motion, whole, voltage, charge))
 
 
 def _of_segments(motion: WallMotion, shell: int, wall: SegmentedWall) -> OfSegments:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, limits_currents, limits_voltages, segments_of, ties_shells
+from coaxshell.model.gains import law_of, limits_voltages, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -36,11 +36,6 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if a system has electrodes or elastic walls under what is not known of them."""
     _require_ties(system, dimensions)
     _require_linear_electrodes(system)
-    solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
-    if solid is not None and limits_currents(system):
-        problem = f"the current into shells[{solid}], an elastic wall, has no limit that is marched yet"
-        remedy = f'leave it out and compare current and limit, or shells[{solid}].theory = "thin"'
-        raise InputError("control.current_saturation", problem, remedy)
     inclined = next((i for i, source in enumerate(system.sources) if getattr(source, "inclination", 0.0)), None)
     if dimensions == 3 and inclined is not None:
         where = f"source[{inclined}]" if isinstance(system.source, tuple) else "source"

@@ -10,12 +10,15 @@ The lack delta = u - a = beta - alpha acts as that of voltages does (:mod:`coaxs
 
     alpha = alpha_0 + K * delta,      K = T - 1 + Q T/C,      T = (1 - H K C)^-1,
 
-Q the charge of strain per volt. Each step is one of limited voltages whose limits move with beta.
+Q the charge of strain per volt. Each step is one of limited voltages whose limits move with beta. Any C serves that is about what a volt
+puts in at once, all else belongs to m and Q: of walls of elastic solids it is that of a free thickness in order 0, so that Q holds what
+orders differ in and what holds the thickness.
 """
 
 from __future__ import annotations
 
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,25 +33,24 @@ from coaxshell.solver.actuation import voltage_asked
 from coaxshell.solver.electrode_loops import ElectrodeLoops, times
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.electrodes import segment_length, segment_mean
+from coaxshell.solver.faced_charges import charge_in_motion, charge_of, per_volt, per_volt_of_grid
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.limited_voltages import LimitedMarch, at_points, driven_alone, inverted_weights, require_fine
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
-from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_without, response_of
-from coaxshell.structure.shell_model import Gain, ShellModel
-
-
-def charge_of(wall: ShellModel, modes: Modes) -> Gain:
-    """Return m, the charge per area of all actuators of a wall per unit (V, W)."""
-    moved = [one for one, _ in wall.charges(modes)]
-    zero = np.zeros_like(modes.orders)
-    return Gain(sum((one.v for one in moved), zero), sum((one.w for one in moved), zero))
+from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.shell_model import ShellModel
+from coaxshell.structure.solid_charges import free_capacity
 
 
 def capacities(problem: Problem) -> FloatArray:
     """Return C of each wall under control, charge per area and volt; 1 of one without actuators, whose voltage is 0."""
-    found = [sum(held for _, held in problem.shells[i].charges(Modes.up_to(0))) for i in controlled(problem)]
+    found = []
+    for wall in (problem.shells[i] for i in controlled(problem)):
+        solid = free_capacity(wall) if isinstance(wall, ElasticWall) else None
+        found.append(sum(held for _, held in wall.charges(Modes.up_to(0))) if solid is None else solid)
     return np.array([one or 1.0 for one in found])
 
 
@@ -63,15 +65,21 @@ def largest_steps(problem: Problem, step: float) -> FloatArray:
     return np.array(found)
 
 
+def _acts(wall: ShellModel) -> bool:
+    """Return whether a wall has actuators whose charge is known."""
+    return bool(wall.transducers and wall.transducers.actuators) if isinstance(wall, ElasticWall) else bool(wall.charges(Modes.up_to(0)))
+
+
 def warnings_of(solved: SolvedSpectra) -> list[str]:
-    """Return the warnings about amplifiers asked for more than their current, means over a segment; of thin walls."""
+    """Return the warnings about amplifiers asked for more than their current, means over a segment."""
     problem, found = solved.problem, []
     for i in controlled(problem):
         law, wall = law_of(problem.system, i), problem.shells[i]
-        if law is None or law.current_limit is None or problem.two_faced or not wall.charges(Modes.up_to(0)):
+        if law is None or law.current_limit is None or not _acts(wall):
             continue
-        volts, gain = voltage_asked(solved)[i], charge_of(wall, solved.modes).columns
-        charge = gain.v * solved.tangential[i] + gain.w * solved.normal[i] + sum(held for _, held in wall.charges(solved.modes)) * volts
+        volts = voltage_asked(solved)[i]
+        moved = Moved(solved.normal, solved.tangential, solved.solid)
+        charge = charge_in_motion(solved.structure.open_loop.problem.shells[i], i, moved, solved.modes, solved.grid, volts)
         length = segment_length(problem, i)
         share = segment_mean(solved.modes.orders, length / problem.system.shells[i].radius)[:, None]
         peak = peak_on_circle(solved.grid.invert(share * charge * solved.grid.nodes))
@@ -89,12 +97,53 @@ def warnings_of(solved: SolvedSpectra) -> list[str]:
     return found
 
 
+class _Answers(NamedTuple):
+    """What walls under control read and hold: per volt, m as without C, and under the sources alone.
+
+    Attributes
+    ----------
+    response : VoltageResponse
+    charge : ndarray, shape (controlled, controlled, orders, nodes)
+        Q.
+    read, held : ndarray, shape (controlled, parities, orders, nodes)
+        Volts and charge without voltages.
+    """
+
+    response: VoltageResponse
+    charge: ComplexArray
+    read: ComplexArray
+    held: ComplexArray
+
+    @classmethod
+    def of(cls, structure: StructureSpectra) -> _Answers:
+        """Return it at the orders and nodes of a run."""
+        read, bare = read_without(structure), structure.open_loop
+        if bare.solid is None:
+            by_volts = response_of(structure, charge_of).read
+            return cls(response_of(structure), by_volts, read, read_without(structure, charge_of))
+        problem, shells = bare.problem, controlled(structure.problem)
+        found = per_volt_of_grid(problem, shells, bare.modes, bare.grid)
+        held = np.stack([charge_in_motion(problem.shells[i], i, bare.solid, bare.modes, bare.grid) for i in shells])
+        return cls(VoltageResponse.of_faces(shells, found.read), _strained(structure.problem, found.charge), read, held)
+
+
+def _strained(problem: Problem, charge: ComplexArray) -> ComplexArray:
+    """Return Q from the whole charge per volt, less C."""
+    own = np.einsum("ij,j->ij", np.eye(len(charge)), capacities(problem))
+    return np.asarray(charge - own[..., None, None])
+
+
 def _kernel(structure: StructureSpectra, patterns: Patterns, s: ComplexArray) -> ComplexArray:
     """Return K at some nodes, (walls, walls, patterns, nodes)."""
     problem, modes = structure.problem, structure.modes
-    answers = partial(VoltageResponse.at, problem.open_loop, problem, modes, s)
-    inverse = ElectrodeLoops.of(problem, answers(), patterns, s).inverse
-    strained = np.moveaxis(patterns.responses(answers(charge_of).read), (0, 1), (2, 3)) / capacities(problem)[:, None]
+    if problem.two_faced:
+        both = per_volt(problem.open_loop, controlled(problem), modes, s)
+        response, charge = VoltageResponse.of_faces(controlled(problem), both.read), _strained(problem, both.charge)
+    else:
+        answers = partial(VoltageResponse.at, problem.open_loop, problem, modes, s)
+        response, charge = answers(), answers(charge_of).read
+    inverse = ElectrodeLoops.of(problem, response, patterns, s).inverse
+    strained = np.moveaxis(patterns.responses(charge), (0, 1), (2, 3)) / capacities(problem)[:, None]
     return np.asarray(np.moveaxis(inverse - np.eye(inverse.shape[-1]) + strained @ inverse, (2, 3), (0, 1)))
 
 
@@ -107,18 +156,17 @@ def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, 
         If feedback is so strong within a step that its limit cannot be found.
     """
     problem, grid = structure.problem, structure.grid
-    response, without = response_of(structure), read_without(structure)
-    patterns = patterns_of(problem, response.shells, structure.modes.orders, without.shape[1])
+    answers = _Answers.of(structure)
+    response = answers.response
+    patterns = patterns_of(problem, response.shells, structure.modes.orders, answers.read.shape[1])
     loops = ElectrodeLoops.of(problem, response, patterns, grid.nodes)
-    held = capacities(problem)[:, None, None]
-    strained = patterns.responses(response_of(structure, charge_of).read)
+    held, strained = capacities(problem)[:, None, None], patterns.responses(answers.charge)
 
     def charged(voltage: ComplexArray, moved: ComplexArray | float = 0.0) -> ComplexArray:
         """Return u + m/C under voltages, and under sources where their charge is given."""
         return np.asarray(voltage + (moved + np.einsum("ijqk,jqk->iqk", strained, voltage)) / held)
 
-    free = loops.asked(patterns.readings(without))
-    sources = patterns.readings(read_without(structure, charge_of))
+    free, sources = loops.asked(patterns.readings(answers.read)), patterns.readings(answers.held)
     linear = grid.invert(charged(free, sources))
     limits = largest_steps(problem, grid.time_step)[:, None] * np.ones(len(patterns.evaluate))
     steps = np.abs(np.diff(at_points(patterns, linear), axis=-1, prepend=0.0))
