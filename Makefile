@@ -43,7 +43,7 @@ endef
 $(STAMP): pyproject.toml
 	$(ENVIRONMENT)
 	@echo "installing coaxshell with the tools of its development into $(VENV): once, one to three minutes as the network goes"
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev]'
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input --no-compile -e '.[dev]'
 	@touch $@
 
 # The demonstration needs no more than its runs and its film, and imports a third of what they bring: that is compiled then.
@@ -116,7 +116,7 @@ bench: $(STAMP)
 
 $(STAMP_DOCS): $(STAMP)
 	@echo "installing what builds the documentation into $(VENV): once, about half a minute as the network goes"
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input -e '.[dev,docs]'
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-input --no-compile -e '.[dev,docs]'
 	@touch $@
 
 # A warning is an error, and nothing is fetched: the checks read the pages that came out.
