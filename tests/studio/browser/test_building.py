@@ -165,7 +165,7 @@ def test_absorbers_are_dragged_and_moved_by_keys(linked_page):
     page.keyboard.press("ArrowDown")  # the source comes after them
     page.keyboard.press("ArrowLeft")
     until(page, f"{SYSTEM}.source.angle === -1")
-    page.locator('details[data-group="shells"] > summary').press("Enter")
+    page.locator('details[data-group="shells"]').evaluate("box => { box.open = true; }")
     page.get_by_role("button", name="Add shell").press("Enter")
     until(page, f"{SYSTEM}.shells.length === 3")
     between = page.locator('select[data-path="absorbers[0].inner_shell"]')

@@ -14,9 +14,9 @@ const KEPT = "coaxshell-designs", HUES = 7, DASHES = ["solid", "dash", "dot"], M
 const parts = {};
 let designs = [], world = {}, busy = false, work = null, inFull = false, reference = 0, quantity = "stress", place = "", revision = 0;
 
-// `page` gives what main.js holds; `previewOf` a coarse resolution; `open` puts a description into the form.
-export function setUp(page, { previewOf, open, unit }) {
-  world = { page, previewOf, open, unit };
+// `page` gives what main.js holds; `previewOf` a coarse resolution; `open` puts a description into the form; `kept` is told of every change.
+export function setUp(page, { previewOf, open, unit, kept }) {
+  world = { page, previewOf, open, unit, kept };
   readUnits(page().world.schema);
   const button = (text, onclick, more = {}) => el("button", { type: "button", onclick, ...more }, text);
   Object.assign(parts, {
@@ -63,6 +63,7 @@ function freeName(base) {
 function changed() {
   try { sessionStorage.setItem(KEPT, JSON.stringify(designs.map(({ name, system, resolution }) => ({ name, system, resolution })))); } catch { /* too large to be kept over a reload */ }
   draw();
+  world.kept();
 }
 
 // ---- the project file

@@ -420,7 +420,7 @@ function wire() {
   addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "a link", "/api/link/open"));
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
-  designs.setUp(() => page, { previewOf, open, unit: () => page.unit });
+  designs.setUp(() => page, { previewOf, open, unit: () => page.unit, kept: guide.look });
   wave.setUp(curves.cursor);
   wall.setUp(curves.cursor);
   for (const panel of PANELS) panel.setUp();
