@@ -129,6 +129,22 @@ FEEDBACK = (
         "solver/test_limited_currents.py",
     ),
     Mutation(
+        "charge-at-rest-of-solids",
+        "structure/solid_charges.py",
+        "return whole[:2], whole[2:] + np.concatenate(resting).T[..., None]",
+        "return whole[:2], whole[2:]",
+        "what a voltage moves through the thickness at once holds charge too",
+        "solver/test_exact_currents.py",
+    ),
+    Mutation(
+        "charge-of-loads-on-solids",
+        "solver/faced_charges.py",
+        "held.per_load[0] * answer.faces.load_inner + held",
+        "held.per_load[0] * answer.faces.load_inner - held",
+        "loads on both faces of a solid wall make charge",
+        "solver/test_exact_currents.py",
+    ),
+    Mutation(
         "sign-of-a-bridge",
         "model/feedback.py",
         "tuple(b - through * a for",

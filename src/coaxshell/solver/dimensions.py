@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, limits_voltages, segments_of, ties_shells
+from coaxshell.model.gains import law_of, limits_currents, limits_voltages, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -57,6 +57,9 @@ def _require_plain_solids(system: System, where: str) -> None:
 def _require_linear_electrodes(system: System) -> None:
     """Raise InputError if feedback by electrodes, by any law but PD, or of elastic walls is to saturate beside absorbers."""
     if limits_voltages(system) and system.absorber_list:
+        if limits_currents(system):
+            remedy = "leave the absorbers out, or use current_saturation = false and compare current and limit"
+            raise InputError("control.current_saturation", "beside absorbers no limit of the current is marched yet", remedy)
         problem = "beside absorbers no limit of the voltage is marched yet but that of PDControl with the paper's transducers on thin walls"
         raise InputError("control.saturation", problem, "leave the absorbers out, or use saturation = false and compare voltage and limit")
 
