@@ -179,7 +179,5 @@ def test_an_unstable_loop_is_refused() -> None:
 
 def test_what_is_not_known_is_refused() -> None:
     limited = system("paper", control=GAINS["paper"].replace(saturation=True))
-    ring = cx.absorber_ring(3, mass=20, damping=1e5, linear_stiffness=1e9, cubic_stiffness=1e20, footprint=0.2)
-    for changed, dimensions, message in ((limited, 3, "in two dimensions alone"), (limited.replace(absorbers=ring), 2, "beside absorbers")):
-        with pytest.raises(cx.InputError, match=rf"control\.saturation: .*{message}"):
-            cx.simulate(changed, duration=0.5, time_step=2e-2, modes=4, dimensions=dimensions)
+    with pytest.raises(cx.InputError, match=r"control\.saturation: .*in two dimensions alone"):
+        cx.simulate(limited, duration=0.5, time_step=2e-2, modes=4, dimensions=3)

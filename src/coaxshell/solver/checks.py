@@ -308,7 +308,7 @@ def sea(problem: Problem, duration: float) -> list[str]:
 
 def thin_walls(problem: Problem, duration: float) -> list[str]:
     """Return a warning for each thin wall that is far from an exact one in a run of *duration* transits."""
-    system, found = problem.system, []
+    found = []
     for error in thin_errors(problem, duration):
         if error.value <= THIN_LIMIT:
             continue
@@ -316,8 +316,7 @@ def thin_walls(problem: Problem, duration: float) -> list[str]:
             f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, error.at_faces, THIN_LIMIT)
         )
         remedies = [f'wetted = "faces" (about {faces} %)'] if error.at_faces < FACES_HELP * error.value else []
-        alone = saturates(system) and system.absorber_list
-        remedies.append('theory = "elastic"' + (", which marches saturation without absorbers, to see by how much" if alone else ""))
+        remedies.append('theory = "elastic"')
         where = "faces" if error.wetted == "faces" else "mid-surface"
         found.append(
             f"{shell_phrase(error.shell, len(problem.shells))}: thin-wall theory with fluids at its {where} leaves its hoop stress about "

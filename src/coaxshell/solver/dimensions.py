@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, limits_currents, limits_voltages, segments_of, ties_shells
+from coaxshell.model.gains import law_of, limits_currents, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -35,7 +35,7 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if a system has electrodes or elastic walls under what is not known of them."""
     _require_ties(system, dimensions)
-    _require_linear_electrodes(system)
+    _require_free_currents(system)
     inclined = next((i for i, source in enumerate(system.sources) if getattr(source, "inclination", 0.0)), None)
     if dimensions == 3 and inclined is not None:
         where = f"source[{inclined}]" if isinstance(system.source, tuple) else "source"
@@ -54,14 +54,11 @@ def _require_plain_solids(system: System, where: str) -> None:
             raise InputError(where, problem, f'use inclination = 0, or shells[{i}].theory = "thin"')
 
 
-def _require_linear_electrodes(system: System) -> None:
-    """Raise InputError if feedback by electrodes, by any law but PD, or of elastic walls is to saturate beside absorbers."""
-    if limits_voltages(system) and system.absorber_list:
-        if limits_currents(system):
-            remedy = "leave the absorbers out, or use current_saturation = false and compare current and limit"
-            raise InputError("control.current_saturation", "beside absorbers no limit of the current is marched yet", remedy)
-        problem = "beside absorbers no limit of the voltage is marched yet but that of PDControl with the paper's transducers on thin walls"
-        raise InputError("control.saturation", problem, "leave the absorbers out, or use saturation = false and compare voltage and limit")
+def _require_free_currents(system: System) -> None:
+    """Raise InputError if currents of electrodes are to stop at a limit beside absorbers."""
+    if limits_currents(system) and system.absorber_list:
+        remedy = "leave the absorbers out, or use current_saturation = false and compare current and limit"
+        raise InputError("control.current_saturation", "beside absorbers no limit of the current is marched yet", remedy)
 
 
 def require_loops_alone(system: System, what: str, remedy: str) -> None:

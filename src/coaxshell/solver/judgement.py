@@ -46,7 +46,8 @@ def _judgement(solution: ModalSolution, solved: SolvedSpectra, asked_for: Settin
     spectra, histories = (solved.normal, solved.tangential), (solution.normal, solution.tangential)
     errors = estimates.estimated_errors(solved.passive, spectra, histories, settings.time_step, interface)
     if solved.defect is not None:
-        errors = replace(errors, march=estimates.march_defect(solved.grid, solved.defect, histories, settings.time_step))
+        defect = estimates.march_defect(solved.grid, solved.defect, histories, settings.time_step)
+        errors = replace(errors, march=errors.march + defect)  # of the links' march, where they were marched, and of the limits'
     stopwatch.lap("error estimates")
     warnings = [*structure.notes, *checks.absorbers(solved, settings.refinement), *checks.before(problem, solved.grid, order)]
     warnings += tolerance_missed(asked_for, order, errors, saturating=saturates(problem.system))

@@ -154,7 +154,7 @@ def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress:
         patterns.readings(without),
         limits_of(problem, patterns),
     )
-    if not _beyond(at_points(patterns, grid.invert(loops.voltages(read))), limits).any():
+    if not beyond(at_points(patterns, grid.invert(loops.voltages(read))), limits).any():
         return None
     march = LimitedMarch(patterns, limits, step_weights(structure, patterns))
     require_fine(grid, march.weights)
@@ -188,7 +188,7 @@ def at_points(patterns: Patterns, voltage: FloatArray) -> FloatArray:
     return found
 
 
-def _beyond(volts: FloatArray, limits: FloatArray) -> FloatArray:
+def beyond(volts: FloatArray, limits: FloatArray) -> FloatArray:
     """Return by how much voltages exceed limits, 0 where they do not; rounding, as of dead segments, does not count."""
     over = np.abs(volts) - limits[..., None]
     return np.where(over > 1e-9 * max(float(limits.max()), float(np.abs(volts).max())), over, 0.0)

@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
+from coaxshell.model.gains import limits_voltages
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.actuation import pressure_given, saturated
@@ -48,7 +49,8 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
     kept, refinement = solution.spectra, solution.settings.refinement
     structure = _structure(solution) if kept is None else kept.structure
     links, actuation = _links(solution), pressure_given(solution)
-    if refinement == 1 and (actuation is not None or not links.is_linear) and not links.of_any_law:
+    limited = limits_voltages(structure.problem.system)  # forces and voltages depend on each other: both again
+    if not limited and refinement == 1 and (actuation is not None or not links.is_linear) and not links.of_any_law:
         force, displacement = solution.absorber_force, solution.absorber_displacement
         if force is None or displacement is None:
             force, displacement = np.zeros((0, 2, solution.time.size)), np.zeros((0, solution.time.size))
@@ -58,7 +60,7 @@ def spectra_of(solution: ModalSolution, *, continued: bool = False) -> SolvedSpe
         if links.count or actuation is not None:
             require_room(structure.problem, solution.settings)  # a saved run may come from a larger machine
         kept = reflected(structure, lambda one: solve_linked(one, links, saturate=actuation is not None))
-    if continued and kept.marched and (kept.voltage is None or links.count):
+    if continued and kept.marched and kept.asked is None and (kept.voltage is None or links.count):
         return _of_forces(kept.structure, links, kept.force, kept.displacement, kept.actuation, continued, kept.laws)
     return kept
 

@@ -30,7 +30,7 @@ from coaxshell.solver.links.histories import LawHistories, middles_transform
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
-from coaxshell.solver.tied_points import StructureOfTies, faced_receptance, fed_back, surfaces_moved
+from coaxshell.solver.tied_points import StructureOfTies, surfaces_moved, whole_receptance
 from coaxshell.solver.voltage_response import VoltageResponse, driven, of_all, read_of, response_of
 
 _BLOCK_BYTES = 32 * 1024 * 1024
@@ -75,9 +75,9 @@ class TiedLoops:
         free = Moved(bare.normal, bare.tangential, bare.solid) if pressure is None else bare.forced_spectra(pressure)
         found = self.loops.voltages(self.patterns.readings(read_of(self.structure, free)))
         voltage: ComplexArray = of_all(self.structure.problem, self.response, self.patterns.in_orders(found))
-        return self._driven(free, voltage, pressure), voltage, found
+        return self.moved(free, voltage, pressure), voltage, found
 
-    def _driven(self, free: Moved, voltage: ComplexArray, pressure: ComplexArray | None) -> Moved:
+    def moved(self, free: Moved, voltage: ComplexArray, pressure: ComplexArray | None) -> Moved:
         """Return the motion without voltages, *free*, and that by voltages in orders together."""
         if free.solid is None:
             return driven(self.structure, self.response, voltage, pressure)
@@ -147,15 +147,10 @@ def _linear(loops: TiedLoops, absorbers: AbsorberSet, points: InterfacePoints, a
     bare, nodes = loops.structure.open_loop, loops.structure.grid.nodes
     excited = points.evaluate(surfaces_moved(bare.problem, alone))
     force, mass = np.empty_like(excited), np.empty_like(excited[: absorbers.count])
-    if bare.problem.two_faced:
-        back = faced_receptance(loops.structure.problem, bare.problem, bare.modes, points, loops.patterns, nodes)
-    else:
-        back = fed_back(loops.structure, points, loops.patterns, nodes, bare.compliance, bare.tangential_ratio)
+    whole = whole_receptance(loops.structure, points, loops.patterns)
     width = max(4, _BLOCK_BYTES // (16 * points.count**2))
     for start in range(0, nodes.size, width):
         some = slice(start, start + width)
-        receptance = np.moveaxis(back[..., some], -1, 0)
-        if not bare.problem.two_faced:
-            receptance = points.receptance(bare.compliance[..., some]) + receptance
+        receptance = np.moveaxis(whole[..., some], -1, 0)
         force[:, some], mass[:, some] = forces_at(absorbers, nodes[some], receptance, excited[:, some])
     return force, mass

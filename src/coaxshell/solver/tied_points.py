@@ -61,8 +61,14 @@ class StructureOfTies(StructureOfPoints):
 
     @cached_property
     def _motion(self) -> tuple[FloatArray, FloatArray]:
-        moved = self.of_orders.evaluate(surfaces_moved(self.problem, self._alone))
+        return self._histories(self.of_orders.evaluate(surfaces_moved(self.problem, self._alone)))
+
+    def _histories(self, moved: ComplexArray) -> tuple[FloatArray, FloatArray]:
         return self.grid.invert(moved), self.grid.invert(moved * self.grid.nodes)
+
+    def stand(self, moved: ComplexArray) -> None:
+        """Let the points move otherwise without absorbers, transforms (points, nodes)."""
+        self._motion = self._histories(moved)
 
     @cached_property
     def kernels(self) -> KernelTable:
@@ -105,6 +111,19 @@ class StructureOfTies(StructureOfPoints):
 def surfaces_moved(problem: Problem, moved: Moved) -> ComplexArray:
     """Return the displacements of the surfaces in a motion, (surfaces, parities, M + 1, nodes)."""
     return moved.normal if moved.solid is None else surface_motion(problem, moved.normal, moved.solid.faces)
+
+
+def whole_receptance(structure: StructureSpectra, points: InterfacePoints, patterns: Patterns) -> ComplexArray:
+    """Return the receptance of points with feedback at the nodes of a run, (points, points, nodes)."""
+    bare, nodes = structure.open_loop, structure.grid.nodes
+    if bare.problem.two_faced:
+        return faced_receptance(structure.problem, bare.problem, bare.modes, points, patterns, nodes)
+    found = fed_back(structure, points, patterns, nodes, bare.compliance, bare.tangential_ratio)
+    width = max(8, _BYTES // (16 * points.count**2))
+    for start in range(0, nodes.size, width):
+        some = slice(start, start + width)
+        found[..., some] += np.moveaxis(points.receptance(bare.compliance[..., some]), 0, -1)
+    return found
 
 
 def faced_receptance(

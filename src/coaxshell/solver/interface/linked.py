@@ -14,6 +14,7 @@ from coaxshell.solver.interface.linear import solve_linear
 from coaxshell.solver.interface.linear_ring import is_ring, solve_ring
 from coaxshell.solver.interface.march import MarchResult
 from coaxshell.solver.interface.seen import as_seen
+from coaxshell.solver.limited_absorbers import solve_limited_beside
 from coaxshell.solver.limited_currents import solve_limited_currents
 from coaxshell.solver.limited_voltages import solve_limited
 from coaxshell.solver.links.any_law import march_interface
@@ -40,7 +41,8 @@ def solve_linked(
     """
     grid = structure.grid
     if limits_voltages(structure.problem.system):
-        limit = solve_limited_currents if limits_currents(structure.problem.system) else solve_limited
+        voltages = solve_limited_beside if absorbers.count else solve_limited
+        limit = solve_limited_currents if limits_currents(structure.problem.system) else voltages
         limited = limit(structure, absorbers, progress)
         if limited is not None:
             return limited
@@ -115,7 +117,8 @@ def interface_of(solved: SolvedSpectra, normal: FloatArray, kept: slice, asked: 
     force = force.reshape(2 * absorbers.count, solved.grid.time.size)
     saturating = None if solved.actuation is None else solved.structure
     linear = None if solved.laws is None else solved.laws.linear
-    return Interface(absorbers, force, stretch, solved.actuation, solved.marched, saturating, asked, linear, solved.seen)
+    marched = solved.marched and solved.exact is None
+    return Interface(absorbers, force, stretch, solved.actuation, marched, saturating, asked, linear, solved.seen)
 
 
 def _representatives(absorbers: AbsorberSet) -> npt.NDArray[np.int64]:
