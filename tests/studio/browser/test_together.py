@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from page_reading import PATIENCE, open_preset, rest, run_of, solved, system_of, until, without_drawing
 
 import coaxshell as cx
-from coaxshell.apps.studio.links import fragment
+from coaxshell.apps.studio.links import fragment, opened
 
 
 @pytest.mark.slow
@@ -86,16 +86,23 @@ def small_page(linked_page):
     return linked_page()
 
 
+def address_of(page, preset):
+    """Wait until the address holds a preset, which it does half a second after the form, and return its fragment."""
+    end = time.monotonic() + PATIENCE
+    while opened(link := page.evaluate("location.hash"))["system"]["name"] != preset:
+        assert time.monotonic() < end, f"the address does not come to hold {preset}"
+        page.wait_for_timeout(50)
+    return link
+
+
 def test_a_link_holds_the_whole_system(server, small_page):
     page = small_page
-    link = page.evaluate("location.hash")
-    for preset, without in (("active", "!=="), ("bare", "===")):  # the address follows half a second behind
-        before = link
+    links = {}
+    for preset in ("active", "bare"):
         page.locator("#preset").select_option(label=preset)
-        until(page, f"window.coaxshell.state.system.control {without} null")
-        until(page, "before => location.hash !== before", before)
-        link = page.evaluate("location.hash") if preset == "active" else link
-    page.goto(f"{server.origin}/{link}")
+        links[preset] = address_of(page, cx.presets.load(preset).name)
+    assert system_of(page).control is None
+    page.goto(f"{server.origin}/{links['active']}")
     until(page, "window.coaxshell.state.system.control !== null")
     assert system_of(page) == cx.presets.load("active")
 
