@@ -26,6 +26,7 @@ from coaxshell.solver.interface.newton import ConvergenceError
 from coaxshell.solver.links.described import assembled
 from coaxshell.solver.links.histories import best_springs
 from coaxshell.solver.links.laws import LawState, LinkLaws
+from coaxshell.solver.links.step import Missing
 
 _TOLERANCE = 1e-11
 """Of what is missing, relative to the forces of the step."""
@@ -54,16 +55,6 @@ class LawSeed(NamedTuple):
     added: FloatArray
     state: LawState
     stiffest: float
-
-
-class _Missing(NamedTuple):
-    """By how much sums miss their laws, D_1, dh/dD_1 and the springs' share in it at the points; the first relative to the forces."""
-
-    value: FloatArray
-    stretch: FloatArray
-    slope: FloatArray
-    elastic: FloatArray
-    size: float
 
 
 def laws_along(series: AxialSeries, absorbers: AbsorberSet, time_step: float, compliance: FloatArray | None = None) -> LinkLaws:
@@ -148,7 +139,7 @@ class LineLaws:
             added, missing = added + part * towards, tried
         raise ConvergenceError
 
-    def _missing(self, known: FloatArray, added: FloatArray, seed: LawSeed) -> _Missing:
+    def _missing(self, known: FloatArray, added: FloatArray, seed: LawSeed) -> Missing:
         mean = known + self._present @ added
         after = 2.0 * mean - seed.stretch
         forces = self._laws.force(self._series.values(after).ravel(), seed.state)
@@ -156,9 +147,9 @@ class LineLaws:
         exerted = self._series.coefficients(at_points[0])
         left = added + self._lent[:, None] * mean - exerted
         scale = max(_largest(added), _largest(exerted), 1e-300)
-        return _Missing(left, after, at_points[1], at_points[2], _largest(left) / scale)
+        return Missing(left, after, at_points[1], at_points[2], _largest(left) / scale)
 
-    def _correction(self, missing: _Missing) -> FloatArray:
+    def _correction(self, missing: Missing) -> FloatArray:
         """Return d of (1 + kappa R - 2 P h' V R) d = -missing."""
         from scipy.sparse.linalg import LinearOperator, gmres  # takes time, and most runs do without
 
@@ -178,7 +169,7 @@ class LineLaws:
         found, _ = gmres(linear, right.ravel(), rtol=_KRYLOV_TOLERANCE, atol=0.0, restart=60, maxiter=4)
         return np.asarray(found, dtype=np.float64).reshape(shape)
 
-    def _done(self, added: FloatArray, missing: _Missing, seed: LawSeed) -> LawSeed:
+    def _done(self, added: FloatArray, missing: Missing, seed: LawSeed) -> LawSeed:
         own = np.tile(self.compliance, self._series.points)
         stiffest = max(seed.stiffest, 2.0 * float((missing.elastic * own).max(initial=0.0)))
         state = self._laws.advance(self._series.values(missing.stretch).ravel(), seed.state)

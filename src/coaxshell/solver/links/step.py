@@ -45,7 +45,7 @@ class LawStep(NamedTuple):
     stiffest: float
 
 
-class _Missing(NamedTuple):
+class Missing(NamedTuple):
     """By how much each link misses its law, D_1, dh/dD_1, the springs' share in it, and the first relative to the largest force."""
 
     value: FloatArray
@@ -107,16 +107,16 @@ class LawSolver:
             added, missing = added + part * towards, tried
         raise ConvergenceError
 
-    def _missing(self, known: FloatArray, added: FloatArray, state: LawState) -> _Missing:
+    def _missing(self, known: FloatArray, added: FloatArray, state: LawState) -> Missing:
         mean = known + self._response @ added
         after = 2.0 * mean - state.stretch
         value, slope, elastic = self._laws.force(after, state)
         left = added + self._lent * mean - value
         scale = max(float(np.abs(added).max(initial=0.0)), float(np.abs(value).max(initial=0.0)), 1e-300)
         rounded = _EPSILONS * slope * (np.abs(after) + np.abs(state.stretch))  # a law feels the rounding of its stretch
-        return _Missing(left, after, slope, elastic, float(np.maximum(np.abs(left) - rounded, 0.0).max(initial=0.0)) / scale)
+        return Missing(left, after, slope, elastic, float(np.maximum(np.abs(left) - rounded, 0.0).max(initial=0.0)) / scale)
 
-    def _done(self, added: FloatArray, missing: _Missing, state: LawState, iterations: int) -> LawStep:
+    def _done(self, added: FloatArray, missing: Missing, state: LawState, iterations: int) -> LawStep:
         stiffest = 2.0 * float((missing.elastic * self._own).max(initial=0.0))
         return LawStep(added, self._laws.advance(missing.stretch, state), iterations, stiffest)
 
