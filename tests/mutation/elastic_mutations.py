@@ -63,7 +63,7 @@ ELASTIC = (
     ),
     Mutation(
         "solid-points-of-a-layer",
-        "structure/elastic_wall.py",
+        "structure/layered_wall.py",
         "(0.0 if layer is self.layers[-1] else hair)",
         "(0.0 if layer is self.layers[-1] else -hair)",
         "that the last point of a layer is read as its own",

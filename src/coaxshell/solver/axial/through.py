@@ -27,7 +27,8 @@ from coaxshell.solver.axial.sums import TOGETHER, of_odd
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import band
-from coaxshell.structure.elastic_wall import SPARED_ALONG, Asked, ElasticWall
+from coaxshell.structure.elastic_wall import Asked, ElasticWall
+from coaxshell.structure.layered_wall import SPARED_ALONG
 
 
 def searched_depths(solution: SpatialSolution, shell: int) -> list[FloatArray]:
