@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.special import iv, kv, kve
+from scipy.special import iv, ive, kv, kve
 
 from coaxshell.numerics import bessel_ratios as br
 
@@ -28,6 +28,15 @@ def test_i_ratios(table: dict[str, np.ndarray], top: int) -> None:
     found = br.i_ratios(top, table["z"])[table["orders"][kept]]
     np.testing.assert_allclose(found, table["i"][kept], rtol=1e-10)
     np.testing.assert_allclose(found[:, near], table["i"][kept][:, near], rtol=1e-11)
+
+
+@pytest.mark.parametrize("top", [0, 1, 40, 150])
+def test_the_start_is_carried_up_beside_the_axis_and_taken_from_i_itself_farther_from_it(top: int) -> None:
+    # Carried up where m^2 Re(1/z) <= 3 and |z| >= m: on either side of both, against I_{m+1}/I_m, which is good to some 1e-13 itself.
+    size = np.outer([0.8, 0.99, 1.0, 1.3, 4.0], [1.0, 1.01]).ravel() * max(top, 1)
+    for share in (1e-4, 0.1, 1.0, 1.1, 4.0):
+        z = np.minimum(3.0 * share * (size / max(top, 1)) ** 2, size) + 1j * size
+        np.testing.assert_allclose(br.starting_ratio(top, z), ive(top + 1, z) / ive(top, z), rtol=1e-11)
 
 
 @pytest.mark.parametrize("top", [2, 150, 2000])

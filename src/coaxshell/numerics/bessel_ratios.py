@@ -19,9 +19,11 @@ from scipy.special import ive
 from coaxshell.numerics.arrays import ComplexArray
 
 # Below this |z|/m the asymptotic ratio is forgotten quickly enough by the downward recurrence (each step shrinks its
-# error by |R|^2 <= 0.21 here) and I_m itself would begin to underflow; above it, ive gives the start exactly.
+# error by |R|^2 <= 0.21 here) and I_m itself would begin to underflow; above it the start has to be exact.
 _ASYMPTOTIC_LIMIT = 0.75
 _FORGETTING_STEPS = 24
+_NEUTRAL = 3.0
+"""m^2 |Re 1/z| up to which, for |z| >= m, the upward recurrence from R_0 spoils no more than a digit: K_m/I_m grows by its exponential."""
 
 
 def as_complex(z: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
@@ -37,15 +39,19 @@ def as_complex(z: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
 def starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
     """Return R_order(z), the start of the downward recurrence.
 
-    Near the imaginary axis with |z| > m the recurrence does not forget its start, so the start must be exact there.
+    Near the imaginary axis with |z| > m the recurrence does not forget its start, so the start must be exact there. There I and K are
+    of one size, and R_0 is carried upward, R_m = 1/R_{m-1} - 2m/z, at a seventh of the cost of I_m and I_{m+1} themselves.
     """
-    far = np.flatnonzero(np.abs(z) > _ASYMPTOTIC_LIMIT * order)
+    size = np.abs(z)
+    upward = (size >= order) & (np.abs(z.real) * order**2 <= _NEUTRAL * size**2)
+    ratio = np.empty_like(z)
+    ratio[upward] = _carried_up(order, z[upward])
+    far = np.flatnonzero(~upward & (size > _ASYMPTOTIC_LIMIT * order))
     above = ive(order + 1, z[far])
     usable = above != 0  # ive underflows where Re z is large and |z| not much above m; there the start is forgotten quickly
     far, above = far[usable], above[usable]
-    ratio = np.empty_like(z)
     ratio[far] = above / ive(order, z[far])
-    rest = np.ones(z.size, dtype=bool)
+    rest = ~upward
     rest[far] = False
     near = z[rest]
     top = order + _FORGETTING_STEPS
@@ -54,6 +60,17 @@ def starting_ratio(order: int, z: ComplexArray) -> ComplexArray:
         r = 1.0 / (2 * m / near + r)
     ratio[rest] = r
     return ratio
+
+
+def _carried_up(order: int, z: ComplexArray) -> ComplexArray:
+    """Return R_order from R_0 = I_1/I_0 by the upward recurrence."""
+    ratio, two_over_z = ive(1, z) / ive(0, z), 2.0 / z
+    work = np.empty_like(z)
+    for m in range(1, order + 1):
+        np.reciprocal(ratio, out=ratio)
+        np.multiply(two_over_z, m, out=work)
+        np.subtract(ratio, work, out=ratio)
+    return np.asarray(ratio)
 
 
 def i_ratios(max_order: int, z: npt.ArrayLike, *, left: bool = False) -> ComplexArray:
