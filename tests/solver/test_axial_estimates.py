@@ -8,8 +8,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import orders_left_out
-from coaxshell.solver.axial import line_softness
-from coaxshell.solver.axial import solve as axial_solve
+from coaxshell.solver.axial import judgement, line_softness
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.softened import Softened, softness
@@ -56,7 +55,7 @@ def test_printed_errors_count_how_soft_the_waves_left_out_make_the_walls(coarse,
     assert (true < told).all()
     assert (told < 4 * true).all()
     monkeypatch.setattr(
-        axial_solve,
+        judgement,
         "softened",
         lambda problem, grid, sampling, linked: Softened(linked.forces.at(NODES), np.zeros((2, 2, 2, sampling.max_order + 1))),
     )
@@ -79,7 +78,7 @@ def test_printed_errors_count_how_soft_the_orders_left_out_make_the_walls_at_lin
     # up to 1.9, that of the inner stress here 1.03
     assert (true < 0.7 * printed(coarse)).all()
     assert (printed(coarse) < 10 * true).all()
-    monkeypatch.setattr(axial_solve, "softened_lines", lambda *_: None)
+    monkeypatch.setattr(judgement, "softened_lines", lambda *_: None)
     assert (true > printed(along_lines(8))).any()
 
 
@@ -97,6 +96,7 @@ def test_lines_under_a_line_source_feel_what_they_feel_in_two_dimensions(count, 
     run = {"duration": 1.0, "time_step": 4e-2, "modes": 6}
     assert np.isfinite(cx.simulate(system, **run).errors()).all()
     solution = cx.simulate(system, **run, dimensions=3, stations=[0.0]).spatial
+    assert np.isfinite(printed(solution)).all()
     flat, space = found
     assert space.shape == (2, 2 * count, 1, flat.shape[-1])
     assert not space[1].any()

@@ -171,10 +171,15 @@ def station_card(found: SpatialSummary, system: System) -> str:
 
 
 def summarise_stations(
-    spatial: SpatialSolution, motions: Sequence[StationMotion], window: Sequence[float] | None = None, segment: Segment = None
+    spatial: SpatialSolution,
+    motions: Sequence[StationMotion],
+    window: Sequence[float] | None = None,
+    segment: Segment = None,
+    *,
+    judged: bool = True,
 ) -> SpatialSummary:
     """Return the summary of each station within a window (start, end) in transits; see :func:`coaxshell.response.summary.summarise`."""
-    each = tuple(summarise(motion.solution, window, segment, motion=motion) for motion in motions)
+    each = tuple(summarise(motion.solution, window, segment, motion=motion, judged=judged) for motion in motions)
     span, scales = time_window(spatial.time, window), spatial.problem.scales
     lines = of_lines(spatial)
     q, f = (spatial.line_displacement, spatial.line_force) if lines else (spatial.absorber_displacement, spatial.absorber_force)

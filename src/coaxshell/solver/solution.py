@@ -93,6 +93,34 @@ class Judgement(NamedTuple):
     warnings: tuple[str, ...]
 
 
+class JudgedLate:
+    """A run whose estimates and warnings may be made when either is first read; they never change afterwards."""
+
+    def judge_when_read(self, judge: Callable[[Any], Judgement]) -> None:
+        """Leave estimates and warnings to be made, of the run itself, when either is first read; a copy is made of a run that is judged.
+
+        Of runs that follow a slider, and of most runs of studies, nobody ever reads them.
+        """
+        for name in Judgement._fields:
+            del vars(self)[name]
+        vars(self)["_judge"] = judge
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what is not here until it is read."""
+        here, judge = vars(self), vars(self).get("_judge")
+        if name in Judgement._fields and name not in here and judge is not None:
+            here.update(judge(self)._asdict())
+            here.pop("_judge", None)  # with all that it needs
+        if name not in here:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        return here[name]
+
+    def _judged(self) -> dict[str, Any]:
+        """Return what a copy takes over of a run that is judged for it."""
+        judged = {name: getattr(self, name) for name in Judgement._fields}
+        return {**vars(self), **judged}
+
+
 def is_whole(time: FloatArray, settings: Settings) -> bool:
     """Return whether some instants are all those of the run that some settings describe."""
     step, steps = settings.time_step, settings.steps
@@ -127,7 +155,7 @@ class AxialMotion(NamedTuple):
 
 
 @dataclass(frozen=True)
-class ModalSolution:
+class ModalSolution(JudgedLate):
     """Modal histories of one run; all arrays dimensionless (lengths in a, times in a/c_e).
 
     Attributes
@@ -203,24 +231,15 @@ class ModalSolution:
         if self.spectra is None:
             vars(self).update(judge(self)._asdict())
             return
-        for name in Judgement._fields:
-            del vars(self)[name]
-        vars(self)["_judge"] = judge
+        super().judge_when_read(judge)
 
-    def __getattr__(self, name: str) -> Any:
-        """Return what is not here until it is read."""
-        here, judge = vars(self), vars(self).get("_judge")
-        if name in Judgement._fields and name not in here and judge is not None:
-            here.update(judge(self)._asdict())
-            here.pop("_judge", None)  # with all that it needs
-        if name not in here:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        return here[name]
+    def judge_as(self, run: JudgedLate) -> None:
+        """Take over estimates and warnings of the run that this is a part of, when either is first read."""
+        super().judge_when_read(lambda _: Judgement(run.estimates, run.warnings))
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms."""
-        judged = {name: getattr(self, name) for name in Judgement._fields}
-        return {**vars(self), **judged, "spectra": None}
+        return {**self._judged(), "spectra": None}
 
     def field(self, name: str) -> FloatArray:
         """Return one of :data:`coaxshell.structure.shell_model.FIELDS`: W and V, the hoop stress of elastic walls, or what a station has.

@@ -158,7 +158,10 @@ async def bars(request: Request) -> Response:
 
 
 async def judgement(request: Request) -> Response:
-    """Answer with the estimated errors and the warnings of a run, which its curves do not wait for."""
+    """Answer with the estimated errors and the warnings of a run, which its curves do not wait for.
+
+    In three dimensions they take seconds, as the run did: the worker that has it makes them when it is through with the one before.
+    """
     return await _told(request, worker.judge)
 
 
@@ -167,7 +170,7 @@ async def _told(request: Request, task: Callable[..., Any], name: str | None = N
     studio = studio_of(request)
     found = studio.run(request.path_params["run"])
     try:
-        told = await studio.workers.submit(task, *found.pair, place=found.place).future
+        told = await studio.workers.submit(task, *found.pair, place=found.place, live=found.settings.dimensions == 2).future
     except InputError as error:
         raise RefusedError.of(error) from None
     return JSONResponse({"run": found.name, **(told if name is None else {name: told})})

@@ -7,20 +7,20 @@ from typing import Any
 import numpy as np
 
 from coaxshell.apps.studio.arrays import Item, Packed, packed
-from coaxshell.apps.studio.curves import absorber_bars, absorbers_of, bars_of, given, header_of, judgement
+from coaxshell.apps.studio.curves import absorber_bars, absorbers_of, bars_of, given, header_of
 from coaxshell.response.spatial import SpatialResponse
+from coaxshell.response.spatial_summary import summarise_stations
 
 
 def station_curves(response: SpatialResponse, seconds: float) -> Packed:
-    """Return header and arrays of a run as docs/studio-api.md says."""
-    summary, points = response.summary(), response.system.point_absorbers
+    """Return header and arrays of a run as docs/studio-api.md says, without errors and warnings, which take as long as the run."""
+    summary = summarise_stations(response.spatial, response.motions, judged=False)
+    points = response.system.point_absorbers
     each = [bars_of(response, one, 3) for one in summary.each]
     absorbers = {**absorbers_of(response, response.system.absorber_list or points), "z": [point.z for point in points]}
     unit = "N" if points else "N/m"
     header = {
         **header_of(response, seconds),
-        **judgement(response),
-        "judged": True,
         "stations": list(summary.stations),
         "absorbers": absorbers,
         "bars": [*_largest(each, summary.stations), *absorber_bars(summary.absorber_displacement, summary.absorber_force, unit)],

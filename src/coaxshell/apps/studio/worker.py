@@ -124,7 +124,8 @@ def answer_key(system: System, settings: Settings) -> str:
 def answer(system: System, settings: Settings) -> Response:
     """Return the response of a system: the kept one, or the one of its kept structure, or a new one; equal to ``simulate``.
 
-    A preview is kept beyond the next one only once it is judged (:func:`judge`): while a slider moves none is, and nobody comes back.
+    A preview is kept beyond the next one only once it is judged (:func:`judge`): while a slider moves none is, and nobody comes back. One
+    in three dimensions took seconds, and is kept as it is.
     """
     key = answer_key(system, settings)
     if _Here.last is not None and _Here.last[0] == key:
@@ -134,8 +135,10 @@ def answer(system: System, settings: Settings) -> Response:
         return found
     _Here.last = None
     response = simulate(system, settings=settings, progress=report) if settings.dimensions == 3 else _on_structure(system, settings)
-    if settings.dimensions == 3 or not _live(settings):
+    if not _live(settings):
         _Here.answers.put(key, response.without_transforms())
+    elif settings.dimensions == 3:
+        _Here.answers.put(key, response)
     _Here.last = key, response
     return response
 

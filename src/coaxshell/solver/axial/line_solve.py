@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -42,24 +42,38 @@ class LineSolution:
         Their amplitudes along the axis, of the absorbers carried.
     displacement : ndarray, shape (waves, N, axial parities, T)
         Amplitudes of q.
-    error : float
-        Relative error of what the forces do to the walls by the steps of the march; 0 where nothing was marched.
     exact : tuple of ndarray, or None
         Transforms of force and displacement, where they were not marched.
-    tangent : AbsorberSet
-        The absorbers carried, cubic springs by their mean tangent over all times and the whole axis, other laws by what fits them best.
-    laws : LineLawHistories or None
-        What links of any law did in the march.
+    marched : tuple of LineMotion and LineMarch, or None
+        What was marched, and what was found.
     """
 
     forces: LineForces
     grid: LaplaceGrid
     force: FloatArray
     displacement: FloatArray
-    tangent: AbsorberSet
-    error: float = 0.0
+    marched: tuple[LineMotion, LineMarch] | None = None
     exact: tuple[ComplexArray, ComplexArray] | None = None
-    laws: LineLawHistories | None = None
+
+    @property
+    def laws(self) -> LineLawHistories | None:
+        """What links of any law did in the march."""
+        return None if self.marched is None else self.marched[1].laws
+
+    @cached_property
+    def error(self) -> float:
+        """Relative error of what the forces do to the walls by the steps of the march, 0 where nothing was marched: longer than the run."""
+        return 0.0 if self.marched is None else _march_error(self.forces.layout, self.marched[0], self.marched[1].moved)
+
+    @cached_property
+    def tangent(self) -> AbsorberSet:
+        """The absorbers carried, cubic springs by their mean tangent over all times and the whole axis, other laws by what fits them."""
+        absorbers = self.forces.layout.absorbers
+        if self.marched is None:
+            return absorbers
+        if self.laws is not None:
+            return self.laws.best_springs(absorbers, self.grid.time_step)
+        return _mean_tangent(self.forces.layout, *self.marched)
 
     def with_waves(self, sampling: AxialSampling) -> LineSolution:
         """Return the same by a sampling of the same waves, whose modes keep nothing."""
@@ -86,16 +100,12 @@ def solve_lines(layout: LineLayout, grid: LaplaceGrid, on: BlockMap, progress: P
         found = _mapped(layout, grid, line_answers, on, progress)
         force, displacement = found["force"], found["displacement"]
         forces = line_forces(layout, force)
-        return LineSolution(forces, grid, grid.invert(force), grid.invert(displacement), layout.absorbers, exact=(force, displacement))
+        return LineSolution(forces, grid, grid.invert(force), grid.invert(displacement), exact=(force, displacement))
     found = _mapped(layout, grid, line_kernels, on, progress)
     motion = LineMotion(found["displacement"], found["velocity"], found["weights"], grid.time_step)
     result = march_lines(layout, motion, progress)
-    error, laws = _march_error(layout, motion, result.moved), result.laws
-    if laws is None:
-        spectra, tangent = grid.transform_linear(result.force), _mean_tangent(layout, motion, result)
-    else:
-        spectra, tangent = middles_transform(grid, laws.force), laws.best_springs(layout.absorbers, grid.time_step)
-    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, tangent, error, laws=laws)
+    spectra = grid.transform_linear(result.force) if result.laws is None else middles_transform(grid, result.laws.force)
+    return LineSolution(line_forces(layout, spectra), grid, result.force, result.displacement, (motion, result))
 
 
 def _mean_tangent(layout: LineLayout, motion: LineMotion, result: LineMarch) -> AbsorberSet:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
@@ -44,13 +44,13 @@ class PointSolution:
         On the inner and the outer shell, positive inward, for every absorber of the description.
     displacement : ndarray, shape (N, T)
         q of every absorber.
-    error : float
-        Relative error of the forces by the steps of the march; 0 where nothing was marched.
     structure : PointStructure
     carried : ndarray, shape (2N, nodes)
         Transforms of the forces of the absorbers carried.
     exact : ndarray or None
         Those of q of the absorbers carried, (N, nodes), where they are linear.
+    marched : ndarray or None
+        Histories of the forces of the absorbers carried, (2N, T), where they were marched.
     laws : LawHistories or None
         What links of any law did, where there are such.
     """
@@ -58,11 +58,16 @@ class PointSolution:
     forces: PointForces
     force: FloatArray
     displacement: FloatArray
-    error: float
     structure: PointStructure
     carried: ComplexArray
     exact: ComplexArray | None = None
+    marched: FloatArray | None = None
     laws: LawHistories | None = None
+
+    @cached_property
+    def error(self) -> float:
+        """Relative error of the forces by the steps of the march, 0 where nothing was marched: it takes about as long as they did."""
+        return 0.0 if self.marched is None else _march_error(self.structure, self.marched)
 
     @property
     def links(self) -> LinkMotion:
@@ -207,21 +212,21 @@ def solve_points(structure: PointStructure, progress: Progress | None = None) ->
         If a step does not converge.
     """
     layout, grid = structure.layout, structure.grid
-    absorbers, displacement = layout.absorbers, None
+    absorbers, displacement, marched = layout.absorbers, None, None
     laws: LawHistories | None = None
     if absorbers.is_linear:
         carried, displacement = _exact(structure)
-        histories, moved, error = grid.invert(carried), grid.invert(displacement), 0.0
+        histories, moved = grid.invert(carried), grid.invert(displacement)
     else:
         result = march_interface(structure, absorbers, progress=progress)
-        histories, moved = result.force, result.mass_displacement
-        error, laws = _march_error(structure, histories), result.laws
+        histories = marched = result.force
+        moved, laws = result.mass_displacement, result.laws
         carried = grid.transform_linear(histories) if laws is None else middles_transform(grid, laws.force)
     every = layout.of_every(histories)
     sides = every.reshape(2, layout.member_count, -1).swapaxes(0, 1)
     felt = carried if absorbers.elements is None else carried * absorbers.held.reshape(-1, 1)
     forces = PointForces(layout.points, layout.of_every(felt), layout.parities)
-    return PointSolution(forces, sides, moved[absorbers.member], error, structure, carried, displacement, laws)
+    return PointSolution(forces, sides, moved[absorbers.member], structure, carried, displacement, marched, laws)
 
 
 def _exact(structure: PointStructure) -> tuple[ComplexArray, ComplexArray]:

@@ -15,7 +15,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.electrode_patterns import segments_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
-from coaxshell.solver.solution import AxialMotion, Estimates, ModalSolution, is_whole
+from coaxshell.solver.solution import AxialMotion, Estimates, JudgedLate, ModalSolution, is_whole
 from coaxshell.solver.voltage_response import controlled
 from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.shell_model import FIELDS, SOLID_STRESSES
@@ -33,7 +33,7 @@ class StationSpectra(NamedTuple):
 
 
 @dataclass(frozen=True)
-class SpatialSolution:
+class SpatialSolution(JudgedLate):
     """Modal histories at the stations of a three-dimensional run; all arrays dimensionless (lengths in a, times in a/c_e).
 
     Attributes
@@ -52,6 +52,7 @@ class SpatialSolution:
     estimates : Estimates
         Relative to the answer in the norm over the surface of all of an axial period.
     warnings : tuple of str
+        Both may be made when first read (:meth:`judge_when_read`).
     timings : dict
     absorber_displacement : ndarray, shape (absorbers, T), or None
         q of the point absorbers.
@@ -75,7 +76,7 @@ class SpatialSolution:
     sampling: AxialSampling
     fields: dict[str, FloatArray]
     estimates: Estimates
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = field(default_factory=tuple)
     timings: dict[str, float] = field(default_factory=dict)
     absorber_displacement: FloatArray | None = None
     absorber_force: FloatArray | None = None
@@ -86,7 +87,7 @@ class SpatialSolution:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms, the largest part of it."""
-        return {**vars(self), "spectra": None, "forces": []}
+        return {**self._judged(), "spectra": None, "forces": []}
 
     @property
     def stations(self) -> FloatArray:
@@ -122,19 +123,23 @@ class SpatialSolution:
         given = control_voltage(self.problem, potentials, rates)
         stresses = {name: of[name] for name in SOLID_STRESSES if self.problem.two_faced}
         motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates, stresses)
-        return ModalSolution(
+        judged = "estimates" in vars(self)
+        one = ModalSolution(
             self.problem,
             self.settings,
             self.time,
             of["w"],
             of["v"],
-            self.estimates,
-            self.warnings,
+            self.estimates if judged else Estimates.unknown(len(self.problem.shells)),
+            self.warnings if judged else (),
             self.timings,
             control_voltage=given,
             along=motion,
             segment_voltage=None if given is None else on_segments(self.problem, given),
         )
+        if not judged:
+            one.judge_as(self)
+        return one
 
 
 def on_segments(problem: Problem, given: FloatArray) -> FloatArray | None:

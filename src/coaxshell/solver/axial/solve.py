@@ -15,19 +15,16 @@ from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
-from coaxshell.solver import checks
 from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
 from coaxshell.solver.axial.faced import READ, make_shapes
 from coaxshell.solver.axial.forces import WallForces
-from coaxshell.solver.axial.left_out import estimated_errors
-from coaxshell.solver.axial.line_softness import softened_lines
+from coaxshell.solver.axial.judgement import JudgedFrom, judge_when_read
 from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
 from coaxshell.solver.axial.lines import line_layout, require_lines_alone
 from coaxshell.solver.axial.linked import PointSolution, point_structure, solve_points
 from coaxshell.solver.axial.mode_choice import resolved_sampling
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.softened import Softened, softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.axial.sums import SQUARES, station_sums
@@ -35,7 +32,7 @@ from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solid_spectra import band
-from coaxshell.solver.solution import KEPT_BYTES
+from coaxshell.solver.solution import KEPT_BYTES, Estimates
 from coaxshell.solver.spectral import Stopwatch
 
 
@@ -50,6 +47,7 @@ def solve_spatial(
     settings : Settings
         Of three dimensions.
     progress : callable, optional
+        Told how far the run is; its estimates and warnings are made when they are first read.
     workplace : Workplace, optional
         Where blocks of Laplace nodes are worked on, all cores of this machine by default. The answer does not depend on it.
 
@@ -80,23 +78,13 @@ def solve_spatial(
         del waves, forces
     if isinstance(linked, LineSolution):
         linked = linked.with_waves(sampling)  # which keep no shapes
-    forces = None if linked is None else linked.forces
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
     histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in (spectra | _voltage_rates(problem, grid, spectra)).items()}
     stopwatch.lap("inverse transform")
     motion = StationSpectra(grid, spectra["w"], spectra["v"])
-    moved = histories["w"], histories["v"]
-    soft = _softened(problem, grid, sampling, linked)
-    force_error = 0.0 if linked is None else linked.error
-    estimates = estimated_errors(problem, grid, sampling, squares, motion, moved, soft, forces, force_error)
-    stopwatch.lap("error estimates")
-    warnings = notes + checks.before(problem, grid, sampling.max_order) + checks.after(problem, estimates, settings)
-    warnings += checks.ideal_loop(problem, settings)
-    if linked is not None and linked.laws is not None:
-        warnings += checks.swinging_on_laws(linked.laws.angle, grid.time_step, settings.refinement)
-    solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, estimates, tuple(warnings), stopwatch.seconds)
-    solution = replace(solution, warnings=(*warnings, *checks.actuators(*(solution.at(i) for i in range(len(settings.stations))))))
+    unknown = Estimates.unknown(len(problem.shells))
+    solution = SpatialSolution(problem, settings, grid.time[keep], sampling, histories, unknown, (), stopwatch.seconds)
     if linked is not None:
         solution.forces.append(linked.forces)
     if isinstance(linked, PointSolution):
@@ -104,14 +92,10 @@ def solve_spatial(
     if isinstance(linked, LineSolution):
         force, moved_masses = linked.at(solution.stations / problem.scales.length)
         solution = replace(solution, line_displacement=moved_masses[..., keep], line_force=force[..., keep])
-    return replace(solution, spectra=motion) if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES else solution
-
-
-def _softened(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, linked: PointSolution | LineSolution | None) -> Softened | None:
-    """Return what the absorbers do with the waves left out, None if there are none."""
-    if isinstance(linked, PointSolution):
-        return softened(problem, grid, sampling, linked)
-    return None if linked is None else softened_lines(problem, grid, linked)
+    if motion.normal.nbytes + motion.tangential.nbytes <= KEPT_BYTES:
+        solution = replace(solution, spectra=motion)
+    judge_when_read(solution, JudgedFrom(grid, squares, motion, linked, notes))
+    return solution
 
 
 def _voltage_rates(problem: Problem, grid: LaplaceGrid, spectra: dict[str, ComplexArray]) -> dict[str, ComplexArray]:
