@@ -307,8 +307,8 @@ SPATIAL = (
     Mutation(
         "sent-transforms",
         "solver/axial/solution.py",
-        'return {**vars(self), "spectra": None, "forces": []}',
-        "return {**vars(self)}",
+        'return {**self._judged(), "spectra": None, "forces": []}',
+        "return self._judged()",
         "transforms travel with a run to other processes",
         "solver/test_axial_blocks.py",
     ),
