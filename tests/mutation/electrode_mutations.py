@@ -136,6 +136,14 @@ ELECTRODES = (
         "solver/test_ties_in_space.py",
     ),
     Mutation(
+        "tied-faces-by-volts",
+        "solver/axial/tied_faces.py",
+        "float(a == b)",
+        "0.0",
+        "an elastic wall reads what its own voltages make it read beside the motion of its faces",
+        "solver/test_exact_ties_in_space.py",
+    ),
+    Mutation(
         "waves-looked-at-closer",
         "solver/axial/stability.py",
         "min(known[a], known[b]) <= rate * (b - a)",

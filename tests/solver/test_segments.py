@@ -187,10 +187,6 @@ def test_where_segments_are_not_known_it_is_said():
     system = cut(segments=4)
     for call, said in [
         (lambda: cx.simulate(system, **RUN, engine="direct"), "direct engine"),
-        (
-            lambda: cx.simulate(system.with_overrides({"shells[0].theory": "elastic"}), **RUN, dimensions=3),
-            "elastic wall in three dimensions",
-        ),
         (lambda: cx.frequency_response(system, 1000.0, "stress", shell=0, angle=0.0), "at a frequency"),
         (lambda: cx.gradient(system, metric="inner.rms_stress", variables=["control.derivative"], **RUN), "backwards"),
         (lambda: system.with_overrides({"shells[0].layers[0].role": "sensor"}), "reads or pushes alone"),

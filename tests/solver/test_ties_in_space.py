@@ -204,15 +204,12 @@ def test_margins_of_waves_are_where_poles_cross():
 
 def test_what_is_not_solved_is_refused_with_a_remedy():
     rings = presets.load("electrodes-hybrid").absorbers
-    solid = {"shells[0].theory": "elastic"}
     for system, said in (
         (
             cut(segments=4).replace(absorbers=rings),
             r"control\.segments: 4 segments .* beside absorbers .*use dimensions=2, leave the absorbers or",
         ),
         (under(MIXED).replace(absorbers=rings), r"control\.matrix: .* beside absorbers"),
-        (cut(segments=4).with_overrides(solid), r"control\.segments: .*shells\[0\], an elastic wall in three dimensions"),
-        (under(MIXED).with_overrides(solid), r"control\.matrix: "),
         (cut(segments=30), r"control\.segments: 30 segments push on order 30 as well, and the run ends at 5"),
     ):
         with pytest.raises(InputError, match=said):

@@ -75,9 +75,11 @@ def electrical(motion: WallMotion, shell: int) -> Electrical:
 
 
 def of_segments(motion: WallMotion, shell: int) -> OfSegments | None:
-    """Return what the segments of a wall hold and take, made once; None where its electrodes are whole."""
+    """Return what the segments of a wall hold and take, made once; None where electrodes are whole, and at stations of elastic walls."""
     wall = motion.solution.problem.shells[shell]
     if isinstance(wall, ElasticWall) and wall.gains is not None and wall.segments is not None:
+        if motion.solution.along is not None:
+            return None  # no station keeps charges of solids
         cut = wall.segments
         return motion.kept(("segments", shell), lambda: _segments_of_solids(motion, shell, wall, cut))
     if not isinstance(wall, SegmentedWall) or wall.gains is None:

@@ -75,10 +75,6 @@ def require_loops_alone(system: System, what: str, remedy: str) -> None:
 def _require_ties(system: System, dimensions: int) -> None:
     """Raise InputError if feedback ties orders or shells to each other where that is not solved yet."""
     whole = "leave {} out"
-    solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
-    if dimensions == 3 and solid is not None:
-        found = f"shells[{solid}], an elastic wall in three dimensions,"
-        require_loops_alone(system, found, f'use dimensions=2, shells[{solid}].theory = "thin", or {whole}')
     if dimensions == 3 and (system.absorber_list or system.point_absorbers):
         require_loops_alone(system, "the sum over axial wavenumbers beside absorbers", f"use dimensions=2, leave the absorbers or {whole}")
 

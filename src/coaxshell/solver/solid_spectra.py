@@ -23,7 +23,8 @@ from coaxshell.solver.scaling import Problem, Surface
 from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.structure.elastic_wall import ElasticWall
-from coaxshell.structure.shell_model import FaceReceptance, ShellModel
+from coaxshell.structure.electroded_wall import slid_of
+from coaxshell.structure.shell_model import FaceReceptance, ShellModel, WallOperator
 from coaxshell.structure.solid_ports import UnderVoltage
 
 
@@ -33,13 +34,17 @@ def band(grid: LaplaceGrid) -> float:
 
 
 class WallAnswer(NamedTuple):
-    """What one wall does, each (orders, nodes): W, V, hoop stress and potentials of its reference, 0 of thin walls, and its faces."""
+    """What one wall does, each (orders, nodes): W, V, hoop stress and potentials of its reference, 0 of thin walls, and its faces.
+
+    Thin walls tell U besides, where there is an axial wavenumber.
+    """
 
     normal: ComplexArray
     tangential: ComplexArray
     hoop: ComplexArray | float
     potentials: list[ComplexArray]
     faces: FaceMotion
+    axial: ComplexArray | float = 0.0
 
 
 class FacedSystem:
@@ -57,7 +62,7 @@ class FacedSystem:
         ports = [_port(wall, modes, s) for wall in problem.shells]
         self.cascade = CascadeSystem(problem, s, modes, walls=[receptance for receptance, _ in ports])
         self.radial = self.cascade.radial
-        self._reading = [reading for _, reading in ports]
+        self._reading: list[ComplexArray | WallOperator] = [reading for _, reading in ports]
         self._volts: dict[int, UnderVoltage] = {}
 
     def under_sources(self, load: ComplexArray) -> list[WallAnswer]:
@@ -74,7 +79,12 @@ class FacedSystem:
 
     def ratio(self, shell: int) -> ComplexArray:
         """Return V/W of a wall whose faces move alike."""
-        return self._reading[shell]
+        return self._thin(shell).tangential
+
+    def _thin(self, shell: int) -> WallOperator:
+        found = self._reading[shell]
+        assert isinstance(found, WallOperator)
+        return found
 
     def under_voltage(self, shell: int, volts: ComplexArray | float) -> list[WallAnswer]:
         """Return what all walls do under a voltage that is given to the actuators of one, no law asking for any."""
@@ -93,13 +103,15 @@ class FacedSystem:
         if isinstance(wall, ElasticWall):
             given = self._given(shell, wall)
             return self.cascade.solve_free(shell, given.faces[0] * volts, given.faces[1] * volts)
-        return self.cascade.solve(shell, wall.drive(self._modes).columns.recovered(self._reading[shell]) * volts)
+        thin = self._thin(shell)
+        return self.cascade.solve(shell, wall.drive(self._modes).columns.recovered(thin.tangential, thin.axial) * volts)
 
     def _driven(self, shell: int, volts: ComplexArray | float, own: WallAnswer) -> WallAnswer:
         """Return what a wall does with what a voltage adds to it that its faces do not tell."""
         wall = self._problem.shells[shell]
         if not isinstance(wall, ElasticWall):
-            return own._replace(tangential=own.tangential + wall.driven_along(self._modes, self._s) * volts)
+            v, u = slid_of(wall, self._modes, self._s)
+            return own._replace(tangential=own.tangential + v * volts, axial=own.axial + (0.0 if u is None else u) * volts)
         given = self._given(shell, wall)
         normal, tangential, hoop, *potentials = given.shown * volts
         potentials = [a + b for a, b in zip(own.potentials, [*potentials, given.heard * volts, volts], strict=True)]
@@ -111,7 +123,7 @@ class FacedSystem:
         if isinstance(wall, ElasticWall):
             return answer.potentials[sensed_place(wall)]
         read = wall.sensor_gain(self._modes).columns
-        return np.asarray(read.w * answer.normal + read.v * answer.tangential)
+        return np.asarray(read.w * answer.normal + read.v * answer.tangential + (0.0 if read.u is None else read.u) * answer.axial)
 
     def _given(self, shell: int, wall: ElasticWall) -> UnderVoltage:
         if shell not in self._volts:
@@ -124,9 +136,10 @@ class FacedSystem:
         faces = [FaceMotion(*(sum(parts[1:], parts[0]) for parts in zip(*moving, strict=True))) for moving in zip(*each, strict=True)]
         return [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
 
-    def _answer(self, reading: ComplexArray, faces: FaceMotion) -> WallAnswer:
-        if reading.ndim == 2:
-            return WallAnswer(faces.outer, reading * faces.outer, 0.0, [], faces)
+    def _answer(self, reading: ComplexArray | WallOperator, faces: FaceMotion) -> WallAnswer:
+        if isinstance(reading, WallOperator):
+            axial = 0.0 if reading.axial is None else reading.axial * faces.outer
+            return WallAnswer(faces.outer, reading.tangential * faces.outer, 0.0, [], faces, axial)
         normal, tangential, hoop, *potentials = reading[:, 0] * faces.load_inner + reading[:, 1] * faces.load_outer
         return WallAnswer(normal, tangential, hoop, potentials, faces)
 
@@ -138,9 +151,9 @@ def sensed_place(wall: ElasticWall) -> int:
     return place
 
 
-def _port(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
-    """Return how a wall answers, and what it shows: per load on either face, (3 or more, 2, orders, nodes), or of one W its V/W."""
-    return wall.two_port(modes, s) if isinstance(wall, ElasticWall) else (wall.receptance(modes, s), wall.operator(modes, s).tangential)
+def _port(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray | WallOperator]:
+    """Return how a wall answers, and what it shows: per load on either face, (3 or more, 2, orders, nodes), or of one W per W."""
+    return wall.two_port(modes, s) if isinstance(wall, ElasticWall) else (wall.receptance(modes, s), wall.operator(modes, s))
 
 
 @dataclass(frozen=True, eq=False)

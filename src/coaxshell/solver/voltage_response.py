@@ -24,7 +24,7 @@ from coaxshell.solver.faced_voltages import moved_by_voltages, read_of_solids, r
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 from coaxshell.structure.control_law import ControlLaw
-from coaxshell.structure.electroded_wall import ElectrodedWall
+from coaxshell.structure.electroded_wall import ElectrodedWall, slid_of
 from coaxshell.structure.shell_model import Gain, ShellModel
 
 Values = TypeVar("Values", ComplexArray, FloatArray)
@@ -77,7 +77,7 @@ class VoltageResponse:
         shells = controlled(problem)
         walls, shape = [problem.shells[i] for i in shells], (modes.count, s.size)
         per_w = [(ratio[i], None if axial is None else axial[i]) for i in shells]
-        slides = [_slid(wall, modes, s) for wall in walls]
+        slides = [slid_of(wall, modes, s) for wall in walls]
         slid = np.stack([np.broadcast_to(v, shape) for v, _ in slides])
         drives = [wall.drive(modes).columns.recovered(*each) for wall, each in zip(walls, per_w, strict=True)]
         load = np.stack([np.broadcast_to(one, shape) for one in drives])
@@ -129,11 +129,6 @@ class VoltageResponse:
         """Return it from walls and fluids without feedback, at their modes and nodes."""
         tangential, axial = [wall.tangential for wall in system.shells], [wall.axial for wall in system.shells]
         return cls.of(controls, system.modes, system.s, compliance, tangential, reading, axial)
-
-
-def _slid(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[ComplexArray | float, ComplexArray | None]:
-    """Return V and U per volt of a wall whose W is held."""
-    return wall.driven_along_both(modes, s) if isinstance(wall, ElectrodedWall) else (wall.driven_along(modes, s), None)
 
 
 def controlled(problem: Problem) -> tuple[int, ...]:

@@ -30,7 +30,7 @@ from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.shell_model import FaceReceptance, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_inclined import InclinedPlace, inclined_port
-from coaxshell.structure.solid_ports import Port, UnderVoltage, VoltPort, of_faces, per_volt, products, under_volts
+from coaxshell.structure.solid_ports import DrivenPort, Port, UnderVoltage, VoltPort, of_faces, per_volt, products, under_volts
 from coaxshell.structure.solid_transducers import (
     Driven,
     Loop,
@@ -215,8 +215,13 @@ class ElasticWall(LayeredWall):
         assert self.transducers is not None
         return tuple(by_circuits(one, self.transducers.circuits) for one in self.driven(modes))
 
+    @property
+    def closed_by_solver(self) -> bool:
+        """Whether its feedback ties orders or walls to each other, so that the solver closes the loop."""
+        return self.gains is not None and bool(self.segments or self.tied_as)
+
     def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
-        return 0.0 if self.gains is None or self.segments or self.tied_as else self.gains.at(s, modes)
+        return 0.0 if self.gains is None or self.closed_by_solver else self.gains.at(s, modes)
 
     def _under_loop(self, open_loop: FaceReceptance, loop: Loop) -> FaceReceptance:
         """Return receptances with what the transducers add to them."""
@@ -282,10 +287,21 @@ class ElasticWall(LayeredWall):
         W, V and U of the middle, the six stresses at the design depth (:data:`coaxshell.structure.elastic_depth.STRESSES`) and the
         potentials; at :attr:`depth_read` all but the potentials, if there is one. Under control what the law reads and gives come last.
         """
+        receptance, per_load, _ = self._at_stations(modes, s, reads)
+        return receptance, per_load
+
+    def driven_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray, DrivenPort]:
+        """Return the same of a wall whose loop the solver closes, and how its transducers answer, signs as of what stations read."""
+        receptance, per_load, driven = self._at_stations(modes, s, reads)
+        assert driven is not None
+        return receptance, per_load, driven
+
+    def _at_stations(self, modes: Modes, s: ComplexArray, reads: bool) -> tuple[FaceReceptance, ComplexArray, DrivenPort | None]:
+        """Return what :meth:`station_port` does, and where the solver closes its loop how its transducers answer."""
         if np.ndim(modes.wavenumber):
             receptance, per_load = self._inclined(modes, s, self.asked_of_stations if reads else [])
             per_load[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
-            return receptance, per_load
+            return receptance, per_load, None
         parts, ports = [], self.ports(modes)
         for port in ports:
             pressed, weights = -port.faces * np.array(self.wetted)[:, None], products(port.faces)
@@ -297,14 +313,16 @@ class ElasticWall(LayeredWall):
         per_load = found[3:].reshape(-1, 2, *found.shape[1:])
         volts = [port.volts for port in ports if port.volts is not None]
         if not volts:
-            return FaceReceptance(*found[:3]), per_load
-        loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], s, self._law(modes, s))
+            return FaceReceptance(*found[:3]), per_load, None
+        law = self._law(modes, s)
+        loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], s, law)
+        each = np.zeros((0, len(loop.volts), *found.shape[1:]), np.complex128)
         if reads:
             sums = [modal_sums(one.rows, port.squares, s) for one, port in zip(volts, ports, strict=True)]
-            whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
-            by_volts = under_volts(per_volt(whole, [one.resting for one in volts]), loop.volts)
-            per_load = np.concatenate([per_load + by_volts, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
-        return self._under_loop(FaceReceptance(*found[:3]), loop), per_load
+            each = per_volt(sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1), [one.resting for one in volts])
+            per_load = np.concatenate([per_load + under_volts(each, loop.volts), loop.sensed[None], law * loop.sensed[None]])
+        driven = DrivenPort.of(loop, each) if self.closed_by_solver else None
+        return self._under_loop(FaceReceptance(*found[:3]), loop), per_load, driven
 
     @kept_with_modes
     def ports(self, modes: Modes) -> tuple[Port, ...]:

@@ -26,7 +26,17 @@ from coaxshell.structure.axial_feedback import FedBack
 from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.lossy_wall import LossyWall
 from coaxshell.structure.section import PiezoelectricLayer
-from coaxshell.structure.shell_model import FieldGain, Gain, Leading, WallEnergy, WallMotion, WallOperator, WallStiffness, square
+from coaxshell.structure.shell_model import (
+    FieldGain,
+    Gain,
+    Leading,
+    ShellModel,
+    WallEnergy,
+    WallMotion,
+    WallOperator,
+    WallStiffness,
+    square,
+)
 from coaxshell.structure.stress import strain_gain, wall_point
 from coaxshell.structure.thin_wall import ThinWall
 
@@ -284,6 +294,11 @@ def _sum(one: Gain, other: Gain | None) -> Gain:
     if other is None:
         return one
     return Gain(one.v + other.v, one.w + other.w, None if one.u is None or other.u is None else one.u + other.u)
+
+
+def slid_of(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[ComplexArray | float, ComplexArray | None]:
+    """Return V and U per volt of a wall of one W, which is held."""
+    return wall.driven_along_both(modes, s) if isinstance(wall, ElectrodedWall) else (wall.driven_along(modes, s), None)
 
 
 def length_of(gain: Gain) -> FloatArray:

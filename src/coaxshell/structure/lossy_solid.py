@@ -25,7 +25,7 @@ from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_chain import PieceChain, WallReading
 from coaxshell.structure.solid_driven import DrivenAnswer, DrivenReading, WallDrive
 from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, Place, pieces
-from coaxshell.structure.solid_ports import UnderVoltage, under_volts
+from coaxshell.structure.solid_ports import DrivenPort, UnderVoltage, under_volts
 from coaxshell.structure.solid_transducers import Loop, field_of_volts, loop_closed
 
 SOFT_DEGREE = 64
@@ -98,7 +98,7 @@ class LossySolidWall(ElasticWall):
     def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes)."""
         if self.driven_pieces is not None:
-            return self._port_under_loop(self.asked_of_port, modes, s)
+            return self._port_under_loop(self.asked_of_port, modes, s)[:2]
         chain, shown = self._port.at(modes, s)
         shown[3:] *= -1.0  # potentials, as without losses
         return _receptance(chain), self._per_load(shown)
@@ -106,10 +106,15 @@ class LossySolidWall(ElasticWall):
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
         """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it."""
         if self.closes_a_loop:
-            return self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)
+            return self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)[:2]
         chain, shown = (self._stations if reads else self._faces).at(modes, s)
         shown[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
         return _receptance(chain), self._per_load(shown)
+
+    def driven_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray, DrivenPort]:
+        """Return the same of a wall whose loop the solver closes, and how its transducers answer."""
+        receptance, shown, loop, each = self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)
+        return receptance, shown, DrivenPort.of(loop, each)
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make the shapes of its pieces."""
@@ -131,15 +136,18 @@ class LossySolidWall(ElasticWall):
 
     def _port_under_loop(
         self, asked: Sequence[Asked], modes: Modes, s: ComplexArray, *, tells: bool = True
-    ) -> tuple[FaceReceptance, ComplexArray]:
-        """Return how its faces answer and what it shows per load on them, last what the law reads and gives if it *tells* that."""
+    ) -> tuple[FaceReceptance, ComplexArray, Loop, ComplexArray]:
+        """Return how its faces answer and what it shows per load on them, last what the law reads and gives if it *tells* that.
+
+        And the loop, with what a volt of each circuit shows, (quantities, circuits, orders, nodes).
+        """
         found, signs = self._driven(asked).at(modes, s), self.signs_of(asked)
         loop = self._closed_by(found, self._law(modes, s))
         by_volts = signs * (found.by_volts + self._fields(modes, asked))
         shown = signs * self._per_load(found.shown) + under_volts(by_volts, loop.volts)
         if tells:
             shown = np.concatenate([shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
-        return self._under_loop(found.receptance, loop), shown
+        return self._under_loop(found.receptance, loop), shown, loop, by_volts
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.structure.elastic_basis import OrdersBasis
-from coaxshell.structure.solid_transducers import LoopPart
+from coaxshell.structure.solid_transducers import Loop, LoopPart
 
 
 class VoltPort(NamedTuple):
@@ -65,6 +65,28 @@ class UnderVoltage(NamedTuple):
     faces: ComplexArray
     shown: ComplexArray
     heard: ComplexArray
+
+
+class DrivenPort(NamedTuple):
+    """How the transducers of a wall answer while no law asks for a voltage.
+
+    Attributes
+    ----------
+    sensed : ndarray, shape (2, orders, nodes)
+        What the control law reads per inward load on either face.
+    given : UnderVoltage
+        What a volt on all actuators does.
+    """
+
+    sensed: ComplexArray
+    given: UnderVoltage
+
+    @classmethod
+    def of(cls, loop: Loop, each: ComplexArray) -> DrivenPort:
+        """Return it from a loop without feedback and what a volt of each circuit shows, (quantities, circuits, orders, nodes)."""
+        given = loop.given[:, None]
+        moved, shown = (under_volts(one, given)[:, 0] for one in (loop.moved, each))
+        return cls(loop.sensed, UnderVoltage(moved, shown, loop.heard))
 
 
 def per_volt(sums: ComplexArray, resting: Sequence[FloatArray]) -> ComplexArray:

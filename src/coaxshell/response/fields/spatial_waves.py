@@ -24,7 +24,8 @@ from coaxshell.response.fields.inversion import direct_matrix, window
 from coaxshell.response.fields.modal_field import Transfer, region_slopes
 from coaxshell.response.fields.request import SMEAR, FieldRequest, Region, Tell, filter_weight
 from coaxshell.solver.axial.causality import reach
-from coaxshell.solver.axial.faced import faces_of, make_shapes
+from coaxshell.solver.axial.faced import make_shapes
+from coaxshell.solver.axial.faced_motion import faces_of
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts

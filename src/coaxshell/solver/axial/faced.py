@@ -2,6 +2,9 @@
 
 Every wall is read where stations read it, its amplitudes in the order of :data:`READ`: W, V and U, and of an elastic wall the stresses at
 its design depth, 0 of others, whose stresses are made of the motion and its derivatives along the axis.
+
+Where feedback ties walls or orders to each other a wave is that without feedback, whose driven layers answer voltages that are given to
+them; :mod:`coaxshell.solver.axial.tied_faces` closes the loops.
 """
 
 from __future__ import annotations
@@ -15,11 +18,13 @@ from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
-from coaxshell.solver.axial.families import Family, WaveSet, outside_loads
+from coaxshell.solver.axial.families import Family, outside_loads
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.scaling import Problem
 from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.electroded_wall import slid_of
 from coaxshell.structure.shell_model import SOLID_STRESSES, FaceReceptance, ShellModel, WallOperator
+from coaxshell.structure.solid_ports import DrivenPort
 
 READ = ("w", "v", "u", *SOLID_STRESSES)
 """What a wall is read for, before the potentials of its piezoelectric layers."""
@@ -41,10 +46,14 @@ class FacedWave:
     def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, *, reads: bool = True) -> None:
         self.problem, self.modes, self.s = problem, modes, s
         self._readings: list[ComplexArray | WallOperator] = []
+        self._driven: dict[int, DrivenPort] = {}
         receptances = []
-        for wall in problem.shells:
+        for i, wall in enumerate(problem.shells):
             if isinstance(wall, ElasticWall):
-                receptance, reading = wall.station_port(modes, s, reads=reads)
+                if wall.closed_by_solver:
+                    receptance, reading, self._driven[i] = wall.driven_port(modes, s, reads=reads)
+                else:
+                    receptance, reading = wall.station_port(modes, s, reads=reads)
                 self._readings.append(reading)
             else:
                 operator = wall.operator(modes, s)
@@ -69,24 +78,66 @@ class FacedWave:
         shell, side, _ = self.problem.surfaces[surface]
         return self.cascade.solve(shell, load, side)
 
-    def read(self, faces: list[FaceMotion], layers: int) -> ComplexArray:
-        """Return what all walls are read for, (9 + layers, shells, orders, nodes), from the motion of their faces and the loads on them."""
+    def under_voltage(self, shell: int) -> list[FaceMotion]:
+        """Return what the faces of all walls do under a volt that is given to the actuators of one."""
+        if shell in self._driven:
+            return self.cascade.solve_free(shell, *self._driven[shell].given.faces)
+        operator = self._operator(shell)
+        load = self.problem.shells[shell].drive(self.modes).columns.recovered(operator.tangential, operator.axial)
+        return self.cascade.solve(shell, load)
+
+    def sensed(self, shell: int, moving: FaceMotion, volts: float = 0.0) -> ComplexArray:
+        """Return what the law of a wall reads of its motion, V, under a voltage of its own."""
+        if shell in self._driven:
+            driven = self._driven[shell]
+            by_loads = driven.sensed[0] * moving.load_inner + driven.sensed[1] * moving.load_outer
+            return np.asarray(by_loads + driven.given.heard * volts)
+        wall, operator = self.problem.shells[shell], self._operator(shell)
+        gain, (v, u) = wall.sensor_gain(self.modes).columns, slid_of(wall, self.modes, self.s)
+        slid = gain.v * v + (0.0 if gain.u is None or u is None else gain.u * u)
+        return np.asarray(gain.recovered(operator.tangential, operator.axial) * moving.outer + slid * volts)
+
+    def _operator(self, shell: int) -> WallOperator:
+        found = self._readings[shell]
+        assert isinstance(found, WallOperator)
+        return found
+
+    def read(self, faces: list[FaceMotion], layers: int, voltage: ComplexArray | None = None) -> ComplexArray:
+        """Return what all walls are read for, (9 + layers, shells, orders, nodes), from the motion of their faces and the loads on them.
+
+        ``voltage`` is what is given to the actuators of all walls, V, (shells, orders, nodes), where the solver closes their loops.
+        """
         found = np.zeros((len(READ) + layers, len(faces), *faces[0].outer.shape), np.complex128)
         for i, (reading, moving) in enumerate(zip(self._readings, faces, strict=True)):
             if isinstance(reading, WallOperator):
-                self._read_thin(found[:, i], self.problem.shells[i], reading, moving.outer)
+                self._read_thin(found[:, i], self.problem.shells[i], reading, moving.outer, None if voltage is None else voltage[i])
             else:
                 count = min(len(reading), len(found))
                 np.multiply(reading[:count, 0], moving.load_inner, out=found[:count, i])
                 found[:count, i] += reading[:count, 1] * moving.load_outer
+                if voltage is not None and i in self._driven:
+                    self._add_given(found[:, i], self._driven[i], voltage[i])
         return found
 
-    def _read_thin(self, found: ComplexArray, wall: ShellModel, operator: WallOperator, w: ComplexArray) -> None:
+    def _add_given(self, found: ComplexArray, driven: DrivenPort, volts: ComplexArray) -> None:
+        """Add what a voltage makes an elastic wall show, and that itself after what the law reads."""
+        shown = driven.given.shown
+        for row, each in zip(found, (*shown, driven.given.heard, 1.0), strict=False):
+            row += each * volts
+
+    def _read_thin(
+        self, found: ComplexArray, wall: ShellModel, operator: WallOperator, w: ComplexArray, volts: ComplexArray | None
+    ) -> None:
         v = operator.tangential * w
         u = np.zeros_like(w) if operator.axial is None else operator.axial * w
+        if volts is not None and wall.gains is not None:
+            slid, along = slid_of(wall, self.modes, self.s)
+            v, u = v + slid * volts, u + (0.0 if along is None else along * volts)
         found[:3] = w, v, u
         for number, per in enumerate(wall.shown_voltages(self.modes, self.s)[: len(found) - len(READ)]):
             found[len(READ) + number] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
+        if volts is not None and wall.shows_control and len(found) > len(READ):
+            found[len(READ) + wall.shown_potentials - 1] = volts
 
 
 def _together(moving: tuple[FaceMotion, ...]) -> FaceMotion:
@@ -98,36 +149,6 @@ def _alike(wall: ShellModel, operator: WallOperator) -> FaceReceptance:
     """Return the receptance of a wall with one W."""
     both = np.reciprocal(wall.radius * operator.impedance)
     return FaceReceptance(both, both, both, operator.impedance)
-
-
-def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
-    """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes)."""
-    wave = FacedWave(problem, grid.nodes[block], waves.modes[j])
-    return [np.stack([wave.read(faces, layers) for faces in wave.faces(family, grid, block)], axis=2) for family in waves.families]
-
-
-def motions_and_faces(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
-    """Return W, V, U and what :func:`faces_of` gives, (7, shells, parities, orders, nodes) of each family."""
-    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j]), []
-    for family in waves.families:
-        each = [
-            np.concatenate([wave.read(faces, 0)[:3], np.stack([np.stack(moving) for moving in faces], axis=1)])
-            for faces in wave.faces(family, grid, block)
-        ]
-        found.append(np.stack(each, axis=2))
-    return found
-
-
-def faces_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
-    """Return what the faces of all walls do in wave j under each family's loads, (4, shells, parities, orders, nodes).
-
-    Displacements of the inner and of the outer faces and the loads on them, all positive inward; nothing within elastic walls is read.
-    """
-    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j], reads=False), []
-    for family in waves.families:
-        each = [np.stack([np.stack(moving) for moving in faces], axis=1) for faces in wave.faces(family, grid, block)]
-        found.append(np.stack(each, axis=2))
-    return found
 
 
 def make_shapes(problem: Problem, modes: Sequence[Modes]) -> None:

@@ -24,7 +24,8 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.faced import make_shapes, motions_and_faces
+from coaxshell.solver.axial.faced import make_shapes
+from coaxshell.solver.axial.faced_motion import motions_and_faces
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.point_forces import WallPoints
@@ -128,10 +129,11 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         def work(which: int, j: int = j, shares: FloatArray = shares) -> ComplexArray:
             solve = motions_and_faces if problem.two_faced else amplitudes_of
             found = solve(problem, per_block[which], j, grid, blocks[which])
-            if problem.tied:
+            if problem.tied and not problem.two_faced:
                 modes, s = per_block[which].modes[j], grid.nodes[blocks[which]]
                 found = [np.concatenate([one[:3], given_voltages(problem, modes, s, one)[None]]) for one in found]
-            return _superposed(shares, [amplitude[: 7 if problem.two_faced else 4 if problem.tied else 3] for amplitude in found], around)
+            rows = (7 if problem.two_faced else 3) + int(problem.tied)
+            return _superposed(shares, [amplitude[:rows] for amplitude in found], around)
 
         make_shapes(problem, [modes])
         with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
@@ -140,7 +142,7 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
         solid = FacedMotion(motion[3:5], motion[5:7]) if problem.two_faced else None
-        known = waves.families, shares, around, problem, grid, solid, motion[3] if problem.tied else None
+        known = waves.families, shares, around, problem, grid, solid, motion[-1] if problem.tied else None
         yield WaveMotion(modes, length, motion[0], motion[1], motion[2], *known)
 
 

@@ -14,7 +14,8 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
-from coaxshell.solver.axial.faced import READ, faced_amplitudes
+from coaxshell.solver.axial.faced import READ
+from coaxshell.solver.axial.faced_motion import faced_amplitudes
 from coaxshell.solver.axial.families import Family, WaveSet, outside_loads, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling

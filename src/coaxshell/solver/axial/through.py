@@ -18,13 +18,14 @@ from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.blocks import node_blocks
 from coaxshell.solver.axial.faced import FacedWave, make_shapes
+from coaxshell.solver.axial.faced_motion import closed_motions
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import forces_of, laplace_grid
 from coaxshell.solver.axial.sums import TOGETHER, of_odd
-from coaxshell.solver.excitation import source_parities
+from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import band
 from coaxshell.structure.elastic_wall import Asked, ElasticWall
@@ -80,7 +81,7 @@ class _Pass:
 
     def at(self, stations: FloatArray) -> ComplexArray:
         """Return the transforms at stations (z in a), shape (stresses, stations, parities, M + 1, nodes)."""
-        blocks, parities, forces = node_blocks(self.grid), source_parities(self.problem), self.forces
+        blocks, parities, forces = node_blocks(self.grid), motion_parities(self.problem), self.forces
         parities = parities if forces is None else max(parities, forces.parities)
         per_block = [
             wave_sets(self.problem, self.sampling, stations, self.grid.nodes[block], None if forces is None else forces.at(block))
@@ -108,12 +109,16 @@ class _Pass:
         amplitudes = [np.zeros(shape, np.complex128) for _ in waves.families]
         for place, one in enumerate(modes):
             wave = FacedWave(self.problem, nodes, one, reads=False)
-            per_load = wall.transfer(one, nodes, self.asked)
-            for family, amplitude in zip(waves.families, amplitudes, strict=True):
-                for parity, faces in enumerate(wave.faces(family, self.grid, block)):
+            per_load, per_volt = wall.transfer(one, nodes, self.asked), None
+            if wall.closed_by_solver:
+                per_volt = wall.under_voltage(one, nodes, self.asked).shown
+            for (all_faces, voltage), amplitude in zip(closed_motions(wave, waves, self.grid, block), amplitudes, strict=True):
+                for parity, faces in enumerate(all_faces):
                     there = amplitude[:, place, parity, : one.count]
                     np.multiply(per_load[:, 0], faces[self.shell].load_inner, out=there)
                     there += per_load[:, 1] * faces[self.shell].load_outer
+                    if per_volt is not None:
+                        there += per_volt * voltage[self.shell, parity]
         for family, amplitude in zip(waves.families, amplitudes, strict=True):
             self._share(found, family, some, amplitude, block)
 

@@ -1,0 +1,61 @@
+"""What walls some of which have two faces do in a wave along the axis, under the loads of families of sources, with all feedback."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.solver.axial.faced import FacedWave
+from coaxshell.solver.axial.families import WaveSet
+from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
+from coaxshell.solver.scaling import Problem
+
+
+def closed_motions(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: slice) -> Iterator[Closed]:
+    """Yield what the faces of all walls do under each family's loads; voltages where the solver closes loops, else none (0 rows)."""
+    none = np.zeros((0, 0, wave.modes.count, wave.s.size), np.complex128)
+    loops = TiedFaces(wave, max(family.parities for family in waves.families)) if wave.problem.tied else None
+    for family in waves.families:
+        free = wave.faces(family, grid, block)
+        yield Closed(free, none) if loops is None else loops.closed(free)
+
+
+def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
+    """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes)."""
+    wave = FacedWave(problem, grid.nodes[block], waves.modes[j])
+    found = []
+    for faces, voltage in closed_motions(wave, waves, grid, block):
+        given = [voltage[:, parity] if voltage.size else None for parity in range(len(faces))]
+        found.append(np.stack([wave.read(one, layers, volts) for one, volts in zip(faces, given, strict=True)], axis=2))
+    return found
+
+
+def motions_and_faces(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
+    """Return W, V, U, what :func:`faces_of` gives, and voltages of loops that the solver closes of each family.
+
+    (7 or 8, shells, parities, orders, nodes) each.
+    """
+    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j]), []
+    for faces, voltage in closed_motions(wave, waves, grid, block):
+        each = []
+        for parity, one in enumerate(faces):
+            volts = voltage[:, parity] if voltage.size else None
+            rows = [wave.read(one, 0, volts)[:3], np.stack([np.stack(moving) for moving in one], axis=1)]
+            each.append(np.concatenate(rows if volts is None else [*rows, volts[None]]))
+        found.append(np.stack(each, axis=2))
+    return found
+
+
+def faces_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
+    """Return what the faces of all walls do in wave j under each family's loads, (4, shells, parities, orders, nodes).
+
+    Displacements of the inner and of the outer faces and the loads on them, all positive inward; nothing within elastic walls is read.
+    """
+    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j], reads=False), []
+    for faces, _ in closed_motions(wave, waves, grid, block):
+        each = [np.stack([np.stack(moving) for moving in one], axis=1) for one in faces]
+        found.append(np.stack(each, axis=2))
+    return found

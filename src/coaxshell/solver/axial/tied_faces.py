@@ -1,0 +1,71 @@
+"""Feedback that ties walls or orders to each other where walls have two faces, in one wave along the axis.
+
+As of thin walls (:mod:`coaxshell.solver.axial.tied_wave`) each wavenumber is a system of loops by itself. What walls without feedback do
+under loads is heard by the loads on their faces; a volt on the actuators of one moves the faces of all, and is heard there,
+
+    phi_i = sigma_i . q_i + C_ij u_j,      u = (1 - H K C)^-1 H K sigma . q,      faces = faces_0 + E_j u_j,
+
+q the loads on both faces of wall i without voltages, E and C the faces and the readings per volt of each order, and the loops those of
+patterns (:mod:`coaxshell.solver.electrode_loops`). Thin walls stand beside walls of elastic solids.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from coaxshell.numerics.arrays import ComplexArray
+from coaxshell.solver.axial.faced import FacedWave
+from coaxshell.solver.cascade import FaceMotion
+from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_patterns import patterns_of
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all
+
+
+class Closed(NamedTuple):
+    """Motion with feedback: of the faces of all walls, for each parity around, and voltages, (shells, parities, orders, nodes)."""
+
+    faces: list[list[FaceMotion]]
+    voltage: ComplexArray
+
+
+class TiedFaces:
+    """The loops of one wave.
+
+    Parameters
+    ----------
+    wave : FacedWave
+        All walls and fluids without feedback; all orders from 0 to the highest where electrodes are cut.
+    parities : int
+        How many the motion has around the circle.
+    """
+
+    def __init__(self, wave: FacedWave, parities: int) -> None:
+        self._wave, problem = wave, wave.problem
+        shells = controlled(problem)
+        self._per_volt = [wave.under_voltage(shell) for shell in shells]
+        read = np.empty((len(shells), len(shells), wave.modes.count, wave.s.size), np.complex128)
+        for b, moved in enumerate(self._per_volt):
+            for a, shell in enumerate(shells):
+                read[a, b] = wave.sensed(shell, moved[shell], float(a == b))
+        self._response = VoltageResponse.of_faces(shells, read)
+        patterns = patterns_of(problem, shells, wave.modes.orders, parities)
+        self._loops = ElectrodeLoops.of(problem, self._response, patterns, wave.s)
+
+    def closed(self, free: list[list[FaceMotion]]) -> Closed:
+        """Return the motion with feedback of faces that do *free* without it, for each parity around."""
+        wave, patterns = self._wave, self._loops.patterns
+        read = np.stack([np.stack([wave.sensed(shell, faces[shell]) for faces in free]) for shell in self._response.shells])
+        voltage = patterns.in_orders(self._loops.voltages(patterns.readings(read)))[:, : len(free)]
+        faces = [self._together(alone, voltage[:, parity]) for parity, alone in enumerate(free)]
+        return Closed(faces, of_all(wave.problem, self._response, voltage))
+
+    def _together(self, alone: list[FaceMotion], volts: ComplexArray) -> list[FaceMotion]:
+        """Return motion without voltages and by voltages, (controlled, orders, nodes), together."""
+        found = []
+        for shell, moving in enumerate(alone):
+            by_volts = [per[shell] for per in self._per_volt]
+            parts = zip(moving, *by_volts, strict=True)
+            found.append(FaceMotion(*(own + sum(u * one for u, one in zip(volts, per, strict=True)) for own, *per in parts)))
+        return found
