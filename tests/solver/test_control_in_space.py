@@ -12,7 +12,7 @@ import coaxshell as cx
 from coaxshell.numerics.modes import Modes
 from coaxshell.response import load_response
 from coaxshell.solver import stability
-from coaxshell.solver.axial.stability import doubtful_waves, look_closer, sample
+from coaxshell.solver.axial.stability import doubtful_waves, look_closer, sample, worst_wave
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.stability import unstable_poles
@@ -136,12 +136,24 @@ class TestStability:
         assert sample([]) == []
 
     def test_waves_are_counted_closer_where_a_pole_may_be_near(self):
-        falls = np.concatenate([np.linspace(0.9, 0.05, 12), [0.01, 0.0, 0.02, 0.3]])
+        falls = np.concatenate([np.linspace(0.9, 0.05, 12), [0.01, 1e-3, 0.02, 0.3]])
         asked = look_closer(lambda j: float(falls[j]), 16)
         assert 13 in asked
         assert len(asked) < 16
-        assert look_closer(lambda j: 0.8 - 0.01 * j, 16) == [0, 4, 8, 11, 15]
-        assert look_closer(lambda j: np.inf, 16) == [0, 4, 8, 11, 15]
-        assert {5, 6, 7} <= set(look_closer(lambda j: abs(j - 6) * 0.1, 16))  # as near on both sides of it
-        assert look_closer(lambda j: 1.0, 2) == [0, 1]
-        assert look_closer(lambda j: 1.0, 0) == []
+        assert list(look_closer(lambda j: 0.8 - 0.01 * j, 16)) == [0, 4, 8, 11, 15]
+        assert list(look_closer(lambda j: np.inf, 16)) == [0, 4, 8, 11, 15]
+        assert {5, 6, 7} <= set(look_closer(lambda j: abs(j - 6.5) * 0.1, 16))  # as near on both sides of it
+        assert look_closer(lambda j: 1.0, 2) == {0: 1.0, 1: 1.0}
+        assert look_closer(lambda j: 1.0, 0) == {}
+
+    def test_the_wave_that_grows_fastest_is_told(self):
+        rates, asked = np.array([0.1, 3.0, 0.0, 5.0, 2.0, 4.0, 0.1, 0.0]), []
+
+        def growth(place: int, rate: float) -> float:
+            asked.append(place)
+            return max(rate, float(rates[place]))
+
+        known = look_closer(lambda j: 0.0 if rates[j] > 1.0 else 0.5, 8)
+        assert worst_wave(growth, known, 8, 1.0) == 3
+        assert len(asked) == len(set(asked)) == 5  # not those known to be stable
+        assert list(look_closer(lambda j: 0.1 * (j != 8), 16)) == [0, 4, 8, 11, 15]  # what grows is not looked at closer

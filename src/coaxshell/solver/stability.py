@@ -332,6 +332,18 @@ def _pole(problem: Problem, modes: Modes, least: float) -> complex:
     return complex(least, nearest[0].imag)
 
 
+def nearest_ratio(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> float:
+    """Return the least |D_m/D0_m| on the contour, infinite where nothing had to be counted; 0 where an order grows by more than a rate."""
+    found = poles_beyond(problem, Modes.up_to(max_order, wavenumber), least)
+    return 0.0 if found.orders.size else found.nearest
+
+
+def growth_beyond(problem: Problem, max_order: int, rate: float, wavenumber: float = 0.0) -> float:
+    """Return the rate of the fastest growth at an axial wavenumber, or the rate given where nothing grows faster."""
+    found = poles_beyond(problem, Modes.up_to(max_order, wavenumber), rate)
+    return fastest_growth(problem, found.orders, rate, wavenumber).rate if found.orders.size else rate
+
+
 def require_stable(problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0) -> float:
     """Raise InputError, naming gain and order, if the closed loop is unstable at an axial wavenumber; else return how near it is.
 

@@ -198,6 +198,18 @@ def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: 
     return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
 
 
+def nearest_ratio_of_ties(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> float:
+    """Return the least ratio of determinants, infinite where nothing had to be counted; 0 where a pattern grows by more than a rate."""
+    found, nearest = _growing(problem, max_order, least, wavenumber)
+    return nearest if found is None else 0.0
+
+
+def growth_of_ties_beyond(problem: Problem, max_order: int, rate: float, wavenumber: float = 0.0) -> float:
+    """Return the rate of the fastest growth at an axial wavenumber, or the rate given where nothing grows faster."""
+    found = growing(problem, max_order, rate, wavenumber)
+    return rate if found is None else fastest_growth(problem, max_order, found, rate, wavenumber).rate
+
+
 def require_stable_ties(problem: Problem, max_order: int, duration: float, wavenumber: float = 0.0) -> float:
     """Raise InputError if loops that are tied would grow by a factor e within the duration, or if a plane run does not resolve segments.
 

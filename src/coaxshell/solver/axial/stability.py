@@ -4,6 +4,8 @@ A wave (m, k) is a system by itself. Walls that stay passive with their feedback
 which is asked at a sample of wavenumbers; poles of those in doubt are counted at fewer, as they move with k as smoothly as with the order.
 So does the least |D/D0| on the contour, which a pole passes at 0: between wavenumbers where that is more than it changes none is counted.
 Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`).
+
+Where one grows the fastest of them is told: each of the others is asked for poles beyond the fastest growth found so far alone.
 """
 
 from __future__ import annotations
@@ -17,36 +19,63 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import require_stable
-from coaxshell.solver.tied_stability import require_stable_ties
+from coaxshell.solver.stability import growth_beyond, nearest_ratio, require_stable
+from coaxshell.solver.tied import require_resolved
+from coaxshell.solver.tied_stability import growth_of_ties_beyond, nearest_ratio_of_ties, require_stable_ties
 
 ASKED, CHECKED, FIRST = 24, 16, 5
 """Wavenumbers at which passivity is asked, and at which poles are counted: at most, and where no zero can be near at least."""
 
 
 def require_stable_waves(problem: Problem, sampling: AxialSampling, duration: float) -> None:
-    """Raise InputError, naming gain, order and wavenumber, if the closed loop is unstable at a wavenumber of a run."""
+    """Raise InputError, naming gain, order and wavenumber of the fastest growth, if the loop is unstable at a wavenumber of a run."""
     if all(wall.gains is None for wall in problem.shells):
         return
-    waves = sample(sampling.modes if problem.tied else doubtful_waves(problem, sample(sampling.modes, ASKED), 1.0 / duration))
+    if problem.tied:
+        require_resolved(problem, sampling.max_order)
+    least = 1.0 / duration
+    waves = sample(sampling.modes if problem.tied else doubtful_waves(problem, sample(sampling.modes, ASKED), least))
 
     def nearest(number: int) -> float:
-        top, k = waves[number].max_order, float(waves[number].wavenumber)
-        return require_stable_ties(problem, top, duration, k) if problem.tied else require_stable(problem, top, duration, wavenumber=k)
+        ratio = nearest_ratio_of_ties if problem.tied else nearest_ratio
+        return ratio(problem, waves[number].max_order, least, float(waves[number].wavenumber))
 
-    look_closer(nearest, len(waves))
+    def growth(number: int, rate: float) -> float:
+        beyond = growth_of_ties_beyond if problem.tied else growth_beyond
+        return beyond(problem, waves[number].max_order, rate, float(waves[number].wavenumber))
+
+    known = look_closer(nearest, len(waves))
+    if 0.0 in known.values():
+        worst = waves[worst_wave(growth, known, len(waves), least)]
+        refuse = require_stable_ties if problem.tied else require_stable
+        refuse(problem, worst.max_order, duration, wavenumber=float(worst.wavenumber))
 
 
-def look_closer(nearest: Callable[[int], float], count: int) -> list[int]:
-    """Ask how near to growing some of *count* waves in a row are, and those between them unless they cannot come to 0; return which.
+def look_closer(nearest: Callable[[int], float], count: int) -> dict[int, float]:
+    """Ask how near to growing some of *count* waves in a row are, 0 where one grows, and those between them unless they cannot come to 0.
 
     Waves between two neighbours are left out where the lesser is more than it changes there, at the rate of this gap or of one beside it.
+    Once one is known to grow no further ones are asked. What was asked is returned by its place.
     """
     first = np.unique(np.rint(np.linspace(0.0, count - 1.0, min(count, FIRST))).astype(int))
     known = {int(place): nearest(int(place)) for place in first}
-    while closer := _open_gaps(known):
+    while 0.0 not in known.values() and (closer := _open_gaps(known)):
         known |= {place: nearest(place) for place in closer}
-    return sorted(known)
+    return dict(sorted(known.items()))
+
+
+def worst_wave(growth: Callable[[int, float], float], known: dict[int, float], count: int, least: float) -> int:
+    """Return which of *count* waves grows fastest, of some of which it is known how near to growing they are, 0 where one does.
+
+    *growth* of a place and a rate is how fast the wave grows, or the rate where it grows no faster.
+    """
+    growing = [place for place, ratio in known.items() if ratio == 0.0]
+    worst, rate = growing[0], least
+    for place in dict.fromkeys([growing[-1], *growing, *(place for place in range(count) if place not in known)]):  # one end, the other
+        found = growth(place, rate)
+        if found > rate:
+            worst, rate = place, found
+    return worst
 
 
 def _open_gaps(known: dict[int, float]) -> list[int]:
