@@ -15,11 +15,12 @@ from coaxshell.apps.studio import limits, memory
 from coaxshell.errors import InputError
 from coaxshell.model import System
 from coaxshell.numerics.cache import ByteBoundedCache, held_bytes
-from coaxshell.response import PreparedSystem, Response, prepare, simulate
+from coaxshell.response import PreparedSystem, Response, prepare
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.shared_parts import SharedParts, shared_parts
 from coaxshell.studies.executors import begin_worker
 
-STRUCTURE_BYTES, ANSWER_BYTES = 500_000_000, 100_000_000
+STRUCTURE_BYTES, ANSWER_BYTES, FLUID_BYTES = 500_000_000, 100_000_000, 150_000_000
 STOP, FRACTION, HELD, FIRST = range(4)
 """Places on the shared board: the task to be stopped, how far the present one is, bytes of memory after the last one, and before all."""
 
@@ -44,6 +45,7 @@ class _Here:
     stage: Any = None
     structures: ByteBoundedCache[PreparedSystem] = ByteBoundedCache(STRUCTURE_BYTES, held_bytes)
     answers: ByteBoundedCache[Response] = ByteBoundedCache(ANSWER_BYTES, held_bytes)
+    fluids: SharedParts = shared_parts(FLUID_BYTES)
     last: tuple[str, Response] | None = None
 
 
@@ -134,13 +136,21 @@ def answer(system: System, settings: Settings) -> Response:
     if found is not None:
         return found
     _Here.last = None
-    response = simulate(system, settings=settings, progress=report) if settings.dimensions == 3 else _on_structure(system, settings)
+    response = _in_space(system, settings) if settings.dimensions == 3 else _on_structure(system, settings)
     if not _live(settings):
         _Here.answers.put(key, response.without_transforms())
     elif settings.dimensions == 3:
         _Here.answers.put(key, response)
     _Here.last = key, response
     return response
+
+
+def _in_space(system: System, settings: Settings) -> Response:
+    """Return the response of a system in three dimensions; previews of the same fluids and radii share what these add to the walls."""
+    from coaxshell.response.spatial import SpatialResponse
+    from coaxshell.solver.axial.solve import solve_spatial
+
+    return SpatialResponse(solve_spatial(system, settings, report, fluids=_Here.fluids if _live(settings) else None))
 
 
 def _on_structure(system: System, settings: Settings) -> Response:

@@ -35,6 +35,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.excitation import SourceGroup, source_groups, superposed
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.shared_parts import SharedParts
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +75,13 @@ class WaveSet:
     modes : list of Modes
         One a wavenumber.
     families : list of Family
+    fluids : SharedParts or None
+        Where the added masses of the fluids at these waves are found, or left for the next run.
     """
 
     modes: list[Modes]
     families: list[Family]
+    fluids: SharedParts | None = None
 
     @property
     def wavenumber(self) -> npt.NDArray[np.number]:
@@ -133,7 +137,7 @@ def wave_sets(
     families = [Family(groups, *sampling.shares(stations - z0), sampling.mean, parities) for z0, groups in spherical.items()]
     if forces is not None:
         families += _force_families(sampling, stations, forces)
-    return [*sets, WaveSet(sampling.modes, families)] if families else sets
+    return [*sets, WaveSet(sampling.modes, families, sampling.fluids)] if families else sets
 
 
 def _force_families(sampling: AxialSampling, stations: FloatArray, forces: WallForces) -> list[Family]:

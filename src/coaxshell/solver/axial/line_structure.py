@@ -15,6 +15,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
 from coaxshell.solver.axial.blocks import Found
+from coaxshell.solver.axial.blocks import node_blocks as shared_blocks
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lines import LineLayout
 from coaxshell.solver.axial.surfaces import SurfaceWave
@@ -103,8 +104,8 @@ def wave_answers(layout: LineLayout, grid: LaplaceGrid, j: int) -> tuple[Complex
     count, felt, surface = len(problem.surfaces), layout.felt(modes), layout.points.surface
     motion = np.zeros((surface.size, layout.axial_parities, grid.nodes.size), np.complex128)
     compliance = np.empty((count, count, modes.count, grid.nodes.size), np.complex128)
-    for block in node_blocks(grid, modes.max_order):
-        system = SurfaceWave(problem, grid.nodes[block], modes)
+    for block in shared_blocks(grid):  # those of all other work on these waves, which find the same fluids
+        system = SurfaceWave(problem, grid.nodes[block], modes, layout.sampling.fluids)
         for pressed in range(count):
             for moved, w in enumerate(system.under_pressure(pressed)):
                 compliance[moved, pressed, :, block] = w

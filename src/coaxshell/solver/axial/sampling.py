@@ -26,6 +26,7 @@ from coaxshell.solver.axial.causality import Front, felt_length, first_arrival, 
 from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.structure.laminate import require_axial_constants
 
 MOST_WAVES = 100_000
@@ -44,11 +45,14 @@ class AxialSampling:
         M, the highest order, that of k = 0.
     highest : float
         k_max, in 1/a.
+    fluids : SharedParts or None
+        Where the added masses of the fluids at these waves are found, or left for the next run.
     """
 
     period: float
     max_order: int
     highest: float
+    fluids: SharedParts | None = None
 
     @property
     def spacing(self) -> float:

@@ -31,13 +31,18 @@ from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
+from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.solid_spectra import band
 from coaxshell.solver.solution import KEPT_BYTES, Estimates
 from coaxshell.solver.spectral import Stopwatch
 
 
 def solve_spatial(
-    system: System, settings: Settings, progress: Progress | None = None, workplace: Workplace | None = None
+    system: System,
+    settings: Settings,
+    progress: Progress | None = None,
+    workplace: Workplace | None = None,
+    fluids: SharedParts | None = None,
 ) -> SpatialSolution:
     """Return the modal histories of a system at its stations.
 
@@ -50,6 +55,9 @@ def solve_spatial(
         Told how far the run is; its estimates and warnings are made when they are first read.
     workplace : Workplace, optional
         Where blocks of Laplace nodes are worked on, all cores of this machine by default. The answer does not depend on it.
+    fluids : SharedParts, optional
+        Where the added masses of the fluids are found, or left for the next run, if there is room for all of them: for runs on the threads
+        of this process whose fluids, radii and resolution stay.
 
     Raises
     ------
@@ -70,14 +78,14 @@ def solve_spatial(
     stopwatch.lap("stability of the feedback")
     run = {"scenario": system.canonical(), "resolution": settings.arguments()}
     with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:
-        waves = with_shapes(problem, sampling, on)
+        waves = with_shapes(problem, _with_fluids(problem, grid, sampling, fluids), on)
         linked = _linked(problem, grid, waves, progress, on)
         stopwatch.lap("absorbers")
         forces = None if linked is None else linked.forces
         spectra, squares = _summed(problem, grid, waves, settings, forces, progress, on)
         del waves, forces
     if isinstance(linked, LineSolution):
-        linked = linked.with_waves(sampling)  # which keep no shapes
+        linked = linked.with_waves(sampling)  # which keep neither shapes nor fluids
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
     histories = {name: grid.invert(spectrum)[..., keep] for name, spectrum in (spectra | _voltage_rates(problem, grid, spectra)).items()}
@@ -170,6 +178,15 @@ def with_shapes(problem: Problem, sampling: AxialSampling, on: BlockMap) -> Axia
     if on is on_threads:
         make_shapes(problem, waves.modes)
     return waves
+
+
+def _with_fluids(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, fluids: SharedParts | None) -> AxialSampling:
+    """Return waves that share the added masses of their fluids, where these have room: some alone would only push each other out."""
+    entries = 3 * len(problem.shells) - 2
+    needed = 16 * entries * grid.nodes.size * sum(modes.count for modes in sampling.modes)
+    if fluids is None or problem.two_faced or problem.tied or needed > fluids.most:
+        return sampling
+    return replace(sampling, fluids=fluids)
 
 
 def _linked(

@@ -90,7 +90,7 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
     if problem.tied:
         tied = TiedWave(problem, grid.nodes[block], waves.modes[j])
         return [_tied_motions(problem, tied, family, grid, block) for family in waves.families]
-    system = ModalSystem(problem, grid.nodes[block], waves.modes[j])
+    system = ModalSystem(problem, grid.nodes[block], waves.modes[j], shared=waves.fluids)
     return [motions_of(problem, system, family, grid, block) for family in waves.families]
 
 

@@ -17,6 +17,7 @@ from coaxshell.solver.axial.sums import normals_of
 from coaxshell.solver.cascade import FaceMotion
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem
+from coaxshell.solver.shared_parts import SharedParts
 
 
 class SurfaceWave:
@@ -27,11 +28,13 @@ class SurfaceWave:
     problem : Problem
     s : ndarray, shape (nodes,)
     modes : Modes
+    fluids : SharedParts, optional
+        Where the added masses of the fluids beside thin walls are found, or left for the next run.
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes) -> None:
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, fluids: SharedParts | None = None) -> None:
         self._problem, self.modes = problem, modes
-        self._system = FacedWave(problem, s, modes, reads=False) if problem.two_faced else ModalSystem(problem, s, modes)
+        self._system = FacedWave(problem, s, modes, reads=False) if problem.two_faced else ModalSystem(problem, s, modes, shared=fluids)
 
     def under(self, family: Family, grid: LaplaceGrid, block: slice) -> list[list[ComplexArray]]:
         """Return the displacement of every surface, (orders, nodes), under the loads of a family, for each parity around."""
