@@ -91,7 +91,7 @@ def test_a_run_is_saved_summed_up_and_measured(tmp_path):
 
 class TestStability:
     def test_usual_laws_are_proven_at_every_wavenumber(self, monkeypatch):
-        monkeypatch.setattr(stability, "_turned", lambda *_: pytest.fail("poles were counted"))
+        monkeypatch.setattr(stability, "turned", lambda *_: pytest.fail("poles were counted"))
         waves = [Modes.up_to(8, float(k)) for k in np.linspace(0.0, 20.0, 6)]
         for name in CONTROLS:
             assert not doubtful_waves(dimensionless(system(name), 3), waves, 0.25)

@@ -16,7 +16,7 @@ An unstable loop cannot be seen in its answer: the inverse transform of poles ri
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
@@ -224,28 +224,41 @@ def unstable_poles(
 def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedParts | None = None) -> UnstablePoles:
     """Return the orders with poles that grow by more than a rate per transit.
 
-    Those are counted whose walls the feedback may make give energy (:mod:`coaxshell.solver.passivity`); no other order has any.
+    Those are counted that are fed back and whose walls it may make give energy (:mod:`coaxshell.solver.passivity`); no other has any.
     """
-    doubtful = modes.orders if problem.two_faced else modes.orders[~passive_orders(problem, modes, least)]
+    doubtful = fed_orders(problem, modes) if problem.two_faced else modes.orders[~passive_orders(problem, modes, least)]
     if not doubtful.size:
         return UnstablePoles(doubtful, np.zeros(0))
-    if doubtful.size < modes.count:
-        modes = Modes(doubtful, modes.wavenumber, modes.sparse or 2 * doubtful.size < modes.count)
-    turned, nearest = _turned(along_alone(problem, modes), modes, Contour.of(problem, modes, least), shared)
-    counts = np.rint(-turned / np.pi)
+    some = few_of(modes, doubtful)
+    slow = along_alone(problem, some)
+    turn, nearest = turned(slow, some, Contour.of(problem, some, least), partial(_ratio, slow, shared, slow.open_loop))
+    counts = np.rint(-turn / np.pi)
     return UnstablePoles(doubtful[counts > 0], counts[counts > 0], nearest)
 
 
-def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedParts | None) -> tuple[FloatArray, float]:
-    """Return how far D_m/D0_m turns along a contour, of each order, and how near the nearest comes to 0."""
+def fed_orders(problem: Problem, modes: Modes) -> FloatArray:
+    """Return the orders that some law weighs at all: of any other D_m is D0_m."""
+    weights = [wall.gains.weight(modes.orders) for wall in problem.shells if wall.gains is not None]
+    return modes.orders[np.any([np.broadcast_to(one, modes.count) != 0.0 for one in weights], axis=0)]
+
+
+def few_of(modes: Modes, orders: FloatArray) -> Modes:
+    """Return some of the orders of modes."""
+    return modes if orders.size == modes.count else Modes(orders, modes.wavenumber, modes.sparse or 2 * orders.size < modes.count)
+
+
+def turned(
+    problem: Problem, modes: Modes, contour: Contour, ratio_at: Callable[[ComplexArray, Modes], ComplexArray]
+) -> tuple[FloatArray, float]:
+    """Return how far D_m/D0_m, given at nodes and orders, turns along a contour, of each order, and how near the nearest comes to 0."""
     nearest = np.inf
-    turned, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
-    faced, passive = problem.two_faced, problem.open_loop
+    turns, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
+    faced = problem.two_faced
     limits = np.full(modes.count, contour.limits.max()) if faced else contour.limits  # shapes of all orders are made once
     for block in contour.blocks():
         some = modes if faced else Modes(modes.orders[left], modes.wavenumber, modes.sparse)
-        ratio = _ratio(problem, block, some, shared, passive)
-        turned[left] += turning(ratio)
+        ratio = ratio_at(block, some)
+        turns[left] += turning(ratio)
         nearest = min(nearest, float(np.abs(ratio).min()))
         reached[left] = block[-1].imag
         left = left[limits[left] > block[-1].imag]
@@ -253,21 +266,21 @@ def _turned(problem: Problem, modes: Modes, contour: Contour, shared: SharedPart
             break
     ends = np.unique(reached)
     nodes = contour.beyond(*ends.tolist())
-    ratio = _ratio(problem, nodes, modes, shared, passive)
+    ratio = ratio_at(nodes, modes)
     for _ in range(_HALVINGS):  # a pole of strong feedback may lie there, close to the contour
         quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
         if not quick.any():
             break
         between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
-        nodes, ratio = np.append(nodes, between), np.append(ratio, _ratio(problem, between, modes, shared, passive), axis=1)
+        nodes, ratio = np.append(nodes, between), np.append(ratio, ratio_at(between, modes), axis=1)
         ascending = np.argsort(nodes.imag)
         nodes, ratio = nodes[ascending], ratio[:, ascending]
     for end in ends:
-        turned[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
-    return turned + np.angle(1.0 / ratio[:, -1]), min(nearest, float(np.abs(ratio).min()))  # beyond the last node it tends to 1
+        turns[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
+    return turns + np.angle(1.0 / ratio[:, -1]), min(nearest, float(np.abs(ratio).min()))  # beyond the last node it tends to 1
 
 
-def _ratio(problem: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None, passive: Problem) -> ComplexArray:
+def _ratio(problem: Problem, shared: SharedParts | None, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
     """Return D_m/D0_m at some nodes; what is the same for all gains is found among the shared parts, or left there.
 
     ``passive`` is the problem without feedback.

@@ -12,6 +12,7 @@ the contour, any number of segments takes energy alone, dead ones or not: nothin
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +29,7 @@ from coaxshell.numerics.winding import turning
 from coaxshell.solver.electrode_loops import ElectrodeLoops, shares_of
 from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour, along_alone, remedy
+from coaxshell.solver.stability import Contour, along_alone, fed_orders, few_of, remedy, turned
 from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 from coaxshell.structure.shell_model import Gain
@@ -122,7 +123,19 @@ def _growing(problem: Problem, max_order: int, least: float, wavenumber: float) 
     contour = Contour.of(problem, modes, least)
     if collocated(problem, max_order, wavenumber) and never_gives(problem, contour, max_order):
         return None, np.inf
+    if segments_of(problem.system) is None:  # orders stand alone: those that are fed back, each as far as it resonates
+        some = few_of(modes, fed_orders(problem, modes))
+        if not some.count:
+            return None, np.inf
+        slow = along_alone(problem, some)
+        turns, nearest = turned(slow, some, Contour.of(problem, some, least), partial(_ratio, slow, slow.open_loop))
+        if not (np.rint(-turns / np.pi) > 0.0).any():
+            return None, nearest
     return _counted(along_alone(problem, modes), modes, contour)
+
+
+def _ratio(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
+    return determinants(problem, passive, modes, nodes)
 
 
 def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
