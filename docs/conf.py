@@ -27,6 +27,7 @@ extensions = [
     "mathml",
     "sources",
     "generated",
+    "typography",
 ]
 exclude_patterns = [
     "built",

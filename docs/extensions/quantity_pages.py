@@ -24,7 +24,6 @@ Further metrics, among them voltages over a segment of the wall and as the contr
 |---|---|---|---|
 """
 _NEEDS = {
-    "": "–",
     "elastic": "an elastic wall",
     "sensor": "a sensor layer",
     "control": "sensor, actuator and control",
@@ -44,8 +43,8 @@ def _row(cells: tuple[str, ...]) -> str:
 
 def _what(quantity: Quantity) -> tuple[str, ...]:
     sign = quantity.sign.removeprefix("positive ").replace("phi_s", r"$\varphi_s$").replace("of u ", "of $u$ ")
-    needs = [_NEEDS[quantity.needs], *(["three dimensions"] if quantity.dimensions == 3 else [])]
-    return f"`{quantity.name}`", quantity.long_name, pretty(quantity.unit), sign, ", ".join(needs)
+    needs = [*([_NEEDS[quantity.needs]] if quantity.needs else []), *(["three dimensions"] if quantity.dimensions == 3 else [])]
+    return f"`{quantity.name}`", quantity.long_name, pretty(quantity.unit), sign, ", ".join(needs) or "–"
 
 
 def _where(quantity: Quantity) -> tuple[str, ...]:

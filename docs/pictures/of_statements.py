@@ -51,7 +51,7 @@ without 300, and the fields behind the statements are laid out every 0.01 transi
 | a front comparable to the incident wave (Mach stem) | largest interior pressure at least half the incident peak, and at least half \
 of the wall's on its gap side |
 
-Statements that need what a model does not have (fields, or other than two shells in three fluids) are "not judged" in it ("–"). Under
+Statements that need what a model does not have (fields, or other than two shells in three fluids) are "not judged" in it, marked –. Under
 the radius factor energy is not conserved, so that what is said about energy there only tells what its fields would add up to.
 
 | column | model | told under |

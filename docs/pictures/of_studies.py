@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-STUDIES = Path(__file__).parents[1] / "studies"
+STUDIES = Path(__file__).resolve().parents[1] / "studies"
 
 
 def optima(target: Path) -> None:
@@ -19,8 +19,8 @@ def optima(target: Path) -> None:
 def search(name: str, target: Path) -> None:
     """Run a study again and draw how it went."""
     with TemporaryDirectory() as folder:
-        words = ["optimise", STUDIES / f"{name}.toml", "--output", Path(folder) / "found", "--figure", target, "--quiet", "--force"]
-        subprocess.run([sys.executable, "-m", "coaxshell", *words], check=True, stdout=subprocess.DEVNULL)
+        words = ["optimise", STUDIES / f"{name}.toml", "--output", "found", "--figure", target.resolve(), "--quiet", "--force"]
+        subprocess.run([sys.executable, "-m", "coaxshell", *words], check=True, stdout=subprocess.DEVNULL, cwd=folder)  # its journal too
 
 
 equal = partial(search, "a-equal-absorbers")

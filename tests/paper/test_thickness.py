@@ -43,7 +43,7 @@ def test_thin_walls_differ_as_an_independent_program_found(small):
 def test_the_report_holds_every_number_and_picture(small):
     text = small.markdown()
     for thickness, one in small.found.items():
-        shown = " | ".join(f"{value:.1%}" for value in one.difference("faces"))
+        shown = " | ".join(f"{100 * value:.1f} %" for value in one.difference("faces"))
         assert f"| {thickness} | faces | {shown} |" in text
     for name, figure in small.figures().items():
         assert f"({name}.png)" in text

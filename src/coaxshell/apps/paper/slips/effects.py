@@ -189,6 +189,6 @@ def _shown(stresses: Stresses | None, name: str) -> str:
 
 def _outcome(effect: Effect) -> str:
     if effect.growth is not None:
-        return f"grows by e^({effect.growth.rate:.3g} t), order {effect.growth.order}"
+        return f"grows by e^({float(f'{effect.growth.rate:.3g}'):g} t), order {effect.growth.order}"
     assert effect.inner_change is not None
-    return f"{effect.inner_change:.2g}"
+    return f"{float(f'{effect.inner_change:.2g}'):g}"

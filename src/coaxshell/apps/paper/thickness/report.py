@@ -102,11 +102,10 @@ class Report:
     def tables(self) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
         """The tables: what each shows, its headings and its rows."""
         headings = ("walls", "thin, wetted at", *next(iter(self.found.values())).points)
-        percent = "{:.1%}"
         return [
-            (texts.ERROR_CAPTION, headings, self._rows(lambda one, theory: one.difference(theory), percent)),
+            (texts.ERROR_CAPTION, headings, self._rows(lambda one, theory: 100.0 * one.difference(theory), "{:.1f} %")),
             (texts.PEAK_CAPTION, headings, self._rows(lambda one, theory: one.peak_ratio(theory), "{:.3f}")),
-            (texts.MOTION_CAPTION, headings, self._rows(lambda one, theory: one.difference(theory, "displacement"), percent)),
+            (texts.MOTION_CAPTION, headings, self._rows(lambda one, theory: 100.0 * one.difference(theory, "displacement"), "{:.1f} %")),
             (self.fit_caption, texts.FIT_HEADINGS, self.fit_rows),
         ]
 
@@ -137,7 +136,8 @@ class Report:
             return []
         found = rows(self.judged)
         turned = [row[0] for row in found if row[2] != row[3]]
-        told = f"no. {', '.join(turned)} change their verdict" if turned else "none changes its verdict"
+        change = "change their verdicts" if len(turned) > 1 else "alone changes its verdict"
+        told = f"no. {', '.join(turned)} {change}" if turned else "none changes its verdict"
         said = texts.CLAIMS.format(count=len(found), turned=told)
         return [f"## {texts.CLAIMS_TITLE}", said, table(texts.CLAIM_HEADINGS, found)]
 

@@ -8,8 +8,8 @@ SHOWN_DURATION = 4.0
 
 ABOUT = (
     "The paper's walls are thin: straight normals, no stress across the wall, fluids that meet it at its mid-surface. Exact walls are "
-    'layers of elastic solids wetted at their faces (theory="elastic"). Between both stand thin walls wetted at their faces '
-    '(wetted="faces"). The paper\'s bare shells under a plane wave of its decay, their layers as they are (12 mm), twice and four times '
+    'layers of elastic solids wetted at their faces (theory = "elastic"). Between both stand thin walls wetted at their faces '
+    '(wetted = "faces"). The paper\'s bare shells under a plane wave of its decay, their layers as they are (12 mm), twice and four times '
     "as thick:"
 )
 WHY = (
@@ -28,9 +28,9 @@ MAP = (
 )
 FIT = "A power law holds the map from h/R = {thinnest:g} and up to decays of {decay:g} transits, within the factor in the last column:"
 USE = (
-    "With wetted=\"faces\" the largest hoop stress of the paper's walls is within 5 % of exact walls' up to 48 mm, and "
+    "With wetted = \"faces\" the largest hoop stress of the paper's walls is within 5 % of exact walls' up to 48 mm, and "
     "displacements within 2 %: for these thin walls will do.",
-    'Histories of the stress of walls with water on both sides, and any walls from h/R = 0.05 on, ask for theory="elastic", which takes '
+    'Histories of the stress of walls with water on both sides, and any walls from h/R = 0.05 on, ask for theory = "elastic", which takes '
     "two to three and a half times as long.",
     "Walls that are dry inside (a hull full of air) err by up to twice h/R under a pulse of 0.2 transits and by less than h/R under one of "
     "2 or more.",
@@ -43,7 +43,7 @@ CLAIMS_TITLE = "The paper's statements with exact walls"
 CLAIMS = (
     "Statements of the paper about its bare shells, their histories and the waves around them, and about its absorbers, under its own "
     "source, judged by the same criteria from runs that differ in their walls alone; pressures beside a wall are those where fluids wet "
-    "it, and absorbers hold thin walls along lines, exact ones over arcs as long as these are thick. Of {count} {turned}."
+    "it, and absorbers hold thin walls along lines, exact ones over arcs as long as these are thick. Of {count} statements {turned}."
 )
 CLAIM_HEADINGS = ("no.", "statement", "thin", "exact", "found with thin walls", "found with exact walls")
 FIT_HEADINGS = ("wall", "wetted at", "error of the hoop stress", "within a factor")
