@@ -200,8 +200,8 @@ ELASTIC = (
     Mutation(
         "solid-loop-closed",
         "structure/solid_transducers.py",
-        "1.0 - own * answer[0, 0]",
-        "1.0 + own * answer[0, 0]",
+        "1.0 - acting[0] * sensing[0] * gains",
+        "1.0 + acting[0] * sensing[0] * gains",
         "voltages feed back what they make sensors read",
         "solver/test_exact_control.py",
     ),

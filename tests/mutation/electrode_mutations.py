@@ -167,4 +167,12 @@ ELECTRODES = (
         "field along the axis within a layer between electrodes",
         "solver/test_exact_control_in_space.py",
     ),
+    Mutation(
+        "open-circuits-charge-themselves",
+        "structure/solid_transducers.py",
+        "np.outer(opened, opened)",
+        "np.outer(opened, sensing)",
+        "of an open circuit the law hears the charge that its thickness lets it have",
+        "structure/test_solid_circuits.py",
+    ),
 )

@@ -11,26 +11,28 @@ from scipy.linalg import eigh
 
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
+from coaxshell.numerics.winding import turning
 from coaxshell.response import load_response
 from coaxshell.solver.scaling import Problem, dimensionless
-from coaxshell.solver.stability import unstable_poles
+from coaxshell.solver.stability import opened, unstable_poles
 from coaxshell.structure.elastic_basis import strain_rows
 from coaxshell.structure.elastic_depth import shown_by_shapes
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.thin_wall import ThinWall
 
-PRESETS = {"paper": "active", "electrodes": "electrodes", "charged": "electrodes"}
+PRESETS = {"paper": "active", "electrodes": "electrodes", "charged": "electrodes", "open": "electrodes"}
 GAINS = {
     "paper": cx.PDControl(proportional=-2e4, derivative=-150),
     "electrodes": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
     "charged": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
+    "open": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
 }
 
 
 def system(kind: str, theory: str = "elastic", scale: float = 1.0, **changes: Any) -> cx.System:
     """Return a preset with walls of a theory, all layers *scale* times as thick, ceramics without printed slips.
 
-    "charged": a sensor read by its charge beside a self-sensing layer.
+    "charged": a sensor read by its charge beside a self-sensing layer; "open": with its circuit open.
     """
     base, shells = cx.presets.load(PRESETS[kind]), []
     for shell in base.shells:
@@ -39,7 +41,8 @@ def system(kind: str, theory: str = "elastic", scale: float = 1.0, **changes: An
             material = layer.material
             if isinstance(material, cx.Piezoelectric):
                 material = material.replace(permittivity_reduction="standard")
-            role = {"role": ("charge-sensor", None, "self-sensing")[place]} if kind == "charged" and place != 1 else {}
+            sensor = {"charged": "charge-sensor", "open": "sensor"}.get(kind)
+            role = {"role": (sensor, None, "self-sensing")[place]} if sensor and place != 1 else {}
             layers.append(layer.replace(thickness=scale * layer.thickness, material=material, **role))
         wetted = {"wetted": "faces"} if theory == "thin" else {}
         shells.append(shell.replace(layers=layers, theory=theory, **wetted))
@@ -81,8 +84,8 @@ def test_loads_and_readings_of_bending_and_stretching_are_those_of_thin_walls(ki
 def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
     """Stiffness, mass, d and p of all points, solved at one order and frequency: what volts do along the wall, and at rest through it.
 
-    Of electrodes what is left out, the inertia that volts find in the thickness and what a driven layer reads of it, is small beside it:
-    (K + M s^2 - H d p') x = loads.
+    The law hears what moves along the wall, of loads too. Where one layer senses and acts what is left out, the inertia that volts find in
+    the thickness and what is read of that, is small: (K + M s^2 - H d p') x = loads. Another sensor would feel pressure through it.
     """
     wall, _, _ = walls(kind)
     modes, s = Modes.up_to(3), np.array([0.7 + 2.3j])
@@ -91,7 +94,7 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
     assert wall.gains is not None
     found, law, mass = wall.receptance(modes, s), wall.gains.at(s, modes)[0], np.tile(part.mesh.mass, 2)
     places, given = [0, part.mesh.radius.size - 1], wall.under_voltage(modes, s, wall.asked_of_port)
-    for m in (2, 3):
+    for m in range(4):
         rows = strain_rows(part.mesh, part.orders[m : m + 1], 0.0)[0]
         stiffness = rows.reshape(len(rows), -1).T @ rows.reshape(len(rows), -1)
         shapes = part.shapes[m].reshape(part.shapes.shape[1], -1)
@@ -103,13 +106,14 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
         squares, vectors = eigh(stiffness, np.diag(mass))
         slow, along, through = part.squares[m, :2], shapes[:2].T, vectors[:, 2:]  # the low ones of K are lost to rounding
         pushed = along @ ((along.T @ push) / (slow + s[0] ** 2))
-        volts = law * (read @ free) / (1.0 - law * (read @ pushed))
+        heard = (read @ along) @ ((along.T @ loads) / (slow + s[0] ** 2)[:, None])
+        volts = law * heard / (1.0 - law * (read @ pushed))
         pushed = pushed + through @ ((through.T @ push) / squares[2:])
         moved = -(free + np.outer(pushed, volts))[places]
         np.testing.assert_allclose(given.faces[:, m, 0], -pushed[places], rtol=0, atol=1e-6 * np.abs(pushed).max())
         here = [[found.inner[m, 0], found.across[m, 0]], [found.back[m, 0], found.outer[m, 0]]]
         np.testing.assert_allclose(here, moved, rtol=0, atol=1e-6 * np.abs(moved).max())
-        if kind != "paper":
+        if kind == "electrodes":
             whole = -np.linalg.solve(dynamic - law * np.outer(push, read), loads)[places]
             np.testing.assert_allclose(here, whole, rtol=0, atol=2e-3 * np.abs(whole).max())
         assert np.abs(here + free[places]).max() > 1e-3 * np.abs(moved).max()
@@ -125,6 +129,32 @@ def test_exact_walls_under_electrodes_tend_to_thin_ones() -> None:
     assert errors[1] < 2e-3
     assert errors[0] / errors[1] > 2.0
     assert np.linalg.norm(bare - controlled) > 10.0 * errors[0] * np.linalg.norm(bare)
+
+
+@pytest.mark.parametrize("kind", ["paper", "charged", "open"])
+def test_no_loop_grows_through_the_thickness(kind: str) -> None:
+    """Zeros of D/D0 with all inertia, counted to beyond the resonances of the thickness, which checks of stability do not look at.
+
+    A law that heard pressure through its sensor would drive them: e^(1000 t) of the paper's, several poles of each.
+    """
+    problem, modes = dimensionless(system(kind)).resolving(400.0), Modes(np.array([2.0]))
+    s = 25.0 + 1j * np.arange(0.0, 6e4, 20.0)
+    ratio = opened(problem, problem.open_loop, s, modes, None).closed(problem, s, modes)
+    assert abs(turning(ratio)[0]) < 0.05 * np.pi
+    np.testing.assert_allclose(np.abs(ratio[0, -100:]), 1.0, rtol=0.1)
+
+
+@pytest.mark.slow_for("paper")
+@pytest.mark.parametrize("kind", ["paper", "charged"])
+def test_the_energy_with_cubic_absorbers_closes_as_the_step_shortens(kind: str) -> None:
+    """The march's kernels see all frequencies: a loop that grows at any of them shows there, and more the shorter the step."""
+    source = cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4)
+    law: dict[str, Any] = {"mass": 50.0, "damping": 1e5, "linear_stiffness": 1e9, "cubic_stiffness": 1e20, "footprint": 0.2}
+    absorbers, closed = [cx.Absorber(angle=angle, **law) for angle in (20.0, 160.0, 250.0)], []
+    for step in (0.02, 0.01):
+        run = cx.simulate(system(kind, source=source, absorbers=absorbers), duration=0.6, time_step=step, modes=4)
+        closed.append(float(np.abs(run.energy(every=2).closure_relative).max()))
+    assert closed[1] < 0.4 * closed[0] < 4e-5
 
 
 @pytest.mark.slow_for("charged")

@@ -137,7 +137,8 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
         squares, vectors = eigh(stiffness, np.diag(mass))
         slow, along, through = part.squares[m, :3], shapes[:3].T, vectors[:, 3:]  # the low ones of K are lost to rounding
         pushed = along @ ((along.T @ push) / (slow + s[0] ** 2))
-        volts = law * (read @ free) / (1.0 - law * (read @ pushed))
+        heard = (read @ along) @ ((along.T @ loads) / (slow + s[0] ** 2)[:, None])
+        volts = law * heard / (1.0 - law * (read @ pushed))
         pushed = pushed + through @ ((through.T @ push) / squares[3:])
         moved = -(free + np.outer(pushed, volts))[places]
         here = [[found.inner[m, 0], found.across[m, 0]], [found.back[m, 0], found.outer[m, 0]]]

@@ -17,12 +17,12 @@ from coaxshell.structure.elastic_wall import Asked, ElasticWall
 from coaxshell.structure.losses import Prony
 from coaxshell.structure.lossy_solid import LossySolidWall
 
-PRESETS = {"paper": "active", "electrodes": "electrodes", "apart": "electrodes"}
+PRESETS = {"paper": "active", "electrodes": "electrodes", "apart": "electrodes", "open": "electrodes"}
 GAINS: dict[str, Any] = {
     "paper": cx.PDControl(proportional=-2e4, derivative=-150),
     "electrodes": cx.PDControl(proportional=0, derivative=2, transducers="electrodes"),
 }
-GAINS["apart"] = cx.Feedback(numerator=[3e-4, 3.0], amplifier_corner="20 kHz", transducers="electrodes")
+GAINS["apart"] = GAINS["open"] = cx.Feedback(numerator=[3e-4, 3.0], amplifier_corner="20 kHz", transducers="electrodes")
 FACTORS = Prony(0.9, (0.2,), (0.3,)), Prony(1.0, (0.05,), (0.1,)), Prony(0.95, (0.1,), (0.2,))
 SMALL: dict[str, Any] = {"duration": 0.8, "time_step": 1e-2, "modes": 3}
 
@@ -30,13 +30,14 @@ SMALL: dict[str, Any] = {"duration": 0.8, "time_step": 1e-2, "modes": 3}
 def system(
     kind: str, theory: str = "elastic", scale: float = 1.0, losses: tuple[float, ...] = (0.02, 0.01, 0.03), **changes: Any
 ) -> cx.System:
-    """Return a preset with walls of a theory, each layer with a loss factor; a sensor read by its charge beside an actuator "apart"."""
+    """Return a preset with walls of a theory, each layer with a loss factor; a sensor, by its charge ("apart") or "open"."""
     base, shells = cx.presets.load(PRESETS[kind]), []
     for shell in base.shells:
         layers = []
         for place, (layer, factor) in enumerate(zip(shell.layers, losses, strict=True)):
             standard = {"permittivity_reduction": "standard"} if isinstance(layer.material, cx.Piezoelectric) else {}
-            role = {"role": ("charge-sensor", None, "self-sensing")[place]} if kind == "apart" and place != 1 else {}
+            sensor = {"apart": "charge-sensor", "open": "sensor"}.get(kind)
+            role = {"role": (sensor, None, "self-sensing")[place]} if sensor and place != 1 else {}
             material = layer.material.replace(loss_factor=factor, **standard)
             layers.append(layer.replace(thickness=scale * layer.thickness, material=material, **role))
         shells.append(shell.replace(layers=layers, theory=theory, **({"wetted": "faces"} if theory == "thin" else {})))
@@ -60,7 +61,7 @@ def close(found: Any, expected: Any, within: float) -> None:
     np.testing.assert_allclose(found, expected, rtol=0, atol=within * float(np.abs(expected).max()))
 
 
-@pytest.mark.parametrize("kind", ["paper", "electrodes", "apart"])
+@pytest.mark.parametrize("kind", ["paper", "electrodes", "apart", "open"])
 @pytest.mark.parametrize("wavenumber", [0.0, 1.7])
 def test_pieces_that_lose_nothing_are_the_wall_without_losses(kind: str, wavenumber: float) -> None:
     """Three pieces with factors 1 each, joined: voltages find the same inertia, also above the first resonance of the thickness."""
@@ -101,9 +102,9 @@ def dense(part: OrdersBasis, m: int, factors: tuple[Prony, ...], s: complex) -> 
     return found
 
 
-@pytest.mark.parametrize("kind", ["electrodes", "apart"])
+@pytest.mark.parametrize("kind", ["electrodes", "apart", "open"])
 def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
-    """(K_g + s^2 B B') x = d u, (K_g + s^2 M) x = loads, u = L p'x: every layer loses otherwise."""
+    """(K_g + s^2 B B') x = d u, (K_g + s^2 M) x = loads, u = O p'x + a H h: every layer loses otherwise; h is of X X'M x alone."""
     plain, lossy = walls(kind, FACTORS)
     modes, s = Modes.up_to(3), np.array([0.7 + 2.3j])
     part, driven, transducers = plain.basis(modes)[0], plain.driven(modes)[0], plain.transducers
@@ -111,7 +112,7 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
     assert plain.gains is not None
     found, given = lossy.receptance(modes, s), lossy.under_voltage(modes, s, [])
     mass, places, circuits = np.tile(part.mesh.mass, 2), [0, part.mesh.radius.size - 1], transducers.circuits
-    law = np.diag(circuits.opened) + plain.gains.at(s, modes)[0] * np.outer(circuits.acting, circuits.sensing)
+    opened, law = np.diag(circuits.opened), plain.gains.at(s, modes)[0]
     for m in (1, 2, 3):
         stiffness, shapes = dense(part, m, FACTORS, s[0]), part.shapes[m].reshape(part.shapes.shape[1], -1)
         d, p = (each[m] @ (shapes * mass) for each in (driven.loads, driven.readings))  # back to the points, by completeness
@@ -121,11 +122,13 @@ def test_the_closed_wall_against_the_equations_of_its_points(kind: str) -> None:
         pushed = np.linalg.solve(stiffness + s[0] ** 2 * inert @ inert.T, d.T @ circuits.shares)
         read = circuits.reading @ p
         along = (read @ shapes[:2].T) @ (inert.T @ pushed)
-        answer = np.where(circuits.listening[:, None] > 0.0, read @ pushed, along)
-        volts = np.linalg.solve(np.eye(len(law)) - law @ answer, law @ (read @ free))
+        own = np.linalg.inv(np.eye(len(read)) - opened @ (read @ pushed - along) @ opened)  # of what moves at once
+        hears = law * np.outer(circuits.acting, circuits.sensing @ own)
+        loop = np.eye(len(read)) - opened @ read @ pushed - hears @ along
+        volts = np.linalg.solve(loop, opened @ read @ free + hears @ (read @ shapes[:2].T) @ (inert.T @ free))
         here = np.array([[found.inner[m, 0], found.across[m, 0]], [found.back[m, 0], found.outer[m, 0]]])
         close(here, -(free + pushed @ volts)[places], 1e-7)
-        asked = np.linalg.solve(np.eye(len(law)) - np.diag(circuits.opened) @ answer, circuits.acting)
+        asked = np.linalg.solve(np.eye(len(read)) - opened @ read @ pushed, circuits.acting)
         close(given.faces[:, m, 0], -(pushed @ asked)[places], 1e-6)
         assert np.abs(here + free[places]).max() > 1e-4 * np.abs(here).max()
 

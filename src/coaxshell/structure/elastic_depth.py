@@ -7,6 +7,8 @@ from one to the next.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import groupby
 from typing import Literal
 
 import numpy as np
@@ -82,6 +84,17 @@ def all_by_shapes(basis: OrdersBasis, number: int, radius: float) -> FloatArray:
             found[:, row] = sign * (shapes[:, :, which] @ at)
     found[:, len(DISPLACEMENTS) :] = stresses.reshape(*stresses.shape[:2], -1) @ flat
     return found
+
+
+def several_by_shapes(basis: OrdersBasis, asked: Sequence[tuple[Shown, int, float]]) -> FloatArray:
+    """Return quantities, each at a layer and a radius of it, per unit of each shape, shape (orders, quantities, shapes)."""
+    if basis.wavenumber == 0.0 or any(what == "potential" for what, _, _ in asked):
+        return np.stack([shown_by_shapes(basis, number, radius, what) for what, number, radius in asked], axis=1)
+    found = []
+    for (number, radius), some in groupby(asked, key=lambda one: one[1:]):  # along the axis all of a depth at once
+        rows = all_by_shapes(basis, number, radius)
+        found.append(rows[:, [ALL_SHOWN.index(what) for what, _, _ in some]])
+    return np.concatenate(found, axis=1)
 
 
 def place_in_layer(basis: OrdersBasis, number: int, radius: float) -> tuple[LayerMesh, FloatArray]:

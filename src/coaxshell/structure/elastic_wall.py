@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import groupby
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -23,7 +22,7 @@ from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis
-from coaxshell.structure.elastic_depth import ALL_SHOWN, DISPLACEMENTS, STRESSES, Shown, all_by_shapes, shown_by_shapes
+from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, several_by_shapes, shown_by_shapes
 from coaxshell.structure.layered_wall import LayeredWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.shape_sums import modal_sums
@@ -44,6 +43,7 @@ from coaxshell.structure.solid_transducers import (
     field_of_volts,
     loop_part,
     loop_sizes,
+    unanswered,
 )
 from coaxshell.structure.tied_wall import TiedWall
 
@@ -183,9 +183,17 @@ class ElasticWall(LayeredWall):
         return self._loop(modes, s, self._law(modes, s) if fed_back else 0.0) if self.closes_a_loop else None
 
     def _loop(self, modes: Modes, s: ComplexArray, law: ComplexArray | float) -> Loop:
-        pairs = list(zip(self.basis(modes), self._circuits(modes), strict=True))
-        parts = [loop_part(part, driven, self.wetted) for part, driven in pairs]
-        return self._loop_of(parts, [part.squares for part, _ in pairs], s, law)
+        assert self.transducers is not None
+        opened, bases = self.transducers.circuits.any_open, self.basis(modes)
+        each = zip(bases, self._circuits(modes), self._at_once(modes) if opened else [None] * len(bases), strict=True)
+        parts = [loop_part(part, driven, self.wetted, opened=opened, at_once=at_once) for part, driven, at_once in each]
+        return self._loop_of(parts, [part.squares for part in bases], s, law)
+
+    @kept_with_modes
+    def _at_once(self, modes: Modes) -> tuple[FloatArray, ...]:
+        """Return what volts add at once to the readings of its circuits: through the thickness, in which nothing else may move."""
+        whole = replace(self, silent=math.inf)
+        return tuple(at_rest(part, one.readings, one) for part, one in zip(whole.basis(modes), whole._circuits(modes), strict=True))
 
     @property
     def closes_a_loop(self) -> bool:
@@ -194,10 +202,7 @@ class ElasticWall(LayeredWall):
 
     def _loop_of(self, parts: Sequence[LoopPart], squares: Sequence[FloatArray], s: ComplexArray, law: ComplexArray | float) -> Loop:
         assert self.transducers is not None
-        sums = [modal_sums(part.rows, square, s) for part, square in zip(parts, squares, strict=True)]
-        resting = np.concatenate([part.moved for part in parts]), np.concatenate([part.read for part in parts])
-        whole = sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1)
-        return closed_loop(whole, resting, self.transducers.circuits, law)
+        return closed_loop(unanswered(parts, squares, s), self.transducers.circuits, law)
 
     @kept_with_modes
     def driven(self, modes: Modes) -> tuple[Driven, ...]:
@@ -344,7 +349,8 @@ class ElasticWall(LayeredWall):
         if self.transducers is None or not self.closes_a_loop:
             return None
         driven = by_circuits(driven_of(part, self.transducers), self.transducers.circuits)
-        return VoltPort(loop_part(part, driven, self.wetted), *self._per_volt(part, driven, shown, self.asked_of_stations))
+        loop = loop_part(part, driven, self.wetted, opened=self.transducers.circuits.any_open)
+        return VoltPort(loop, *self._per_volt(part, driven, shown, self.asked_of_stations))
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make what all blocks of nodes share in three dimensions, before all threads ask for it."""
@@ -389,14 +395,8 @@ class ElasticWall(LayeredWall):
         return found
 
     def _shown(self, part: OrdersBasis, asked: Sequence[Asked]) -> FloatArray:
-        """Return quantities per unit of each shape, (orders, quantities, shapes); along the axis all of a depth at once."""
-        if part.wavenumber == 0.0 or any(one.what == "potential" for one in asked):
-            return np.stack([shown_by_shapes(part, self.layer_at(one.depth), self.radius + one.depth, one.what) for one in asked], axis=1)
-        found = []
-        for depth, some in groupby(asked, key=lambda one: one.depth):
-            rows = all_by_shapes(part, self.layer_at(depth), self.radius + depth)
-            found.append(rows[:, [ALL_SHOWN.index(one.what) for one in some]])
-        return np.concatenate(found, axis=1)
+        """Return quantities per unit of each shape, (orders, quantities, shapes)."""
+        return several_by_shapes(part, [(one.what, self.layer_at(one.depth), self.radius + one.depth) for one in asked])
 
     def _summed(self, modes: Modes, s: ComplexArray, weights: list[FloatArray]) -> ComplexArray:
         """Return the sums over all shapes, (rows, orders, nodes), from their weights in each part of the basis."""

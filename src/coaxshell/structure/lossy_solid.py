@@ -26,7 +26,7 @@ from coaxshell.structure.solid_chain import PieceChain, WallReading
 from coaxshell.structure.solid_driven import DrivenAnswer, DrivenReading, WallDrive
 from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, Place, pieces
 from coaxshell.structure.solid_ports import DrivenPort, UnderVoltage, under_volts
-from coaxshell.structure.solid_transducers import Loop, field_of_volts, loop_closed
+from coaxshell.structure.solid_transducers import Loop, OpenCircuits, Unanswered, closed_loop, field_of_volts
 
 SOFT_DEGREE = 64
 """A wall without losses of which a layer needs a higher degree at the top of the band answers by pieces too."""
@@ -166,7 +166,11 @@ class LossySolidWall(ElasticWall):
 
     def _closed_by(self, found: DrivenAnswer, law: ComplexArray | float) -> Loop:
         assert self.transducers is not None
-        return loop_closed(-found.moved, self._per_load(found.read), found.answer, self.transducers.circuits, law)
+        circuits = None
+        if found.charged is not None and found.at_once is not None and found.all_of_volts is not None:
+            circuits = OpenCircuits(self._per_load(found.charged), found.all_of_volts, found.at_once)
+        wall = Unanswered(-found.moved, self._per_load(found.heard), found.of_volts, circuits)
+        return closed_loop(wall, self.transducers.circuits, law)
 
     def _fields(self, modes: Modes, asked: Sequence[Asked]) -> FloatArray:
         """Return what fields add to quantities per volt of each circuit, shape (quantities, circuits, orders, 1)."""

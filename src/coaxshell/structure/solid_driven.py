@@ -11,7 +11,7 @@ spring's stiffness for -s^2, take away again. (Nothing turns a piece of order 0,
 
 Of a stack without losses that is the sum over its shapes, those of X with omega^2 + s^2 and all others with omega^2. Its free faces move by
 what its neighbours, rubbers by their potentials, and the fluids have to follow: displacements apart, that joints close with all inertia.
-What loads on the faces do is read with all inertia too; a layer that is driven reads of voltages what moves along the wall, p'X y.
+What the control law hears is what moves along the wall, p'X y, and of loads on the faces p'X B'x; open circuits read all of x.
 """
 
 from __future__ import annotations
@@ -45,6 +45,8 @@ class PieceLoads(NamedTuple):
     capacitance : ndarray, shape (orders, driven)
     along : ndarray, shape (orders, 2 or 3, shapes)
         B.
+    heard : ndarray, shape (orders, circuits, shapes)
+        (p'X) B, p'X of the whole stack.
     rigid : ndarray, shape (orders, 1, shapes)
         1 of the shape of order 1 that moves the piece as it is.
     """
@@ -54,6 +56,7 @@ class PieceLoads(NamedTuple):
     strokes: FloatArray
     capacitance: FloatArray
     along: FloatArray
+    heard: FloatArray
     rigid: FloatArray
 
 
@@ -64,8 +67,8 @@ class StackAnswer(NamedTuple):
     ----------
     inside, outside : list of list
         For each circuit the displacements of its faces.
-    shown : ndarray, shape (places + circuits + driven, circuits, orders, nodes)
-        Places, readings and strokes.
+    shown : ndarray, shape (places + rows, circuits, orders, nodes)
+        Places, what is heard, readings where any circuit is open, and strokes.
     forces : list
         For each circuit and piece the forces on its faces.
     pushed : ndarray, shape (2 or 3 + pieces, circuits, orders, nodes)
@@ -97,12 +100,16 @@ class DrivenAnswer(NamedTuple):
     Attributes
     ----------
     chain : PieceChain
-    shown, read, strokes : ndarray, shape (places, 2, orders, nodes), (circuits, 2, ...) and (driven, 2, ...)
-        Per force.
+    shown, heard, strokes : ndarray, shape (places, 2, orders, nodes), (circuits, 2, ...) and (driven, 2, ...)
+        Per force; of the circuits what moves along the wall.
+    charged : ndarray, shape (circuits, 2, orders, nodes), or None
+        All that they read; None where none is open.
     moved : ndarray, shape (2, circuits, orders, nodes)
         u_r of the faces per volt.
-    by_volts, answer, strokes_by_volts : ndarray
+    by_volts, of_volts, strokes_by_volts : ndarray
         The rest per volt, (..., circuits, orders, nodes).
+    all_of_volts, at_once : ndarray or None
+        All that circuits read per volt, and what of that moves through the thickness of stacks, without inertia.
     forces : list
         For each piece and circuit the forces on its faces that close what stacks leave apart.
     stacks : list of StackAnswer
@@ -110,12 +117,15 @@ class DrivenAnswer(NamedTuple):
 
     chain: PieceChain
     shown: ComplexArray
-    read: ComplexArray
+    heard: ComplexArray
     strokes: ComplexArray
+    charged: ComplexArray | None
     moved: ComplexArray
     by_volts: ComplexArray
-    answer: ComplexArray
+    of_volts: ComplexArray
     strokes_by_volts: ComplexArray
+    all_of_volts: ComplexArray | None
+    at_once: ComplexArray | None
     forces: list[list[list[Entry]]]
     stacks: list[StackAnswer]
 
@@ -177,6 +187,11 @@ class WallDrive:
             resting = (np.zeros((part.orders.size, along_wall(part.wavenumber), part.squares.shape[1])) for part in parts)
             along = lowest.get(number) or resting
             found.append(tuple(self._loads_of(piece, part, one) for part, one in zip(parts, along, strict=True)))
+        for numbers in self.stacks:
+            hearing = _readings_along([found[number] or () for number in numbers])
+            for number in numbers:
+                each = zip(self.pieces[number].basis(modes), found[number] or (), strict=True)
+                found[number] = tuple(one._replace(heard=hearing[part.members] @ one.along) for part, one in each)
         return tuple(found)
 
     def _loads_of(self, piece: Piece, part: OrdersBasis, along: FloatArray) -> PieceLoads:
@@ -198,7 +213,8 @@ class WallDrive:
             loads[:, own], readings[:, own], capacitance[:, own] = found
         rigid = np.zeros((part.orders.size, 1, shapes))
         rigid[:, 0, 0] = (part.orders == 1.0) & (part.wavenumber == 0.0)
-        return PieceLoads(circuits.shares.T @ loads, circuits.reading @ readings, loads, capacitance, along, rigid)
+        read = circuits.reading @ readings
+        return PieceLoads(circuits.shares.T @ loads, read, loads, capacitance, along, np.zeros_like(read), rigid)
 
     def _lowest(self, numbers: range, modes: Modes) -> dict[int, list[FloatArray]]:
         """Return B of the pieces of a stack, by number, for each part of their bases."""
@@ -212,16 +228,27 @@ class WallDrive:
         }
 
     def beside(self, number: int) -> partial[list[FloatArray]] | None:
-        """Return what is read of a piece beside places, readings and strokes, from modes; None of a piece by potentials."""
+        """Return what is read of a piece beside places, from modes; None of a piece by potentials."""
         return None if self.pieces[number].by_potentials else partial(self._rows, number)
 
     def _rows(self, number: int, modes: Modes) -> list[FloatArray]:
-        return [np.concatenate([one.readings, one.strokes], axis=1) for one in self.loads(modes)[number] or ()]
+        return [np.concatenate(self.read_of(one), axis=1) for one in self.loads(modes)[number] or ()]
+
+    def read_of(self, one: PieceLoads) -> list[FloatArray]:
+        """Return the rows of what is read of a part: what is heard, readings where any circuit is open, and strokes."""
+        return [one.heard, *([one.readings] if self.transducers.circuits.any_open else []), one.strokes]
 
     @property
     def rows(self) -> int:
         """How many rows that are."""
-        return self.transducers.circuits.opened.size + len(self.transducers.driven)
+        circuits = self.transducers.circuits
+        return circuits.opened.size * (2 if circuits.any_open else 1) + len(self.transducers.driven)
+
+
+def _readings_along(loads: Sequence[Sequence[PieceLoads]]) -> FloatArray:
+    """Return p'X of a stack from the loads of its pieces, shape (orders, circuits, 2 or 3)."""
+    each = [np.concatenate([one.readings @ np.swapaxes(one.along, 1, 2) for one in parts]) for parts in loads]
+    return np.asarray(np.sum(each, axis=0), dtype=np.float64)
 
 
 def _weights_of_lowest(bases: Sequence[OrdersBasis], part: OrdersBasis, first: int) -> FloatArray:
@@ -278,7 +305,7 @@ class DrivenReading:
                     part,
                     np.concatenate([on_faces(part), one.volts, one.along, one.rigid], axis=1),
                     places,
-                    np.concatenate([one.readings, one.strokes, one.along, one.rigid], axis=1),
+                    np.concatenate([*self.drive.read_of(one), one.along, one.rigid], axis=1),
                     lossy=piece.factor is not None,
                 )
                 for part, one in zip(piece.basis(modes), loads, strict=True)
@@ -304,16 +331,21 @@ class DrivenReading:
             moved[0, circuit], moved[1, circuit] = joined.inside[0], joined.outside[0]
             for found, one in zip(forces, joined.forces, strict=True):
                 found.append(one)
+        stops = np.cumsum([count, circuits] + [circuits] * self.drive.transducers.circuits.any_open)
+        at_once = None
+        if len(stops) == 3:
+            at_once = by_volts[stops[1] : stops[2]] - by_volts[stops[0] : stops[1]]
         if not self.drive.whole:
             by_volts = by_volts + reading.shown(modes, s, answers, forces)
-        (shown, read, strokes), (given, answer, driven) = (np.split(x, [count, count + circuits]) for x in (under_forces, by_volts))
-        return DrivenAnswer(chain, shown, read, strokes, moved, given, answer, driven, forces, stacks)
+        (shown, heard, *charged, strokes), (given, of_volts, *all_of_volts, driven) = (np.split(x, stops) for x in (under_forces, by_volts))
+        opened = (charged[0], all_of_volts[0]) if charged else (None, None)
+        return DrivenAnswer(chain, shown, heard, strokes, opened[0], moved, given, of_volts, driven, opened[1], at_once, forces, stacks)
 
     def _stack(self, numbers: range, modes: Modes, s: ComplexArray) -> StackAnswer:
         """Return what a stack does per volt of each circuit."""
         size = 2 * displacements(wavenumber_of(modes))
         each = [_PieceAtRest.of(self._at_rest(modes)[i], self.drive.pieces[i], size, modes, s) for i in numbers]
-        along = self._readings_along(numbers, modes)
+        along = _readings_along([self.drive.loads(modes)[number] or () for number in numbers])
         found = self._freed(numbers, each, s, along)
         found = found._replace(pushed=np.concatenate([found.pushed, np.zeros((len(each), *found.pushed.shape[1:]))]))
         if size == 4 and np.any(first := modes.orders == 1.0):
@@ -386,15 +418,8 @@ class DrivenReading:
         by_volts = rows[:, :count] - np.einsum("lcmk,rlmk->rcmk", pushed, rows[:, count:])
         readings = slice(len(self.places), len(self.places) + count)
         heard = np.einsum("mil,lcmk->icmk", along, pushed[:inert] / (s * s))
-        listening = circuits.listening * (not self.drive.along_alone)
-        by_volts[readings] = np.where(listening[:, None, None, None] > 0.0, by_volts[readings], heard)
+        by_volts[readings] = heard  # without a difference of large numbers
         return StackAnswer(inside, outside, by_volts, joined, pushed)
-
-    def _readings_along(self, numbers: range, modes: Modes) -> FloatArray:
-        """Return p'X, shape (orders, circuits, 2 or 3)."""
-        parts = [self.drive.loads(modes)[number] or () for number in numbers]
-        each = [np.concatenate([one.readings @ np.swapaxes(one.along, 1, 2) for one in loads]) for loads in parts]
-        return np.asarray(np.sum(each, axis=0), dtype=np.float64)
 
 
 class _PieceAtRest(NamedTuple):

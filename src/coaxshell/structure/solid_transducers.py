@@ -20,6 +20,11 @@ and read at once a bridge takes all that its own voltage does, the stretch of th
 y = int psi' (e32~ eps_theta + e31~ eps_z) r dr/C~, C~ = C (1 + e33^2/(c33 mu33)). In a thin wall d is e32~ B(z_a) R. A charge-sensor, held
 at no voltage by the amplifier that takes its charge, reads y = -d'x/C~ on a condenser of its own capacity, where its thickness is free.
 
+What the law hears is what bends and stretches along the wall. A sensor in a solid wall feels the pressure across it too, up to the
+resonances of the thickness, and an actuator moves the faces at once: an ideal law would answer pressure by pressure, without any bound,
+and drive the thickness within nanoseconds. With A of the shapes along the wall alone, h = p A (loads, u) of all voltages u is heard,
+over 1 - Y_0 where an open circuit charges itself through the thickness (Y_0 at rest). Open circuits feel all that moves.
+
 "paper": a sensor is the potential in the middle of its layer, whose faces are grounded; an actuator pushes along the radius alone, as the
 field's hoop stress does through u_r/r, with the paper's pressure per volt, spread evenly over the thickness of its layer.
 """
@@ -36,15 +41,16 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.structure.elastic_basis import OrdersBasis, displacements, layer_strains
 from coaxshell.structure.elastic_depth import STRESSES, Shown, place_in_layer, shown_by_shapes
 from coaxshell.structure.elastic_mesh import LayerMesh
+from coaxshell.structure.shape_sums import modal_sums
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, RADIAL_AXIAL, RADIAL_HOOP
 
 
 def along_wall(wavenumber: float) -> int:
     """Return how many shapes of each order bend and stretch along the wall, the lowest; all others move through its thickness.
 
-    Two, or three in a wave along the axis: as many as displacements take part. The others answer voltages without inertia, and what
-    sensors that are driven read of them is what loads on the faces make: resonances of the thickness, a thousand times faster than the
-    shock, are no business of a control law, which would drive them without any bound.
+    Two, or three in a wave along the axis: as many as displacements take part. The others answer voltages without inertia, and the law
+    does not hear them: resonances of the thickness, a thousand times faster than the shock, are no business of a control law, which would
+    drive them without any bound.
     """
     return displacements(wavenumber)
 
@@ -86,11 +92,6 @@ class Transducers:
         return np.array([float(self.electrodes and one not in held) for one in self.driven])
 
     @property
-    def listening(self) -> FloatArray:
-        """1 for each driven layer that only reads, and so reads motions through the thickness too, else 0."""
-        return np.array([float(self.electrodes and one not in self.actuators) for one in self.driven])
-
-    @property
     def acting(self) -> FloatArray:
         """1 for each driven layer that the control law drives, else 0."""
         return np.array([float(one in self.actuators) for one in self.driven])
@@ -104,11 +105,11 @@ class Transducers:
 
     @property
     def circuits(self) -> Circuits:
-        """By what voltages and readings the loop is closed: one of each where all that reads is driven too, else those of every layer."""
+        """By what voltages and readings the loop is closed: one of each where no circuit is open, else those of every layer."""
         count = len(self.driven)
-        if self.listening.any():
-            return Circuits(np.eye(count), np.eye(count), self.opened, self.acting, self.sensing, self.listening)
-        return Circuits(self.acting[:, None], self.sensing[None], np.zeros(1), np.ones(1), np.ones(1), np.zeros(1))
+        if self.opened.any():
+            return Circuits(np.eye(count), np.eye(count), self.opened, self.acting, self.sensing)
+        return Circuits(self.acting[:, None], self.sensing[None], np.zeros(1), np.ones(1), np.ones(1))
 
 
 class Circuits(NamedTuple):
@@ -120,7 +121,7 @@ class Circuits(NamedTuple):
         Voltage of each driven layer per voltage of a circuit.
     reading : ndarray, shape (circuits, driven)
         What each circuit reads of the readings of the layers.
-    opened, acting, sensing, listening : ndarray, shape (circuits,)
+    opened, acting, sensing : ndarray, shape (circuits,)
         As of :class:`Transducers`, of circuits instead of layers.
     """
 
@@ -129,7 +130,11 @@ class Circuits(NamedTuple):
     opened: FloatArray
     acting: FloatArray
     sensing: FloatArray
-    listening: FloatArray
+
+    @property
+    def any_open(self) -> bool:
+        """Whether any circuit is open."""
+        return bool(self.opened.any())
 
 
 class Driven(NamedTuple):
@@ -265,18 +270,6 @@ class Loop(NamedTuple):
     shares: FloatArray
 
 
-def loop_rows(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -> FloatArray:
-    """Return the weights of all shapes in D (2 J rows), in readings per load (2 J) and per volt (J J), shape (orders, rows, shapes)."""
-    size, shapes = basis.orders.size, basis.squares.shape[1]
-    moved = -basis.faces[:, :, None] * driven.loads[:, None]
-    pressed = -basis.faces * np.array(wetted)[:, None]
-    read = driven.readings[:, :, None] * pressed[:, None]
-    answer = driven.readings[:, :, None] * driven.loads[:, None]
-    along = along_wall(basis.wavenumber)
-    moved[..., along:] = answer[..., along:] = 0.0
-    return np.concatenate([one.reshape(size, -1, shapes) for one in (moved, read, answer)], axis=1)
-
-
 def at_rest(basis: OrdersBasis, shown: FloatArray, driven: Driven) -> FloatArray:
     """Return what voltages do through the thickness, where they find no inertia, shape (orders, quantities, driven).
 
@@ -287,19 +280,112 @@ def at_rest(basis: OrdersBasis, shown: FloatArray, driven: Driven) -> FloatArray
 
 
 class LoopPart(NamedTuple):
-    """What closes a loop, of some orders: weights of all shapes (:func:`loop_rows`), and what volts do at once.
+    """What closes a loop, of some orders.
 
-    ``moved`` are inward displacements of the faces, (orders, 2, driven), ``read`` readings, (orders, driven, driven), per volt.
+    Attributes
+    ----------
+    rows : ndarray, shape (orders, rows, 2 or 3)
+        Weights of the shapes that bend and stretch along the wall in D (2 J rows), in what is heard per load (2 J) and per volt (J J).
+    moved : ndarray, shape (orders, 2, circuits)
+        Inward displacements of the faces that volts make at once.
+    charged : ndarray, shape (orders, 2 J, shapes), or None
+        Weights of all shapes in the readings per load; None where no circuit is open.
+    at_once : ndarray, shape (orders, circuits, circuits), or None
+        What volts add at once to these.
     """
 
     rows: FloatArray
     moved: FloatArray
-    read: FloatArray
+    charged: FloatArray | None
+    at_once: FloatArray | None
 
 
-def loop_part(basis: OrdersBasis, driven: Driven, wetted: tuple[float, float]) -> LoopPart:
-    """Return it from the shapes of some orders and their transducers."""
-    return LoopPart(loop_rows(basis, driven, wetted), at_rest(basis, -basis.faces, driven), at_rest(basis, driven.readings, driven))
+def loop_part(
+    basis: OrdersBasis, driven: Driven, wetted: tuple[float, float], *, opened: bool, at_once: FloatArray | None = None
+) -> LoopPart:
+    """Return it from the shapes of some orders and their transducers.
+
+    Parameters
+    ----------
+    basis : OrdersBasis
+    driven : Driven
+        Of the circuits.
+    wetted : (float, float)
+    opened : bool
+        Whether any circuit is open.
+    at_once : ndarray, optional
+        Readings per volt at once, where they are not those of *basis*.
+    """
+    size, along = basis.orders.size, slice(along_wall(basis.wavenumber))
+    pressed = -basis.faces * np.array(wetted)[:, None]
+    moved = -basis.faces[:, :, None, along] * driven.loads[:, None, :, along]
+    read = driven.readings[:, :, None] * pressed[:, None]
+    answer = driven.readings[:, :, None, along] * driven.loads[:, None, :, along]
+    rows = np.concatenate([one.reshape(size, -1, one.shape[-1]) for one in (moved, read[..., along], answer)], axis=1)
+    resting = at_rest(basis, -basis.faces, driven)
+    if not opened:
+        return LoopPart(rows, resting, None, None)
+    own = at_rest(basis, driven.readings, driven) if at_once is None else at_once
+    return LoopPart(rows, resting, read.reshape(size, -1, read.shape[-1]), own)
+
+
+class OpenCircuits(NamedTuple):
+    """What circuits read of all that moves, as far as they are open.
+
+    Attributes
+    ----------
+    charged : ndarray, shape (circuits, 2, orders, nodes)
+        Readings per inward load on either face.
+    by_volts : ndarray, shape (circuits, circuits, orders, nodes)
+        Readings per volt.
+    at_once : ndarray, shape (circuits, circuits, orders, nodes or 1)
+        What of these volts make through the thickness, at rest.
+    """
+
+    charged: ComplexArray
+    by_volts: ComplexArray
+    at_once: ComplexArray | FloatArray
+
+
+class Unanswered(NamedTuple):
+    """What a wall does while no voltage answers.
+
+    Attributes
+    ----------
+    moved : ndarray, shape (2, circuits, orders, nodes)
+        Inward displacement of each face per volt.
+    heard : ndarray, shape (circuits, 2, orders, nodes)
+        Readings of what moves along the wall, per inward load on either face.
+    of_volts : ndarray, shape (circuits, circuits, orders, nodes)
+        The same per volt.
+    open : OpenCircuits or None
+    """
+
+    moved: ComplexArray
+    heard: ComplexArray
+    of_volts: ComplexArray
+    open: OpenCircuits | None
+
+
+def unanswered(parts: Sequence[LoopPart], squares: Sequence[FloatArray], s: ComplexArray) -> Unanswered:
+    """Return it from what closes the loop and omega^2 of all shapes, of each part of a basis, at nodes."""
+    sums = _joined([modal_sums(part.rows, square[:, : part.rows.shape[-1]], s) for part, square in zip(parts, squares, strict=True)])
+    resting = np.concatenate([part.moved for part in parts])
+    count, shape = resting.shape[2], sums.shape[1:]
+    moved = sums[: 2 * count].reshape(2, count, *shape) + np.moveaxis(resting, 0, -1)[..., None]
+    heard = sums[2 * count : 4 * count].reshape(count, 2, *shape)
+    of_volts, circuits = sums[4 * count :].reshape(count, count, *shape), None
+    each = [(part.charged, part.at_once) for part in parts if part.charged is not None and part.at_once is not None]
+    if each:
+        charged = _joined([modal_sums(rows, square, s) for (rows, _), square in zip(each, squares, strict=True)])
+        at_once = np.moveaxis(np.concatenate([one for _, one in each]), 0, -1)[..., None]
+        circuits = OpenCircuits(charged.reshape(count, 2, *shape), of_volts + at_once, at_once)
+    return Unanswered(moved, heard, of_volts, circuits)
+
+
+def _joined(parts: Sequence[ComplexArray]) -> ComplexArray:
+    """Return the sums of all orders, (rows, orders, nodes), from those of the parts of a basis."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
 
 
 def loop_sizes(bases: Sequence[OrdersBasis], driven: Sequence[Driven], highest: float) -> FloatArray:
@@ -318,55 +404,49 @@ def inertia_left_out(squares: FloatArray, s: ComplexArray, along: int) -> Comple
     return factor
 
 
-def closed_loop(sums: ComplexArray, resting: tuple[FloatArray, FloatArray], circuits: Circuits, law: ComplexArray | float) -> Loop:
-    """Return the loop from the sums over all shapes of :func:`loop_rows` and the control law H(s), 0 without feedback.
+def closed_loop(wall: Unanswered, circuits: Circuits, law: ComplexArray | float) -> Loop:
+    """Return the loop from what the wall does while no voltage answers: with O the open circuits, a what acts and h what is heard,
+
+        u = O (y + Y u) + a H h,      h = s' (1 - O Y_0 O)^-1 (y_l + Y_l u),
+
+    s the share of each reading in what the law reads, Y and y of all that moves, Y_l and y_l of what moves along the wall, Y_0 at rest.
 
     Parameters
     ----------
-    sums : ndarray, shape (rows, orders, nodes)
-    resting : tuple of ndarray
-        Of :func:`at_rest`, inward displacements of the faces, (orders, 2, circuits), and readings, (orders, circuits, circuits).
-    circuits : Circuits
-    law : ndarray or float
-        Broadcast to (orders, nodes).
-    """
-    count, shape = circuits.opened.size, sums.shape[1:]
-    moved = sums[: 2 * count].reshape(2, count, *shape) + np.moveaxis(resting[0], 0, -1)[..., None]
-    read = sums[2 * count : 4 * count].reshape(count, 2, *shape)
-    at_once = np.moveaxis(resting[1] * circuits.listening[:, None], 0, -1)[..., None]
-    return loop_closed(moved, read, sums[4 * count :].reshape(count, count, *shape) + at_once, circuits, law)
-
-
-def loop_closed(moved: ComplexArray, read: ComplexArray, answer: ComplexArray, circuits: Circuits, law: ComplexArray | float) -> Loop:
-    """Return the loop from what the wall does while no voltage answers.
-
-    Parameters
-    ----------
-    moved : ndarray, shape (2, circuits, orders, nodes)
-        Inward displacement of each face per volt.
-    read : ndarray, shape (circuits, 2, orders, nodes)
-        Readings per inward load on either face.
-    answer : ndarray, shape (circuits, circuits, orders, nodes)
-        Readings per volt.
+    wall : Unanswered
     circuits : Circuits
     law : ndarray or float
         H(s), broadcast to (orders, nodes).
     """
-    shares, _, opened, acting, sensing, _ = circuits
-    count, shape = opened.size, answer.shape[2:]
+    shares, _, opened, acting, sensing = circuits
+    count, shape = opened.size, wall.of_volts.shape[2:]
     gains = np.broadcast_to(law, shape)
-    if count == 1:
-        own = opened[0] + acting[0] * sensing[0] * gains
-        characteristic = 1.0 - own * answer[0, 0]
-        asked, given = read[0] / characteristic, acting[0] / characteristic
-        heard = sensing[0] * answer[0, 0] * given
-        return Loop(moved, (own * asked)[None], sensing[0] * asked, given[None], heard, characteristic, shares)
-    laws = np.diag(opened)[..., None, None] + np.multiply.outer(np.outer(acting, sensing), gains)
-    matrix = np.eye(count)[..., None, None] - np.einsum("ijmk,jlmk->ilmk", laws, answer)
+    if count == 1 and wall.open is None:
+        characteristic = 1.0 - acting[0] * sensing[0] * gains * wall.of_volts[0, 0]
+        asked, given = sensing[0] * wall.heard[0] / characteristic, acting[0] / characteristic
+        heard = sensing[0] * wall.of_volts[0, 0] * given
+        return Loop(wall.moved, (acting[0] * gains * asked)[None], asked, given[None], heard, characteristic, shares)
+    share = _heard_shares(wall.open, opened, sensing)
+    of_loads, of_volts = (np.einsum("jmk,jbmk->bmk", share, each) for each in (wall.heard, wall.of_volts))
+    driving = np.multiply.outer(acting, gains)
+    matrix, asked = -driving[:, None] * of_volts, driving[:, None] * of_loads
+    matrix += np.eye(count)[..., None, None]
+    if wall.open is not None:
+        is_open = opened[:, None, None, None]
+        matrix, asked = matrix - is_open * wall.open.by_volts, asked + is_open * wall.open.charged
     given = np.broadcast_to(acting[:, None, None, None], (count, 1, *shape))
-    asked = np.concatenate([np.einsum("ijmk,jbmk->ibmk", laws, read), given], axis=1)
     square = np.moveaxis(matrix, (0, 1), (-2, -1))
-    volts = np.moveaxis(np.linalg.solve(square, np.moveaxis(asked, (0, 1), (-2, -1))), (-2, -1), (0, 1))
-    heard = np.einsum("i,ibmk->bmk", sensing, np.einsum("ijmk,jbmk->ibmk", answer, volts))
-    sensed = np.einsum("j,jbmk->bmk", sensing, read) + heard[:2]
-    return Loop(moved, volts[:, :2], sensed, volts[:, 2], heard[2], np.linalg.det(square), shares)
+    right = np.moveaxis(np.concatenate([asked, given], axis=1), (0, 1), (-2, -1))
+    volts = np.moveaxis(np.linalg.solve(square, right), (-2, -1), (0, 1))
+    heard = np.einsum("jmk,jbmk->bmk", of_volts, volts)
+    return Loop(wall.moved, volts[:, :2], of_loads + heard[:2], volts[:, 2], heard[2], np.linalg.det(square), shares)
+
+
+def _heard_shares(circuits: OpenCircuits | None, opened: FloatArray, sensing: FloatArray) -> ComplexArray | FloatArray:
+    """Return s'(1 - O Y_0 O)^-1, by which the law reads each circuit's motion along the wall, (circuits, orders or 1, nodes or 1)."""
+    if circuits is None:
+        return sensing[:, None, None]
+    at_once = circuits.at_once * np.outer(opened, opened)[..., None, None]
+    matrix = np.eye(opened.size) - np.moveaxis(at_once, (0, 1), (-1, -2))  # transposed
+    found = np.linalg.solve(matrix, np.broadcast_to(sensing[:, None], (*matrix.shape[:2], opened.size, 1)))
+    return np.asarray(np.moveaxis(found[..., 0], -1, 0))

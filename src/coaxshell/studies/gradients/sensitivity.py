@@ -30,8 +30,9 @@ from coaxshell.studies.varied_fields import Field, field_of, varied
 
 _STEP = 1e-3
 """Relative step at which the ingredients of a run, never the run itself, are differenced."""
-_STEP_OF_SOLIDS = 3e-5
-"""The same where walls answer by their resonances, which stand beside the contour of the transform."""
+_STEP_OF_SOLIDS = 3e-4
+"""The same where walls answer by their resonances, which stand beside the contour of the transform: what a sensor reads of the lowest
+shapes is rounded at 3e-10."""
 _ABSORBER = re.compile(r"absorbers(?:\[(\d{1,9})\])?\.(\w+)")
 _FIELDS = ("mass", "damping", "linear_stiffness", "cubic_stiffness")
 
