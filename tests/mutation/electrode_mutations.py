@@ -136,6 +136,14 @@ ELECTRODES = (
         "solver/test_ties_in_space.py",
     ),
     Mutation(
+        "cut-points-apart",
+        "solver/axial/points.py",
+        "if cut:",
+        "if not layout:",
+        "points beside segments are not alike because they are equally far apart",
+        "solver/test_ties_beside_absorbers_in_space.py",
+    ),
+    Mutation(
         "tied-faces-by-volts",
         "solver/axial/tied_faces.py",
         "float(a == b)",

@@ -207,9 +207,8 @@ def test_what_is_not_solved_is_refused_with_a_remedy():
     for system, said in (
         (
             cut(segments=4).replace(absorbers=rings),
-            r"control\.segments: 4 segments .* beside absorbers .*use dimensions=2, leave the absorbers or",
+            r"control\.segments: 4 segments .* march of line absorbers .*use linear springs, point absorbers",
         ),
-        (under(MIXED).replace(absorbers=rings), r"control\.matrix: .* beside absorbers"),
         (cut(segments=30), r"control\.segments: 30 segments push on order 30 as well, and the run ends at 5"),
     ):
         with pytest.raises(InputError, match=said):

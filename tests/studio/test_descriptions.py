@@ -210,5 +210,5 @@ def test_what_other_choices_cost_is_told_before_they_are_made(client):
     assert costs["dimensions"] == limits.cost_of(system, dataclasses.replace(limits.FULL_SPATIAL, duration=3.0))
     cut = presets.load("electrodes-hybrid").with_overrides({"control.segments": 24}).model_dump(mode="json")
     controlled = client.post("/api/validate", json={**body, "system": cut}).json()["costs"]
-    assert controlled["dimensions"] is None, "electrodes in segments beside absorbers are not solved in three dimensions"
+    assert controlled["dimensions"] is None, "cubic lines beside segments are not solved in three dimensions"
     assert "dimensions" not in client.post("/api/validate", json={**body, "choices": False}).json()["costs"]

@@ -74,9 +74,12 @@ def require_loops_alone(system: System, what: str, remedy: str) -> None:
 
 def _require_ties(system: System, dimensions: int) -> None:
     """Raise InputError if feedback ties orders or shells to each other where that is not solved yet."""
-    whole = "leave {} out"
-    if dimensions == 3 and (system.absorber_list or system.point_absorbers):
-        require_loops_alone(system, "the sum over axial wavenumbers beside absorbers", f"use dimensions=2, leave the absorbers or {whole}")
+    cut = segments_of(system)
+    marched = any(one.cubic_stiffness != 0.0 or one.law is not None for one in system.absorber_list)
+    if dimensions == 3 and cut is not None and marched:
+        problem = f"{cut} segments tie orders to each other, which the march of line absorbers along the axis does not know yet"
+        remedy = "use linear springs, point absorbers in rows (z=[...] of absorber_ring), dimensions=2, or leave segments out"
+        raise InputError("control.segments", problem, remedy)
 
 
 def require_cubic_springs(system: System, what: str, remedy: str) -> None:

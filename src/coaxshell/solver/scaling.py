@@ -198,6 +198,11 @@ class Problem:
         tied = (wall.shares is not None or wall.electrode_segments is not None for wall in self.shells if wall.gains is not None)
         return any(tied)
 
+    @property
+    def cut(self) -> bool:
+        """Whether feedback runs from segment to segment, so that it ties orders to each other."""
+        return any(wall.electrode_segments is not None for wall in self.shells if wall.gains is not None)
+
     @cached_property
     def open_loop(self) -> Problem:
         """The problem without feedback."""

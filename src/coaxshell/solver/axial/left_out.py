@@ -18,7 +18,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
-from coaxshell.solver.axial.samples import samples_of
+from coaxshell.solver.axial.samples import samples_of, untied
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.softened import Softened
 from coaxshell.solver.axial.solution import StationSpectra
@@ -53,9 +53,7 @@ def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, force
 
 def squares_of(problem: Problem, grid: LaplaceGrid, modes: Modes, family: Family) -> FloatArray:
     """Return |W|^2 and the strains' squares at the sampled nodes added up, shape (shells, 2, orders)."""
-    if problem.tied:
-        problem = problem.open_loop  # a sample of orders has not all that are tied
-    w, v, u = amplitudes_of(problem, WaveSet([modes], [family]), 0, grid, NODES)[0][:3]
+    w, v, u = amplitudes_of(untied(problem), WaveSet([modes], [family]), 0, grid, NODES)[0][:3]
     m, k = modes.orders[:, None], np.asarray(modes.wavenumber)
     strain = np.abs(m * v - w) ** 2 + np.abs(k * u) ** 2
     return np.stack([(np.abs(w) ** 2).sum(axis=(1, 3)), strain.sum(axis=(1, 3))], axis=1)

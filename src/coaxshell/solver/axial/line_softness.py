@@ -18,7 +18,7 @@ from coaxshell.solver.axial.families import WaveSet, wave_sets
 from coaxshell.solver.axial.line_solve import LineSolution
 from coaxshell.solver.axial.line_structure import families_at
 from coaxshell.solver.axial.lines import LineLayout
-from coaxshell.solver.axial.samples import sample_beside
+from coaxshell.solver.axial.samples import sample_beside, untied
 from coaxshell.solver.axial.softened import Softened, in_the_waves_kept
 from coaxshell.solver.axial.surfaces import SurfaceWave
 from coaxshell.solver.interface.absorbers import AbsorberSet
@@ -47,7 +47,7 @@ def _changed(layout: LineLayout, links: AbsorberSet, grid: LaplaceGrid, sets: li
     """
     problem, s, sample = layout.problem, grid.nodes[NODES], sample_beside(layout.problem, layout.sampling, j)
     kept = Modes(layout.sampling.modes[j].orders, layout.sampling.modes[j].wavenumber)  # which keep no shapes of solids
-    compliance, beside = SurfaceWave(problem, s, kept).compliance, SurfaceWave(problem, s, sample.modes)
+    compliance, beside = SurfaceWave(untied(problem), s, kept).compliance, SurfaceWave(untied(problem), s, sample.modes)
     softer = beside.compliance
     squares = np.zeros((len(problem.surfaces), layout.axial_parities, sample.modes.count, s.size))
     for family, share in families_at(layout, sets, j):

@@ -138,7 +138,8 @@ def line_layout(problem: Problem, sampling: AxialSampling) -> LineLayout:
     pairs = zip(problem.emitters, problem.sources, strict=True)
     planes = {axial_position(one) / problem.scales.length for one, wave in pairs if isinstance(wave, SphericalFrontGeometry)}
     origin = planes.pop() if len(planes) == 1 else 0.0
-    lattice = lattice_of(absorbers.every_angle, sampling.max_order) if _alike_on_surfaces(absorbers) else 0
+    alike = _alike_on_surfaces(absorbers) and not problem.cut  # segments tell the angles of a lattice from each other
+    lattice = lattice_of(absorbers.every_angle, sampling.max_order) if alike else 0
     return LineLayout(problem, sampling, absorbers, lattice, origin, 2 if planes else 1)
 
 

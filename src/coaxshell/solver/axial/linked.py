@@ -156,7 +156,7 @@ def point_structure(
     progress: Progress | None = None,
 ) -> PointStructure:
     """Return the structure at the points of some absorbers, from blocks of nodes in turn."""
-    classes = pair_classes(layout)
+    classes = pair_classes(layout, cut=problem.cut)
     motion = np.empty((layout.carried.count, grid.nodes.size), np.complex128)
     by_class = np.empty((classes.moved.size, grid.nodes.size), np.complex128)
     work = partial(point_sums, problem, grid, sampling, layout, classes)

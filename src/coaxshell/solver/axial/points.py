@@ -11,9 +11,9 @@ Where sources and absorbers are symmetric about the plane theta = 0, or z = 0, m
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
@@ -31,7 +31,7 @@ from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import pair_count
 from coaxshell.solver.axial.surfaces import SurfaceWave
-from coaxshell.solver.excitation import source_parities
+from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.links.described import LinkScales, link_elements, shells_between
 from coaxshell.solver.point_forces import patch
@@ -86,7 +86,7 @@ def point_layout(problem: Problem) -> PointLayout:
     system, a = problem.system, problem.scales.length
     listed = system.point_absorbers
     in_plane = all(axial_position(source) == 0.0 and getattr(source, "inclination", 0.0) == 0.0 for source in system.sources)
-    around = source_parities(problem) == 1 and _symmetric(listed, -1.0, 1.0)
+    around = motion_parities(problem) == 1 and _symmetric(listed, -1.0, 1.0)
     along = in_plane and _symmetric(listed, 1.0, -1.0)
     moving = [wall.moves for wall in problem.shells]
     images: list[list[int]] = []
@@ -176,9 +176,13 @@ class PairClasses:
     pressed: npt.NDArray[np.int64]
 
 
-def pair_classes(layout: PointLayout) -> PairClasses:
-    """Return the classes of all pairs: by surfaces, patches, and distances around and along."""
+def pair_classes(layout: PointLayout, *, cut: bool = False) -> PairClasses:
+    """Return the classes of all pairs: by surfaces, patches, and distances around and along; where electrodes are cut every pair is one."""
     carried, points = layout.carried, layout.points
+    if cut:
+        number = np.arange(carried.count * points.count).reshape(carried.count, points.count)
+        moved, pressed = np.indices(number.shape)
+        return PairClasses(number, moved.ravel(), pressed.ravel())
     turned = np.abs(carried.angle[:, None] - points.angle)
     turned = np.minimum(turned % 360.0, (360.0 - turned % 360.0) % 360.0)
     columns = [
@@ -233,14 +237,14 @@ def point_sums(
     s, carried = grid.nodes[block], layout.carried
     motion = np.zeros((carried.count, s.size), np.complex128)
     receptance = np.zeros((classes.moved.size, s.size), np.complex128)
-    shares = class_shares(problem, layout, classes, sampling.max_order)
-    shapes = [carried.around(problem, Modes.up_to(sampling.max_order), parity) for parity in range(source_parities(problem))]
+    add = _adding(problem, layout, classes, sampling)
+    shapes = [carried.around(problem, Modes.up_to(sampling.max_order), parity) for parity in range(motion_parities(problem))]
     sets = wave_sets(problem, sampling, carried.z, s)
     apart = not any(waves.modes is sampling.modes for waves in sets)
     done, whole = 0, pair_count(sets) + (sum(modes.count for modes in sampling.modes) if apart else 0)
     for waves in sets:
         for j, modes in enumerate(waves.modes):
-            system = SurfaceWave(problem, s, modes)
+            system = SurfaceWave(problem, s, modes, parities=2)
             along = patch(0.5 * np.asarray(modes.wavenumber) * carried.side[:, None])
             for family in waves.families:
                 moved = system.under(family, grid, block)
@@ -249,11 +253,11 @@ def point_sums(
                     for shape, each in zip(shapes, moved, strict=True):
                         motion[a] += even[a] * (shape[a, : modes.count] @ each[surface])
             if waves.modes is sampling.modes:
-                _add_receptance(receptance, system, shares, sampling, j)
+                add(receptance, system, j)
             done += modes.count
             tell_share(done / whole)
     for j, modes in enumerate(sampling.modes if apart else ()):
-        _add_receptance(receptance, SurfaceWave(problem, s, modes), shares, sampling, j)
+        add(receptance, SurfaceWave(problem, s, modes, parities=2), j)
         done += modes.count
         tell_share(done / whole)
     return {"motion": motion, "receptance": receptance}
@@ -264,15 +268,43 @@ def point_receptance(
 ) -> Found:
     """Return "receptance" alone, as :func:`point_sums`, at a slice of any nodes."""
     receptance = np.zeros((classes.moved.size, s[block].size), np.complex128)
-    shares = class_shares(problem, layout, classes, sampling.max_order)
+    add = _adding(problem, layout, classes, sampling)
     for j, modes in enumerate(sampling.modes):
-        _add_receptance(receptance, SurfaceWave(problem, s[block], modes), shares, sampling, j)
+        add(receptance, SurfaceWave(problem, s[block], modes, parities=2), j)
         tell_share((j + 1) / len(sampling.modes))
     return {"receptance": receptance}
 
 
+def _adding(
+    problem: Problem, layout: PointLayout, classes: PairClasses, sampling: AxialSampling
+) -> Callable[[ComplexArray, SurfaceWave, int], None]:
+    """Return what adds one wavenumber, by its number, to the receptance of all classes."""
+    if problem.cut:
+        return partial(_add_cut, problem, layout, sampling)
+    return partial(_add_receptance, class_shares(problem, layout, classes, sampling.max_order), sampling)
+
+
+def _add_cut(
+    problem: Problem, layout: PointLayout, sampling: AxialSampling, receptance: ComplexArray, system: SurfaceWave, wave: int
+) -> None:
+    """Add what one wavenumber contributes to the receptance of every pair where electrodes are cut, one force after the other."""
+    carried, points, modes = layout.carried, layout.points, system.modes
+    k, each = float(modes.wavenumber), receptance.reshape(carried.count, points.count, -1)
+    felt = np.stack([carried.around(problem, modes, parity) for parity in (0, 1)])
+    pressures = np.stack([points.pressed(problem, modes, parity) for parity in (0, 1)], axis=1)
+    along = (
+        np.multiply.outer(carried.along(k), points.along(k)) * np.cos(k * (carried.z[:, None] - points.z)) * (0.5 * sampling.weights[wave])
+    )
+    for force in range(points.count):
+        moved = system.under_forces(int(points.surface[force]), pressures[force])
+        for i in np.unique(carried.surface):
+            here = np.flatnonzero(carried.surface == i)
+            found = sum(shape[here] @ parity[i] for shape, parity in zip(felt, moved, strict=True))
+            each[here, force] += along[here, force, None] * found
+
+
 def _add_receptance(
-    receptance: ComplexArray, system: SurfaceWave, shares: dict[tuple[int, int], _ClassShares], sampling: AxialSampling, wave: int
+    shares: dict[tuple[int, int], _ClassShares], sampling: AxialSampling, receptance: ComplexArray, system: SurfaceWave, wave: int
 ) -> None:
     """Add what one wavenumber contributes to the receptance of all classes."""
     for pressed in sorted({j for _, j in shares}):

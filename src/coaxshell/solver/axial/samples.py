@@ -21,6 +21,11 @@ _WAVENUMBERS, _ORDERS = 12, 12
 """Sampled beyond k_max, and above the kept orders of each wavenumber."""
 
 
+def untied(problem: Problem) -> Problem:
+    """Return a problem as it answers in samples: without feedback that ties orders to each other, of which a sample has not all."""
+    return problem.open_loop if problem.tied else problem
+
+
 @dataclass(frozen=True)
 class Sample:
     """Orders at one wavenumber beyond those kept.

@@ -22,7 +22,7 @@ from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.linked import PointSolution, PointStructure
 from coaxshell.solver.axial.point_forces import PointForces
 from coaxshell.solver.axial.points import PointLayout
-from coaxshell.solver.axial.samples import Sample, samples_of, spherical_samples
+from coaxshell.solver.axial.samples import Sample, samples_of, spherical_samples, untied
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.sums import amplitudes_of, mean_squares
 from coaxshell.solver.axial.surfaces import SurfaceWave
@@ -68,7 +68,7 @@ def softness(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, layou
     s, points, count = grid.nodes[NODES], layout.carried, layout.absorbers.count
     found = np.zeros((2, count, 2, 2, s.size), np.complex128)
     for sample in spherical_samples(sampling):
-        system, felt = SurfaceWave(problem, s, sample.modes), _felt(problem, layout, sample)
+        system, felt = SurfaceWave(untied(problem), s, sample.modes), _felt(problem, layout, sample)
         for surface in np.unique(points.surface):
             answers = system.under_pressure(int(surface))
             share = sample.waves / (np.pi * problem.surfaces[surface].radius * np.where(sample.modes.orders == 0, 2.0, 1.0))
@@ -89,7 +89,7 @@ def _moved_by_sources(problem: Problem, grid: LaplaceGrid, sampling: AxialSampli
     found = np.zeros((2, points.count, s.size))
     for waves in wave_sets(problem, sampling, np.zeros(1), s):
         for sample in samples_of(problem, sampling, waves):
-            system, felt = SurfaceWave(problem, s, sample.modes), _felt(problem, layout, sample)
+            system, felt = SurfaceWave(untied(problem), s, sample.modes), _felt(problem, layout, sample)
             for family in waves.families:
                 normal = np.asarray(system.under(family, grid, NODES))
                 squares = (np.abs(normal) ** 2).sum(axis=0)[points.surface] * (felt**2 * sample.weight * float(family.mean[-1]))[..., None]

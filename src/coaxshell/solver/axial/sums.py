@@ -88,7 +88,7 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
     if problem.two_faced:
         return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
     if problem.tied:
-        tied = TiedWave(problem, grid.nodes[block], waves.modes[j])
+        tied = TiedWave(problem, grid.nodes[block], waves.modes[j], max(family.parities for family in waves.families))
         return [_tied_motions(problem, tied, family, grid, block) for family in waves.families]
     system = ModalSystem(problem, grid.nodes[block], waves.modes[j], shared=waves.fluids)
     return [motions_of(problem, system, family, grid, block) for family in waves.families]

@@ -49,6 +49,8 @@ class TiedWave:
     s : ndarray, shape (nodes,)
     modes : Modes
         All orders from 0 to the highest where electrodes are cut.
+    parities : int, optional
+        How many the motion has around the circle; as many as under the sources unless given.
 
     Attributes
     ----------
@@ -56,11 +58,11 @@ class TiedWave:
         Walls and fluids without feedback.
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes) -> None:
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, parities: int = 1) -> None:
         self._problem, self.bare = problem, ModalSystem(problem.open_loop, s, modes)
         self._compliance = self.bare.compliance()
         self._response = VoltageResponse.of_system(self.bare, problem, self._compliance)
-        patterns = patterns_of(problem, self._response.shells, modes.orders, motion_parities(problem))
+        patterns = patterns_of(problem, self._response.shells, modes.orders, max(parities, motion_parities(problem)))
         self._loops = ElectrodeLoops.of(problem, self._response, patterns, s)
 
     def driven(self, normal: ComplexArray) -> Driven:

@@ -27,7 +27,6 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
 from coaxshell.solver.links.described import LinkElements, LinkScales, link_elements, shells_between
 from coaxshell.solver.point_forces import patch
 from coaxshell.solver.scaling import Problem, Scales
-from coaxshell.structure.segmented_wall import SegmentedWall
 
 Array = npt.NDArray[Any]
 
@@ -191,7 +190,8 @@ def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int
 
 def _dead_segments(problem: Problem) -> bool:
     """Return whether segments of electrodes are dead, which excite both parities."""
-    return any(isinstance(wall, SegmentedWall) and wall.gains is not None and wall.segments.dead for wall in problem.shells)
+    cut = (wall.electrode_segments for wall in problem.shells if wall.gains is not None)
+    return any(segments is not None and segments.dead for segments in cut)
 
 
 def _footprints(problem: Problem, absorbers: Sequence[Absorber]) -> FloatArray | None:
