@@ -12,7 +12,7 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.modes import Modes
 from coaxshell.plotting import figure_margins
 from coaxshell.response.margins import worst_loops
-from coaxshell.solver.margins import followed, loop_margins, margins_of
+from coaxshell.solver.margins import followed, loop_margins, loops, margins_of
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.segmented_margins import segmented_loops
 from coaxshell.solver.settings import Settings
@@ -89,6 +89,22 @@ def test_gain_margins_part_stable_from_unstable():
         place = {"inner": 0, "outer": 1}[shell]
         walls = tuple(stronger.shells[i] if i == place else problem.shells[i] for i in (0, 1))
         assert bool(unstable_poles(replace(problem, shells=walls), 4, 4.0).orders.size) == many
+
+
+def test_the_loops_themselves_tell_whether_they_are_stable():
+    """Or leave it to the count, which refuses what they are not sure of: a pole, or turns too fast between nodes."""
+    law = {"numerator": [0.2 * TIME, 3.0], "amplifier_corner": "50 kHz", "weights": 3}
+    for matrix in (None, [[1.0, 0.5], [0.3, 0.8]]):
+        for delay, stable in (("1 us", True), ("40 us", False)):
+            problem = dimensionless(pairs(**law, delay=delay, matrix=matrix))
+            found = loops(problem, Modes.up_to(4), 0.25)
+            assert found.surely_stable == stable
+            assert found.ratio.shape == (4, found.each[0].nodes.size)
+            assert not found.each[0].values[4].any()
+    doubtful = found.ratio.copy()
+    doubtful[:] = 1.0
+    doubtful[0, found.even + 3] = 1j
+    assert not found._replace(ratio=doubtful).surely_stable
 
 
 def _later(problem, shell, delay):

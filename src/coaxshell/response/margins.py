@@ -91,7 +91,10 @@ def worst_loops(system: System, settings: Settings, progress: Progress | None = 
     problem, modes = _problem(system, settings)
     if segments_of(system) is not None:
         return _worst_patterns(problem, modes, _least(settings), progress)
-    all_loops = loops(problem, modes, _least(settings), _part(progress, 0.0, _FOLLOWED))
+    found = loops(problem, modes, _least(settings), _part(progress, 0.0, _FOLLOWED))
+    if not found.surely_stable:
+        (require_stable_ties if problem.tied else require_stable)(problem, modes.max_order, settings.duration)
+    all_loops = found.each
     margins = {}
     for number, (shell, loop) in enumerate(all_loops.items()):
         _part(progress, _FOLLOWED, 1.0)(number / len(all_loops))
@@ -164,15 +167,19 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
     problem, orders = _problem(system, settings)
     highest = settings.axial_modes or float(orders.max_order)
     sampling = AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, orders.max_order, highest)
-    require_stable_waves(problem, sampling, settings.duration)
     found: dict[str, dict[int, FloatArray]] = {}
     worst: dict[int, LoopResponse] = {}
     cut = segments_of(system)
+    asked = cut is not None
     if cut is not None:
+        require_stable_waves(problem, sampling, settings.duration)
         orders = Modes.up_to(cut // 2)
     count = len(sampling.modes)
     for place, modes in enumerate(sampling.modes):
-        each = _of_wave(problem, modes, _least(settings), _part(progress, place / count, (place + 1) / count))
+        each, stable = _of_wave(problem, modes, _least(settings), _part(progress, place / count, (place + 1) / count))
+        if not (stable or asked):
+            require_stable_waves(problem, sampling, settings.duration)
+            asked = True
         for shell, (margins, response) in each.items():
             for name in _VARIABLES:
                 known = found.setdefault(name, {}).setdefault(shell, np.full((count, orders.count), np.nan))
@@ -188,16 +195,19 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
     return margins_told if cut is None else _of_patterns(margins_told, problem), list(worst.values())
 
 
-def _of_wave(problem: Problem, modes: Modes, least: float, told: ShareDone) -> dict[int, tuple[LoopMargins, LoopResponse]]:
-    """Return the margins of each loop at one axial wavenumber, and L of what stands the least delay."""
+def _of_wave(problem: Problem, modes: Modes, least: float, told: ShareDone) -> tuple[dict[int, tuple[LoopMargins, LoopResponse]], bool]:
+    """Return the margins of each loop at one axial wavenumber with L of what stands the least delay, and whether the wave is stable.
+
+    Of segments, whose poles are counted before, it is.
+    """
     if segments_of(problem.system) is not None:
         cuts = segmented_loops(problem, modes, least, told)
-        return {shell: (cut.margins, _worst_of_cut(problem, shell, cut)) for shell, cut in cuts.items()}
-    found = {}
-    for shell, loop in loops(problem, modes, least, told).items():
+        return {shell: (cut.margins, _worst_of_cut(problem, shell, cut)) for shell, cut in cuts.items()}, True
+    whole, found = loops(problem, modes, least, told), {}
+    for shell, loop in whole.each.items():
         margins = margins_of(modes.orders, *loop)
         found[shell] = margins, _of_order(problem, shell, int(margins.delay.argmin()), loop)
-    return found
+    return found, whole.surely_stable
 
 
 def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
@@ -206,8 +216,8 @@ def _problem(system: System, settings: Settings) -> tuple[Problem, Modes]:
     problem = dimensionless(system, settings.dimensions, settings)
     if all(wall.gains is None or wall.gains.zero for wall in problem.shells):
         raise InputError("control", "nothing is fed back", "give the system a PDControl or a Feedback")
-    if settings.dimensions == 2:
-        (require_stable_ties if problem.tied else require_stable)(problem, settings.modes, settings.duration)
+    if settings.dimensions == 2 and segments_of(system) is not None:  # of other loops the margins themselves tell it
+        require_stable_ties(problem, settings.modes, settings.duration)
     return problem, Modes.up_to(settings.modes)
 
 

@@ -19,10 +19,11 @@ import numpy.typing as npt
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import ShareDone
+from coaxshell.numerics.winding import turning
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour, along_alone, opened
+from coaxshell.solver.stability import SPACING, Contour, along_alone, fed_orders, few_of, opened
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 
 _BLOCK = 512
@@ -66,28 +67,66 @@ class Loop(NamedTuple):
     values: ComplexArray
 
 
-def loops(problem: Problem, modes: Modes, least: float, told: ShareDone = lambda _: None) -> dict[int, Loop]:
-    """Return L of the loop of each shell that feeds anything back, by its number, on Re s = *least* or a little more.
+class Loops(NamedTuple):
+    """The loops of all shells at the same nodes.
+
+    Attributes
+    ----------
+    each : dict of int to Loop
+        Of each shell that feeds anything back, by its number.
+    ratio : ndarray, shape (orders, nodes)
+        D_m/D0_m of the orders that are fed back.
+    even : int
+        How many nodes stand at an even step, as far as any order resonates.
+    """
+
+    each: dict[int, Loop]
+    ratio: ComplexArray
+    even: int
+
+    @property
+    def surely_stable(self) -> bool:
+        """Whether D_m/D0_m turns by nothing, and nowhere beyond the resonances so fast that nodes would have to lie closer."""
+        turns = turning(self.ratio) + np.angle(1.0 / self.ratio[:, -1])
+        beyond = self.ratio[:, self.even - 1 :]
+        slow = np.abs(np.angle(beyond[:, 1:] / beyond[:, :-1])).max() <= SPACING
+        return bool(slow and (np.rint(-turns / np.pi) <= 0.0).all())
+
+
+def loops(problem: Problem, modes: Modes, least: float, told: ShareDone = lambda _: None) -> Loops:
+    """Return L of the loop of each shell that feeds anything back on Re s = *least* or a little more, 0 of orders that no law weighs.
 
     *told* hears the share of the nodes that are done, and may end it by an exception.
     """
-    shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
-    contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
-    passive = problem.open_loop
+    fed = fed_orders(problem, modes)
+    some = few_of(modes, fed if fed.size else modes.orders[:1])
+    contour, rows = Contour.of(problem, modes, least), np.searchsorted(modes.orders, some.orders)
     nodes = contour._replace(fades=FURTHER * contour.fades).nodes
-    if problem.tied:
-        each = zip(controlled(problem), _tied(problem, passive, modes, nodes, told), strict=True)
-        return {shell: Loop(nodes, one) for shell, one in each if one.any()}
+    problem = along_alone(problem, some)
+    find = _tied if problem.tied else _alone
+    ratio, found = find(problem, some, nodes, told)
+    each = {}
+    for shell, values in found.items():
+        whole = np.zeros((modes.count, nodes.size), np.complex128)
+        whole[rows] = values
+        each[shell] = Loop(nodes, whole)
+    return Loops(each, ratio, contour.even.size)
+
+
+def _alone(problem: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) -> tuple[ComplexArray, dict[int, ComplexArray]]:
+    """Return D/D0, and L of each shell that feeds anything back to itself, (orders, nodes)."""
+    shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
     values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
+    ratio, passive = np.empty((modes.count, nodes.size), np.complex128), problem.open_loop
     without = [_without(problem, shell) for shell in shells]
     for start in range(0, nodes.size, _BLOCK):
-        block = nodes[start : start + _BLOCK]
-        open_loop = opened(problem, passive, block, modes, None)
-        closed = open_loop.closed(problem, block, modes)
+        block = slice(start, start + _BLOCK)
+        open_loop = opened(problem, passive, nodes[block], modes, None)
+        ratio[:, block] = open_loop.closed(problem, nodes[block], modes)
         for loop, others in zip(values, without, strict=True):
-            loop[:, start : start + _BLOCK] = 1.0 - closed / open_loop.closed(others, block, modes)
-        told(min(1.0, (start + _BLOCK) / nodes.size))
-    return {shell: Loop(nodes, loop) for shell, loop in zip(shells, values, strict=True)}
+            loop[:, block] = 1.0 - ratio[:, block] / open_loop.closed(others, nodes[block], modes)
+        told(min(1.0, block.stop / nodes.size))
+    return ratio, dict(zip(shells, values, strict=True))
 
 
 def _matrices(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> Iterator[tuple[slice, ComplexArray]]:
@@ -98,23 +137,23 @@ def _matrices(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexAr
         yield block, ElectrodeLoops.of(problem, answers, OrderPatterns(modes.orders, 1), nodes[block]).matrix
 
 
-def _tied(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) -> ComplexArray:
-    """Return L of what the actuators of each wall answer, cut at their amplifier, (walls, orders, nodes); 0 of walls without actuators."""
-    walls = len(controlled(problem))
-    values = np.empty((walls, modes.count, nodes.size), dtype=np.complex128)
-    for block, matrix in _matrices(problem, passive, modes, nodes):
-        whole = np.linalg.det(matrix)
+def _tied(problem: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) -> tuple[ComplexArray, dict[int, ComplexArray]]:
+    """Return D/D0, and L of what the actuators of each wall answer, cut at their amplifier, (orders, nodes); none of walls without any."""
+    shells = controlled(problem)
+    values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
+    ratio = np.empty((modes.count, nodes.size), np.complex128)
+    for block, matrix in _matrices(problem, problem.open_loop, modes, nodes):
+        ratio[:, block] = np.linalg.det(matrix)
         for wall, loop in enumerate(values):
-            others = matrix.copy()
-            others[:, :, wall] = np.eye(walls)[wall]
-            loop[:, block] = 1.0 - whole / np.linalg.det(others)
+            others = np.delete(np.delete(matrix, wall, axis=2), wall, axis=3)
+            loop[:, block] = 1.0 - ratio[:, block] / np.linalg.det(others)
         told(min(1.0, block.stop / nodes.size))
-    return values
+    return ratio, {shell: one for shell, one in zip(shells, values, strict=True) if one.any()}
 
 
 def loop_margins(problem: Problem, modes: Modes, least: float) -> dict[int, LoopMargins]:
     """Return the margins of the loop of each shell that feeds anything back, by its number, in a stable system."""
-    return {shell: margins_of(modes.orders, *loop) for shell, loop in loops(problem, modes, least).items()}
+    return {shell: margins_of(modes.orders, *loop) for shell, loop in loops(problem, modes, least).each.items()}
 
 
 def common_loop(problem: Problem, modes: Modes, least: float) -> list[Loop]:

@@ -96,11 +96,12 @@ def _count(patterns: Patterns) -> int:
 def _values(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexArray, told: ShareDone) -> list[ComplexArray]:
     """Return L of each wall under control, (loops, nodes) each."""
     found: list[list[ComplexArray]] = []
-    for start in range(0, nodes.size, _BLOCK):
-        loops = _at(problem, modes, patterns, nodes[start : start + _BLOCK])
+    step = _BLOCK if patterns.dead else 4 * _BLOCK
+    for start in range(0, nodes.size, step):
+        loops = _at(problem, modes, patterns, nodes[start : start + step])
         walls = range(len(loops.law))
         found.append([_eigenvalues(loops, i) if patterns.dead else _alone(loops, i) for i in walls])
-        told(min(1.0, (start + _BLOCK) / nodes.size))
+        told(min(1.0, (start + step) / nodes.size))
     whole = [np.concatenate(each, axis=-1) for each in zip(*found, strict=True)]
     return [followed(one[:, None])[:, 0] for one in whole] if patterns.dead else whole
 
@@ -140,10 +141,11 @@ def _resembled(problem: Problem, modes: Modes, patterns: Patterns, place: int, l
     nearest = np.abs(loop.nodes.imag - np.nan_to_num(margins.delay_frequency)[:, None]).argmin(axis=1)
     nodes = np.where(np.isfinite(margins.delay), nearest, np.abs(loop.values).argmax(axis=1))
     live = [k for k in range(len(patterns.evaluate)) if k not in patterns.dead]
+    asked, inverse = np.unique(nodes, return_inverse=True)
+    values, vectors = np.linalg.eig(_live(_at(problem, modes, patterns, loop.nodes[asked]), place))
     found = []
-    for row, node in enumerate(nodes):
-        values, vectors = np.linalg.eig(_live(_at(problem, modes, patterns, loop.nodes[[node]]), place)[0])
-        own = vectors[:, np.abs(values - loop.values[row, node]).argmin()]
+    for row, (node, there) in enumerate(zip(nodes, inverse, strict=True)):
+        own = vectors[there][:, np.abs(values[there] - loop.values[row, node]).argmin()]
         size = np.abs(patterns.project[:, live] @ own) ** 2 * (patterns.evaluate**2).sum(axis=0)
         found.append(patterns.numbers.orders[size.argmax()])
     return np.array(found)

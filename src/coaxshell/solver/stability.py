@@ -41,14 +41,14 @@ from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.structure.control_law import ControlGains
 
 _MAX_NODES = 8192
-_SPACING = 0.8
+SPACING = 0.8
 """Node spacing over sigma_0: the phase of a pole on the imaginary axis turns by less than a radian between nodes."""
 _BLOCK = 512
 _ROUGHLY = 1.15
 """How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
 _ITERATIONS = 40
 _HALVINGS = 8
-"""Times that the distance of nodes is halved where the ratio turns by more than _SPACING radians, beyond the resonances."""
+"""Times that the distance of nodes is halved where the ratio turns by more than SPACING radians, beyond the resonances."""
 _STARTS = 12
 """Places that Newton's method is started from until one leads to a pole that grows."""
 
@@ -190,8 +190,8 @@ class Contour(NamedTuple):
         first = Modes(np.ones(1), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
         limits = np.stack([1.2 * np.hypot(wall.highest_frequency(modes), wall.highest_frequency(first)) for wall in problem.shells])
         limits = limits.max(axis=0)
-        shift = max(least, float(limits.max()) / (_SPACING * _MAX_NODES))
-        even = np.arange(0.0, limits.max() + _SPACING * shift, _SPACING * shift)
+        shift = max(least, float(limits.max()) / (SPACING * _MAX_NODES))
+        even = np.arange(0.0, limits.max() + SPACING * shift, SPACING * shift)
         delay = max((wall.gains.delay for wall in problem.shells if wall.gains is not None), default=0.0)
         return cls(shift, even, limits, highest_frequency(problem, modes.max_order, modes.wavenumber), delay)
 
@@ -210,7 +210,7 @@ class Contour(NamedTuple):
         last = max(self.fades, 1.02 * max(starts))
         nodes = np.union1d(starts, np.geomspace(min(starts), last, 200)[1:])
         if self.delay > 0.0:
-            nodes = np.union1d(nodes, np.arange(min(starts), last, _SPACING / self.delay))
+            nodes = np.union1d(nodes, np.arange(min(starts), last, SPACING / self.delay))
         return np.asarray(self.shift + 1j * nodes, dtype=np.complex128)
 
 
@@ -268,7 +268,7 @@ def turned(
     nodes = contour.beyond(*ends.tolist())
     ratio = ratio_at(nodes, modes)
     for _ in range(_HALVINGS):  # a pole of strong feedback may lie there, close to the contour
-        quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
+        quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > SPACING
         if not quick.any():
             break
         between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
