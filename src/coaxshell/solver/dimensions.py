@@ -12,7 +12,6 @@ from coaxshell.model.shells import RigidShell
 from coaxshell.model.sources import OFF_THE_PLANE
 from coaxshell.model.system import System
 from coaxshell.solver.settings import Settings
-from coaxshell.structure.constituents import loses
 
 _WORDS = {"z": "{:g} m is off the plane", "inclination": "{:g} degrees lead out of the plane"}
 
@@ -39,18 +38,16 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     inclined = next((i for i, source in enumerate(system.sources) if getattr(source, "inclination", 0.0)), None)
     if dimensions == 3 and inclined is not None:
         where = f"source[{inclined}]" if isinstance(system.source, tuple) else "source"
-        _require_plain_solids(system, f"{where}.inclination")
+        _require_free_solids(system, f"{where}.inclination")
 
 
-def _require_plain_solids(system: System, where: str) -> None:
-    """Raise InputError if an elastic wall that an inclined wave meets is under control or has losses."""
+def _require_free_solids(system: System, where: str) -> None:
+    """Raise InputError if an elastic wall that an inclined wave meets is under control."""
     for i, shell in enumerate(system.shells):
         if not isinstance(shell, Shell) or shell.theory != "elastic":
             continue
-        controlled = law_of(system, i) is not None
-        if controlled or any(loses(layer.material) for layer in shell.layers):
-            what = "under control" if controlled else "with losses, or layers as soft as rubber"
-            problem = f"a wave that runs along shells[{i}], an elastic wall {what}, is not solved"
+        if law_of(system, i) is not None:
+            problem = f"a wave that runs along shells[{i}], an elastic wall under control, is not solved"
             raise InputError(where, problem, f'use inclination = 0, or shells[{i}].theory = "thin"')
 
 

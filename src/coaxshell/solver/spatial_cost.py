@@ -102,7 +102,8 @@ def _solids_cost(problem: Problem, sampling: AxialSampling, size: Size) -> Cost:
             continue
         shapes, rows = wall.shape_count(size.orders - 1.0, 0.0), 3.0 + len(READ) + len(wall.piezoelectric)
         if any(getattr(source, "inclination", 0.0) for source in problem.system.sources):
-            seconds += (size.orders * size.nodes) * _INCLINED * (shapes / 48.0) ** 2
+            unknowns = 3.0 + 3.0 * sum(wall.degree_of(layer, size.orders - 1.0) for layer in wall.layers)
+            seconds += (size.orders * size.nodes) * _INCLINED * (unknowns / 48.0) ** 2
         memory += REAL * waves * shapes * rows + WORKERS * 4.0 * rows * size.plane * min(0.5, BLOCK_NODES / size.nodes)
         seconds += waves * (_PER_SHAPE * shapes**2.5 + size.nodes * shapes * _PER_TERM)
     return Cost(memory, seconds)

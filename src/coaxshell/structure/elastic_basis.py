@@ -128,10 +128,20 @@ def elastic_basis(
 
 
 def order_meshes(
-    layers: tuple[SolidLayer, ...], orders: FloatArray, wavenumber: float, frequency: float, meshed_as: Sequence[SolidLayer] | None = None
+    layers: tuple[SolidLayer, ...],
+    orders: FloatArray,
+    wavenumber: float,
+    frequency: float,
+    meshed_as: Sequence[SolidLayer] | None = None,
+    most: int | None = None,
 ) -> list[tuple[slice, WallMesh]]:
-    """Return the meshes of some orders at an axial wavenumber, and the places of the orders that share each."""
+    """Return the meshes of some orders at an axial wavenumber, and the places of the orders that share each.
+
+    Layers with losses have no higher degree than *most*: waves that are shorter die within them.
+    """
     needed = np.stack([degrees(layer, orders, wavenumber, frequency) for layer in meshed_as or layers], axis=1)
+    if most is not None:
+        needed = np.minimum(needed, [needed.max() if layer.factor is None else most for layer in layers])
     steps = np.ceil(needed / STEP).astype(int)
     edges = [0, *(1 + np.flatnonzero(np.any(np.diff(steps, axis=0), axis=1))), orders.size]
     members = [slice(int(start), int(stop)) for start, stop in pairwise(edges)]
@@ -141,6 +151,17 @@ def order_meshes(
 def stiffness_powers(mesh: WallMesh) -> FloatArray:
     """Return K of (u_r, u_theta, u_z) without potentials by 1, m, m^2, k, k^2 and m k, (6, n, n), over the roots of the mass."""
     return _linear_rows(mesh)[1]
+
+
+def layer_powers(mesh: WallMesh, part: LayerMesh, matrix: FloatArray) -> FloatArray:
+    """Return the same of one layer and some C alone, (6, 3 (p + 1), 3 (p + 1)), over the roots of the mass at its points."""
+    local = [strains(np.array([m]), k, part.radius, part.derivative, np.eye(part.radius.size))[0] for m, k in ((0, 0), (1, 0), (0, 1))]
+    each = [local[0], local[1] - local[0], local[2] - local[0]]
+    flat = [(one * np.sqrt(part.weights)[:, None, None]).reshape(len(matrix), len(part.radius), -1) for one in each]
+    products = [[np.einsum("iqa,ij,jqb->ab", a, matrix, b, optimize=True) for b in flat] for a in flat]
+    (ff, fa, fl), (af, aa, al), (lf, la, ll) = products
+    root = np.tile(np.sqrt(mesh.mass[part.nodes]), len(flat))
+    return np.asarray(np.stack([ff, fa + af, aa, fl + lf, ll, al + la]) / np.multiply.outer(root, root), dtype=np.float64)
 
 
 def plane_bytes(layers: tuple[SolidLayer, ...], orders: FloatArray, frequency: float) -> int:

@@ -90,6 +90,8 @@ class LossySolidWall(ElasticWall):
 
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
+        if np.ndim(modes.wavenumber):
+            return self._inclined(modes, s, [])[0]
         if not self.closes_a_loop:
             return _receptance(self._faces.at(modes, s)[0])
         found = self.answered(modes, s)
@@ -105,6 +107,8 @@ class LossySolidWall(ElasticWall):
 
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
         """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it."""
+        if np.ndim(modes.wavenumber):
+            return super().station_port(modes, s, reads=reads)
         if self.closes_a_loop:
             return self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)[:2]
         chain, shown = (self._stations if reads else self._faces).at(modes, s)
@@ -126,6 +130,8 @@ class LossySolidWall(ElasticWall):
 
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
+        if np.ndim(modes.wavenumber):
+            return self._inclined(modes, s, asked)[1]
         if not self.closes_a_loop:
             return self._per_load(self._reading(asked).at(modes, s)[1])
         found = self._driven(asked).at(modes, s)

@@ -106,6 +106,15 @@ class SolidLayer:
         return self.stiffness[RADIAL][HOOP] + 2.0 / 3.0 * self.shear
 
     @property
+    def kept_and_relaxing(self) -> tuple[FloatArray, FloatArray]:
+        """C_0 and C_1 of C(s) = C_0 + g(s) C_1: of a rubber its bulk modulus and its shear."""
+        if self.factor is None:
+            return self.matrix, np.zeros((STRAINS, STRAINS))
+        if self.shear_alone:
+            return _of_moduli(self.bulk, 0.0), _of_moduli(0.0, self.shear)
+        return np.zeros((STRAINS, STRAINS)), self.matrix
+
+    @property
     def stiffest(self) -> SolidLayer:
         """The layer without losses, as stiff as it ever is within the run."""
         if self.factor is None:

@@ -11,7 +11,8 @@ force on either face, at each order and node: what lies within a layer, I, is el
 
     S = A_JJ - sum over layers of A_IB' X,      X = A_II^-1 A_IB,      x_I = -X x_B.
 
-Displacements are divided by the root of the mass, potentials by that of G(0, 0).
+Displacements are divided by the root of the mass, potentials by that of G(0, 0). Of a layer with losses C = C_0 + g(s) C_1: what is of C_1
+has matrices of its own, which g(s) multiplies at each node; potentials have none.
 
 Fronts that lead everything, sin(alpha) less than c_e over the fastest speed of any layer, make x causal
 (:mod:`coaxshell.solver.axial.inclination`).
@@ -29,14 +30,17 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.lobatto import interpolation
 from coaxshell.numerics.modes import Modes
-from coaxshell.structure.elastic_basis import PotentialOfLayer, order_meshes, stiffness_powers
+from coaxshell.structure.elastic_basis import PotentialOfLayer, layer_powers, order_meshes, stiffness_powers
 from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown
 from coaxshell.structure.elastic_mesh import LayerMesh, WallMesh, strains
+from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.solid import SolidLayer
 
 _DISPLACEMENTS = 3
 _SAMPLES = ((0.0, (0.0, 1.0, 2.0)), (1.0, (0.0, 1.0)), (2.0, (0.0,)))
 """Wavenumbers, and orders at each, that tell a polynomial of second degree in both."""
+_MOST_DEGREE = 64
+"""Of a layer with losses."""
 _BYTES = 2**25
 """Matrices of several nodes that are solved together."""
 
@@ -68,7 +72,11 @@ class InclinedMesh:
         self._ceramics = {part: _Electric(part) for part in mesh.layers if part.layer.coupling is not None}
         total = count + sum(one.size for one in self._ceramics.values())
         self.powers = np.zeros((6, total, total))
-        self.powers[:, :count, :count] = stiffness_powers(mesh)
+        self._relaxing: dict[LayerMesh, FloatArray] = {}
+        if all(part.layer.factor is None for part in mesh.layers):
+            self.powers[:, :count, :count] = stiffness_powers(mesh)
+        else:
+            self._add_layers()
         self.inertia = np.where(np.arange(total) < count, 1.0, 0.0)
         self._place: dict[LayerMesh, slice] = {}
         start = count
@@ -84,6 +92,15 @@ class InclinedMesh:
         self._joints, self._layers = self._parts()
         self._between = self.powers[np.ix_(range(6), self._joints, self._joints)]
 
+    def _add_layers(self) -> None:
+        """Add up the stiffness of all layers that no factor weighs, and put down what one does."""
+        for part in self.mesh.layers:
+            columns, (kept, relaxing) = self._columns(part), part.layer.kept_and_relaxing
+            self.powers[np.ix_(range(6), columns, columns)] += layer_powers(self.mesh, part, kept)
+            if part.layer.factor is not None:
+                wide = self._relaxing[part] = np.zeros_like(self.powers)
+                wide[np.ix_(range(6), columns, columns)] = layer_powers(self.mesh, part, relaxing)
+
     def _parts(self) -> tuple[list[int], list[_Within]]:
         """Return the places of the displacements of all joints, and what lies within each layer."""
         points = self.mesh.radius.size
@@ -96,7 +113,13 @@ class InclinedMesh:
             potentials = self._place.get(part, slice(0, 0))
             inner = [*(place for place in columns if place not in held), *range(potentials.start, potentials.stop)]
             own, across = (self.powers[np.ix_(range(6), inner, some)] for some in (inner, held))
-            found.append(_Within(inner, [joints.index(place) for place in held], own, across, self.inertia[inner]))
+            relaxing = None
+            if part in self._relaxing and part.layer.factor is not None:
+                every = self._relaxing[part]
+                relaxing = _Relaxing(
+                    part.layer.factor, *(every[np.ix_(range(6), *some)] for some in ((inner, inner), (inner, held), (held, held)))
+                )
+            found.append(_Within(inner, [joints.index(place) for place in held], own, across, self.inertia[inner], relaxing))
         return joints, found
 
     def _columns(self, part: LayerMesh) -> list[int]:
@@ -105,44 +128,49 @@ class InclinedMesh:
         return [which * self.mesh.radius.size + point for which in range(_DISPLACEMENTS) for point in points]
 
     def rows(self, place: InclinedPlace) -> FloatArray:
-        """Return a quantity per unit of each unknown, by 1, m and k, shape (3, N)."""
+        """Return a quantity per unit of each unknown, by 1, m and k, shape (2, 3, N): the second under the factor of the place's layer."""
         part = self.mesh.layers[place.layer]
         inside = 2.0 * (place.radius - part.layer.inner) / part.layer.thickness - 1.0
         at = interpolation(part.degree, min(max(inside, -1.0), 1.0))
-        found, columns = np.zeros((3, self.inertia.size)), self._columns(part)
+        found, columns = np.zeros((2, 3, self.inertia.size)), self._columns(part)
         if place.what in DISPLACEMENTS:
             which, sign = DISPLACEMENTS[place.what]
             values = np.zeros((_DISPLACEMENTS, at.size))
             values[which] = sign * at
-            found[0, columns] = values.ravel() / self._root[columns]
+            found[0, 0, columns] = values.ravel() / self._root[columns]
             return found
         if place.what == "potential":
-            found[0, self._place[part]] = self._ceramics[part].values(at)
+            found[0, 0, self._place[part]] = self._ceramics[part].values(at)
             return found
         component, slope = STRESSES[place.what], at @ part.derivative
         local = [strains(np.array([m]), k, np.array([place.radius]), slope[None], at[None])[0, :, 0] for m, k in ((0, 0), (1, 0), (0, 1))]
         each = np.stack([local[0], local[1] - local[0], local[2] - local[0]])
-        found[:, columns] = np.einsum("j,ajcp->acp", part.layer.matrix[component], each).reshape(3, -1) / self._root[columns]
+        moduli = np.stack(part.layer.kept_and_relaxing)[:, component]
+        found[..., columns] = np.einsum("gj,ajcp->gacp", moduli, each).reshape(2, 3, -1) / self._root[columns]
         if part in self._ceramics:
             e, one = np.array(part.layer.coupling)[:, component], self._ceramics[part]
             field = np.stack([e[0] * one.values(slope), -e[1] / place.radius * one.values(at), -e[2] * one.values(at)])
-            found[:, self._place[part]] = field
+            found[0, :, self._place[part]] = field
         return found
 
-    def solve(self, order: float, wavenumber: ComplexArray, s: ComplexArray, rows: FloatArray) -> ComplexArray:
+    def solve(self, order: float, wavenumber: ComplexArray, s: ComplexArray, rows: FloatArray, layers: Sequence[int]) -> ComplexArray:
         """Return quantities per unit force along r on the inner and on the outer face of one order, shape (quantities, 2, nodes).
 
         Parameters
         ----------
         order : float
         wavenumber, s : ndarray, shape (nodes,)
-        rows : ndarray, shape (quantities, 3, N)
+        rows : ndarray, shape (quantities, 2, 3, N)
+            Of :meth:`rows`.
+        layers : sequence of int
+            The layer of each quantity.
         """
         size, outer = self.inertia.size, self.mesh.radius.size - 1
         forces = np.zeros((size, 2))
         forces[[0, outer], [0, 1]] = 1.0 / self._root[[0, outer]]
         found = np.empty((len(rows), 2, s.size), np.complex128)
-        step, flat = max(1, _BYTES // (16 * size * size)), rows.reshape(-1, size)
+        step, flat = max(1, _BYTES // (16 * size * size)), rows[:, 0].reshape(-1, size)
+        under = [i for i in range(len(rows)) if rows[i, 1].any()]
         for start in range(0, s.size, step):
             some = slice(start, start + step)
             k, square = wavenumber[some], s[some] ** 2
@@ -150,6 +178,11 @@ class InclinedMesh:
             _add_inertia(matrix, square, self.inertia[self._joints])
             for one in self._layers:
                 own, across = _at(one.own, order, k), _at(one.across, order, k)
+                if one.relaxing is not None:
+                    g = one.relaxing.factor.at(s[some])[:, None, None]
+                    own += g * _at(one.relaxing.own, order, k)
+                    across += g * _at(one.relaxing.across, order, k)
+                    matrix[:, np.array(one.ends)[:, None], one.ends] += g * _at(one.relaxing.between, order, k)
                 _add_inertia(own, square, one.inertia)
                 eliminated.append(np.linalg.solve(own, across))
                 matrix[:, np.array(one.ends)[:, None], one.ends] -= np.swapaxes(across, 1, 2) @ eliminated[-1]
@@ -160,7 +193,21 @@ class InclinedMesh:
                 answer[:, one.inner] = -(x @ joints[:, one.ends])
             shown = np.moveaxis((flat @ answer).reshape(k.size, len(rows), 3, 2), 0, -1)
             found[..., some] = shown[:, 0] + order * shown[:, 1] + k * shown[:, 2]
+            for i in under:
+                factor = self.mesh.layers[layers[i]].layer.factor
+                assert factor is not None
+                fixed, around, along = np.moveaxis(rows[i, 1] @ answer, 0, -1)
+                found[i, :, some] += factor.at(s[some]) * (fixed + order * around + k * along)
         return found
+
+
+class _Relaxing(NamedTuple):
+    """A_II, A_IB and A_BB of a layer that its factor weighs, by powers."""
+
+    factor: Relaxation
+    own: FloatArray
+    across: FloatArray
+    between: FloatArray
 
 
 class _Within(NamedTuple):
@@ -171,6 +218,7 @@ class _Within(NamedTuple):
     own: FloatArray
     across: FloatArray
     inertia: FloatArray
+    relaxing: _Relaxing | None
 
 
 def _at(powers: FloatArray, order: float, k: ComplexArray) -> ComplexArray:
@@ -235,7 +283,7 @@ def inclined_answers(
     Parameters
     ----------
     layers : sequence of SolidLayer
-        Dimensionless, without losses.
+        Dimensionless.
     modes : Modes
         Of one wavenumber for each node.
     s : ndarray, shape (nodes,)
@@ -247,11 +295,11 @@ def inclined_answers(
     shortest = frequency * float(np.max(np.abs(k) / np.abs(s)))
     found = np.empty((len(places), 2, modes.count, s.size), np.complex128)
     with one_blas_thread():  # many small matrices
-        for members, mesh in order_meshes(tuple(layers), modes.orders, shortest, frequency):
+        for members, mesh in order_meshes(tuple(layers), modes.orders, shortest, frequency, most=_MOST_DEGREE):
             equations = _made(mesh)
             rows = np.stack([equations.rows(place) for place in places])
             for order in range(members.start, members.stop):
-                found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows)
+                found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows, [place.layer for place in places])
     return found
 
 
