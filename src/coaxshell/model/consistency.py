@@ -147,9 +147,13 @@ def _control(system: SystemParts) -> None:
                 told = f"shells[{number}] is under {owner[number]} already"
                 raise InputError(f"{where}.shells", told, "name other shells: each has one law")
             owner[number] = where
-        if (law.segments, law.dead) != (laws_of(system)[0].segments, laws_of(system)[0].dead):
+        first = laws_of(system)[0]
+        if (law.segments, law.dead) != (first.segments, first.dead):
             found = "other walls are cut otherwise, and segments are known of walls that are cut at the same angles"
             raise InputError(f"{where}.segments", found, "give all laws the same segments and the same dead ones")
+        if (law.segment_pitch, law.segment_length) != (first.segment_pitch, first.segment_length):
+            found = "other walls are cut otherwise along the axis, where electrodes are known to lie over each other"
+            raise InputError(f"{where}.segment_pitch", found, "give all laws the same segment_pitch and the same segment_length")
         name = "current_saturation" if law.current_saturation else "saturation"
         if several and getattr(law, name):
             remedy = f"use {name} = false and compare what is asked for and its limit, or one law with a list of gains"
@@ -198,15 +202,21 @@ def _law(system: SystemParts, law: PDControl | Feedback, where: str) -> None:
             raise InputError(f"{where}.bridge_imbalance", told, "make a layer 'self-sensing', or leave bridge_imbalance out")
         if law.segments is not None:
             _segments(law, shell_, number, where)
+        if law.segments is not None or law.segment_pitch is not None:
+            _collocated(shell_, number)
 
 
 def _segments(law: PDControl | Feedback, shell: Shell, number: int, where: str) -> None:
-    """Check that segments have room beside their gaps, and that each senses and pushes at the same place."""
+    """Check that segments have room beside their gaps."""
     assert law.segments is not None
     around = 2.0 * math.pi * shell.radius / law.segments
     if law.segment_gap is not None and law.segment_gap >= around:
         found = f"{law.segment_gap:g} m leaves nothing of {law.segments} segments of shells[{number}]"
         raise InputError(f"{where}.segment_gap", found, f"must be less than {around:.4g} m")
+
+
+def _collocated(shell: Shell, number: int) -> None:
+    """Check that each segment senses and pushes at the same place."""
     for place, layer in enumerate(shell.layers):
         if layer.role in ("sensor", "charge-sensor", "actuator"):
             raise InputError(

@@ -10,7 +10,7 @@ from pydantic_core import core_schema
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
-from coaxshell.model.segments import Count, Dead, Gap, require_segments
+from coaxshell.model.segments import Count, Dead, Gap, Length, require_segments
 from coaxshell.model.units import DIMENSIONS, Quantity, quantity
 from coaxshell.numerics.scalars import plain
 
@@ -124,6 +124,10 @@ class PDControl(Described):
     """Electrodes around each wall, all layers cut at the same places, each with its own loop; one that varies freely unless given."""
     segment_gap: Gap | None = None
     """Between neighbouring segments along the mid-surface, a strip held at ground (m)."""
+    segment_pitch: Length | None = None
+    """In three dimensions from electrode to electrode along the axis, middle to middle, one at z = 0 (m); not cut along it unless given."""
+    segment_length: Length | None = None
+    """Of each electrode along the axis (m), what is left of the pitch held at ground; the whole pitch unless given."""
     dead: Dead | None = None
     """Segments held at ground, which neither sense nor push: 0 has its middle at theta = 0, the others follow counterclockwise."""
 
@@ -131,6 +135,6 @@ class PDControl(Described):
     def _once_each(self) -> Self:
         if self.shells != "all" and (not self.shells or len(set(self.shells)) < len(self.shells)):
             raise InputError("shells", f"{list(self.shells)!r} is not allowed", "must name at least one shell, and each only once")
-        require_segments(self.segments, self.segment_gap, self.dead, self.transducers)
+        require_segments(self)
         require_current(self)
         return self

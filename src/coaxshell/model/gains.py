@@ -37,6 +37,11 @@ def segments_of(system: SystemParts) -> int | None:
     return next((law.segments for law in laws_of(system) if law.segments is not None), None)
 
 
+def pitch_of(system: SystemParts) -> float | None:
+    """Return how far electrodes that are cut along the axis are from middle to middle, m; None where they are not."""
+    return next((law.segment_pitch for law in laws_of(system) if law.segment_pitch is not None), None)
+
+
 def ties_shells(system: SystemParts) -> bool:
     """Return whether the sensors of one shell drive another one's actuators."""
     return any(isinstance(law, Feedback) and law.matrix is not None for law in laws_of(system))

@@ -1,4 +1,4 @@
-"""Electrodes cut into segments around a wall, as a control law describes them."""
+"""Electrodes cut into segments around a wall, and into belts along the axis, as a control law describes them."""
 
 from __future__ import annotations
 
@@ -27,11 +27,14 @@ def _dead(value: Any) -> tuple[int, ...]:
 
 Count = Annotated[int, Field(ge=1, le=10_000), BeforeValidator(whole)]
 Gap = Annotated[float, quantity("length", above=0)]
+Length = Annotated[float, quantity("length", above=0)]
 Dead = Annotated[tuple[int, ...], BeforeValidator(_dead)]
 
 
-def require_segments(segments: int | None, gap: float | None, dead: tuple[int, ...] | None, transducers: str) -> None:
-    """Raise InputError if what is said of segments does not go together."""
+def require_segments(law: Any) -> None:
+    """Raise InputError if what a law says of segments does not go together."""
+    _require_belts(law.segment_pitch, law.segment_length, law.dead, law.transducers)
+    segments, gap, dead, transducers = law.segments, law.segment_gap, law.dead, law.transducers
     if segments is None:
         for name, given in (("segment_gap", gap), ("dead", dead)):
             if given is not None:
@@ -43,3 +46,21 @@ def require_segments(segments: int | None, gap: float | None, dead: tuple[int, .
         raise InputError("dead", f"{dead[-1]} is no segment of {segments}", f"{NUMBERS}: 0 to {segments - 1}")
     if dead and len(dead) == segments:
         raise InputError("dead", f"lists all {segments} segments", "leave control out, or some segments alive")
+
+
+def _require_belts(pitch: float | None, length: float | None, dead: tuple[int, ...] | None, transducers: str) -> None:
+    """Raise InputError if what is said of electrodes that are cut along the axis does not go together."""
+    if pitch is None:
+        if length is not None:
+            told = "is said of electrodes that are not cut along the axis"
+            raise InputError("segment_length", told, "give segment_pitch too, from middle to middle, or leave segment_length out")
+        return
+    if transducers != "electrodes":
+        told = f"{pitch:g} m: electrodes cut along the axis are not known to the paper's law"
+        raise InputError("segment_pitch", told, 'use transducers = "electrodes"')
+    if length is not None and length > pitch:
+        told = f"{length:g} m is more than the {pitch:g} m from middle to middle"
+        raise InputError("segment_length", told, f"must be at most segment_pitch, {pitch:g} m, which leaves no gap")
+    if dead:
+        told = "is not known of electrodes that are cut along the axis"
+        raise InputError("dead", told, "leave dead out, or segment_pitch: segments are then strips along the whole length")

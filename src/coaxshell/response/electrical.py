@@ -30,6 +30,7 @@ from coaxshell.structure.electroded_wall import ElectrodedWall
 from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.solid_charges import free_capacity
+from coaxshell.structure.tied_wall import TiedWall
 
 
 class Electrical(NamedTuple):
@@ -142,6 +143,9 @@ def _segments_at_station(solution: ModalSolution, shell: int, wall: SegmentedWal
 def _held_at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> tuple[FloatArray, float]:
     """Return the charge of all actuators without that of their voltage, (parities, M + 1, T), and their capacitance, dimensionless."""
     solution.need_every_instant("a current")
+    if isinstance(wall, TiedWall) and wall.belts is not None:
+        assert solution.along is not None
+        return wall.capacitance * solution.along.potentials[wall.shown_potentials - 3][shell], wall.capacitance  # of the belt over it
     held = wall.charges_of_fields(orders(solution))
     return sum((amplitudes(solution, shell, moved) for moved, _ in held), np.zeros(1)), sum(capacitance for _, capacitance in held)
 

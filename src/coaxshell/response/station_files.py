@@ -16,9 +16,9 @@ from coaxshell.numerics.late import xarray as xr
 from coaxshell.response import restored
 from coaxshell.response.dataset import ERROR, checksum, to_spatial_dataset
 from coaxshell.response.thinning import with_missing
+from coaxshell.solver.axial.normals import piezoelectric_layers
 from coaxshell.solver.axial.sampling import MOST_WAVES, AxialSampling
 from coaxshell.solver.axial.solution import LINES, SpatialSolution, StationSpectra
-from coaxshell.solver.axial.sums import piezoelectric_layers
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.solid_spectra import band

@@ -43,7 +43,7 @@ def run_cost(system: System | Problem, settings: Settings, *, retunable: bool = 
     retunable : bool
         Whether it keeps what :meth:`coaxshell.response.PreparedSystem.retuned` shares.
     """
-    size = size_of(dimensionless(system, settings=settings) if isinstance(system, System) else system, settings)
+    size = size_of(dimensionless(system, settings.dimensions, settings) if isinstance(system, System) else system, settings)
     if settings.dimensions == 3:
         return spatial_cost(system if isinstance(system, System) else system.system, settings, size)
     direct = settings.engine == "direct"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, limits_currents, segments_of, ties_shells
+from coaxshell.model.gains import law_of, limits_currents, pitch_of, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -35,6 +35,7 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if a system has electrodes or elastic walls under what is not known of them."""
     _require_ties(system, dimensions)
     _require_free_currents(system)
+    _require_belts(system, dimensions)
     inclined = next((i for i, source in enumerate(system.sources) if getattr(source, "inclination", 0.0)), None)
     if dimensions == 3 and inclined is not None:
         where = f"source[{inclined}]" if isinstance(system.source, tuple) else "source"
@@ -67,6 +68,10 @@ def require_loops_alone(system: System, what: str, remedy: str) -> None:
     if ties_shells(system):
         problem = f"the sensors of one shell drive another, which {what} does not know yet"
         raise InputError("control.matrix", problem, remedy.format("matrix"))
+    pitch = pitch_of(system)
+    if pitch is not None:
+        problem = f"electrodes {pitch:g} m apart along the axis tie wavenumbers to each other, which {what} does not know yet"
+        raise InputError("control.segment_pitch", problem, remedy.format("segment_pitch"))
 
 
 def _require_ties(system: System, dimensions: int) -> None:
@@ -77,6 +82,26 @@ def _require_ties(system: System, dimensions: int) -> None:
         problem = f"{cut} segments tie orders to each other, which the march of line absorbers along the axis does not know yet"
         remedy = "use linear springs, point absorbers in rows (z=[...] of absorber_ring), dimensions=2, or leave segments out"
         raise InputError("control.segments", problem, remedy)
+
+
+def _require_belts(system: System, dimensions: int) -> None:
+    """Raise InputError if electrodes are cut along the axis where that is not solved: in the plane, or under waves that run along it."""
+    pitch = pitch_of(system)
+    if pitch is None:
+        return
+    where, told = "control.segment_pitch", f"{pitch:g} m: electrodes are cut along the axis, "
+    if dimensions == 2:
+        remedy = "use dimensions=3, or leave segment_pitch and segment_length out"
+        raise InputError(where, f"{told}and a plane run is alike all along it", remedy)
+    if system.absorber_list or system.point_absorbers:
+        raise InputError(where, f"{told}which beside absorbers is not solved", "leave the absorbers out, or segment_pitch")
+    solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
+    if solid is not None:
+        remedy = f'use shells[{solid}].theory = "thin", or leave segment_pitch out'
+        raise InputError(where, f"{told}which beside an elastic wall, shells[{solid}], is not solved", remedy)
+    if any(getattr(source, "inclination", 0.0) for source in system.sources):
+        remedy = "use inclination = 0, a spherical source far away, or leave segment_pitch out"
+        raise InputError(where, f"{told}which under a wave that runs along it is not solved", remedy)
 
 
 def require_cubic_springs(system: System, what: str, remedy: str) -> None:

@@ -26,6 +26,7 @@ from coaxshell.solver.dimensions import require_sources_alone
 from coaxshell.solver.emitters import emitters, planes_of
 from coaxshell.solver.point_forces import PointForceShares, point_force_shares
 from coaxshell.solver.settings import Settings
+from coaxshell.structure.belts import Belts
 from coaxshell.structure.constituents import constituents, loses
 from coaxshell.structure.control_law import BridgedLaw, ControlGains, ControlLaw, RationalLaw
 from coaxshell.structure.elastic_wall import ElasticWall
@@ -196,7 +197,12 @@ class Problem:
     def tied(self) -> bool:
         """Whether feedback runs from wall to wall or from segment to segment, so that it ties walls or orders to each other."""
         tied = (wall.shares is not None or wall.electrode_segments is not None for wall in self.shells if wall.gains is not None)
-        return any(tied)
+        return any(tied) or self.belts is not None
+
+    @property
+    def belts(self) -> Belts | None:
+        """The belts into which electrodes are cut along the axis, alike on all walls under control; None where they are not."""
+        return next((wall.belts for wall in self.shells if isinstance(wall, TiedWall) and wall.gains is not None), None)
 
     @property
     def cut(self) -> bool:
@@ -252,18 +258,20 @@ def _thin(system: System, shell: Shell, index: int, scales: Scales, band: Band) 
         shell, thin, lossy = with_plane_stress(shell), ElectrodedWall, LossyElectrodedWall
     in_units = section(shell).in_units(scales.length, scales.pressure, system.exterior.density * scales.length)
     if not any(loses(layer.material) for layer in shell.layers):
-        return _cut(thin.of(in_units, gains, wetted_faces=faces), system, index)
+        return _cut(thin.of(in_units, gains, wetted_faces=faces), system, index, scales.length)
     parts = tuple(part.in_units(scales.pressure) for part in constituents(shell, scales.time, band))
-    return _cut(lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces), system, index)
+    wall = lossy.with_losses(in_units, parts, shell.layers.index(shell.core), gains, wetted_faces=faces)
+    return _cut(wall, system, index, scales.length)
 
 
-def _cut(wall: ThinWall, system: System, index: int) -> ThinWall:
-    """Return a wall with its electrodes cut into the segments that its law asks for."""
-    segments = _segments(system, index)
-    if segments is None or not isinstance(wall, ElectrodedWall):
+def _cut(wall: ThinWall, system: System, index: int, length: float) -> ThinWall:
+    """Return a wall with its electrodes cut into the segments, and along the axis into the belts, that its law asks for."""
+    segments, belts, lossy = _segments(system, index), _belts(system, index, length), isinstance(wall, LossyElectrodedWall)
+    if not isinstance(wall, ElectrodedWall) or (segments is None and belts is None):
         return wall
-    kind = LossySegmentedWall if isinstance(wall, LossyElectrodedWall) else SegmentedWall
-    return kind(**vars(wall), segments=segments)
+    if segments is None:
+        return (LossyTiedWall if lossy else TiedWall)(**vars(wall), belts=belts)
+    return (LossySegmentedWall if lossy else SegmentedWall)(**vars(wall), belts=belts, segments=segments)
 
 
 def _reading_each_other(system: System, walls: list[ShellModel], scales: Scales, band: Band) -> tuple[ShellModel, ...]:
@@ -300,6 +308,14 @@ def _segments(system: System, index: int) -> Segments | None:
         return None
     circumference = 2.0 * math.pi * system.shells[index].radius
     return Segments(control.segments, 1.0 - control.segments * (control.segment_gap or 0.0) / circumference, control.dead or ())
+
+
+def _belts(system: System, index: int, length: float) -> Belts | None:
+    """Return the belts into which the law of a wall cuts its electrodes along the axis."""
+    control = law_of(system, index)
+    if control is None or control.segment_pitch is None:
+        return None
+    return Belts(control.segment_pitch / length, (control.segment_length or control.segment_pitch) / length)
 
 
 def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ElasticWall:

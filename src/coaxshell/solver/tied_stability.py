@@ -12,6 +12,7 @@ the contour, any number of segments takes energy alone, dead ones or not: nothin
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -40,6 +41,34 @@ _HALVINGS = 8
 _STARTS, _ITERATIONS = 12, 40
 _ROUGHLY = 1.2
 """How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
+
+
+@dataclass(frozen=True)
+class Tied:
+    """What feedback ties: the orders and walls of one wave.
+
+    Attributes
+    ----------
+    modes : Modes
+        Orders, and the axial wavenumber at which walls are stiffest of all that is tied.
+    """
+
+    modes: Modes
+
+    @property
+    def alone(self) -> bool:
+        """Whether it is one wave, whose orders are those of its modes."""
+        return True
+
+    def response(self, passive: Problem, controls: Problem, s: ComplexArray) -> VoltageResponse:
+        """Return what voltages are read as at some nodes; ``passive`` is the problem ``controls`` without its feedback."""
+        return VoltageResponse.at(passive, controls, self.modes, s)
+
+    @property
+    def place(self) -> str:
+        """Where along the axis, for a message; nothing in two dimensions."""
+        k = float(self.modes.wavenumber)
+        return f" at the axial wavenumber {k:.3g}/a" if k else ""
 
 
 class PatternPoles(NamedTuple):
@@ -98,32 +127,36 @@ def never_gives(problem: Problem, contour: Contour, max_order: int) -> bool:
 
 def determinants(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> ComplexArray:
     """Return D/D0 of each pattern, shape (patterns, nodes), or, where dead segments tie them, of all together, (1, nodes)."""
-    each, tied = _factors(problem, passive, modes, nodes)
-    return each.prod(axis=0, keepdims=True) if tied else each
+    return _determinants(problem, passive, Tied(modes), nodes)
 
 
-def _factors(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> tuple[ComplexArray, bool]:
+def _determinants(problem: Problem, passive: Problem, tied: Tied, nodes: ComplexArray) -> ComplexArray:
+    each, one = _factors(problem, passive, tied, nodes)
+    return each.prod(axis=0, keepdims=True) if one else each
+
+
+def _factors(problem: Problem, passive: Problem, tied: Tied, nodes: ComplexArray) -> tuple[ComplexArray, bool]:
     """Return factors of D/D0, shape (rows, nodes), and whether they are those of one determinant, or of one pattern each."""
     found = []
-    patterns = patterns_of(problem, controlled(problem), modes.orders, 1)
+    patterns = patterns_of(problem, controlled(problem), tied.modes.orders, 1)
     for start in range(0, nodes.size, _BLOCK):
         s = nodes[start : start + _BLOCK]
-        found.append(ElectrodeLoops.of(problem, VoltageResponse.at(passive, problem, modes, s), patterns, s).factors())
+        found.append(ElectrodeLoops.of(problem, tied.response(passive, problem, s), patterns, s).factors())
     return np.concatenate(found, axis=1), bool(patterns.dead)
 
 
 def growing(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> PatternPoles | None:
     """Return the patterns with poles that grow, at an axial wavenumber, by more than a rate per transit; None if there can be none."""
-    return _growing(problem, max_order, least, wavenumber)[0]
+    return growing_of(problem, Tied(Modes.up_to(max_order, wavenumber)), least)[0]
 
 
-def _growing(problem: Problem, max_order: int, least: float, wavenumber: float) -> tuple[PatternPoles | None, float]:
-    """Return them, and the least ratio of determinants on the contour, infinite where nothing had to be counted."""
-    modes = Modes.up_to(max_order, wavenumber)
+def growing_of(problem: Problem, tied: Tied, least: float) -> tuple[PatternPoles | None, float]:
+    """Return them of what is tied, and the least ratio of determinants on the contour, infinite where nothing had to be counted."""
+    modes = tied.modes
     contour = Contour.of(problem, modes, least)
-    if collocated(problem, max_order, wavenumber) and never_gives(problem, contour, max_order):
+    if collocated(problem, modes.max_order, float(modes.wavenumber)) and never_gives(problem, contour, modes.max_order):
         return None, np.inf
-    if segments_of(problem.system) is None:  # orders stand alone: those that are fed back, each as far as it resonates
+    if tied.alone and segments_of(problem.system) is None:  # orders stand alone: those that are fed back, each as far as it resonates
         some = few_of(modes, fed_orders(problem, modes))
         if not some.count:
             return None, np.inf
@@ -131,7 +164,7 @@ def _growing(problem: Problem, max_order: int, least: float, wavenumber: float) 
         turns, nearest = turned(slow, some, Contour.of(problem, some, least), partial(_ratio, slow, slow.open_loop))
         if not (np.rint(-turns / np.pi) > 0.0).any():
             return None, nearest
-    return _counted(along_alone(problem, modes), modes, contour)
+    return _counted(along_alone(problem, modes), tied, contour)
 
 
 def _ratio(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
@@ -140,24 +173,24 @@ def _ratio(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes
 
 def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
     """Return the patterns with poles right of a contour; where the determinant turns fast between nodes there are more of them."""
-    return _counted(problem, modes, contour)[0]
+    return _counted(problem, Tied(modes), contour)[0]
 
 
-def _counted(problem: Problem, modes: Modes, contour: Contour) -> tuple[PatternPoles | None, float]:
+def _counted(problem: Problem, tied: Tied, contour: Contour) -> tuple[PatternPoles | None, float]:
     """Return them, and the least ratio of determinants on the contour."""
     passive, nodes = problem.open_loop, contour.nodes
-    ratio, tied = _factors(problem, passive, modes, nodes)
+    ratio, one = _factors(problem, passive, tied, nodes)
     for _ in range(_HALVINGS):
         quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
         if not quick.any():
             break
         between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
         nodes = np.append(nodes, between)
-        ratio = np.append(ratio, _factors(problem, passive, modes, between)[0], axis=1)
+        ratio = np.append(ratio, _factors(problem, passive, tied, between)[0], axis=1)
         ascending = np.argsort(nodes.imag)
         nodes, ratio = nodes[ascending], ratio[:, ascending]
     turned, nearest = turning(ratio) + np.angle(1.0 / ratio[:, -1]), float(np.abs(ratio).min())
-    if tied:  # the product of many turns too far between nodes
+    if one:  # the product of many turns too far between nodes
         turned, ratio = turned.sum(keepdims=True), ratio.prod(axis=0, keepdims=True)
     counts = np.rint(-turned / np.pi)
     bad = np.flatnonzero(counts > 0)
@@ -174,13 +207,18 @@ class PatternGrowth(NamedTuple):
 
 def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least: float, wavenumber: float = 0.0) -> PatternGrowth:
     """Return the fastest growth: its rate is enclosed by contours, from the last of which Newton's method finds the pole beside it."""
-    modes, low, high = Modes.up_to(max_order, wavenumber), least, 4.0 * least
+    return fastest_growth_of(problem, Tied(Modes.up_to(max_order, wavenumber)), found, least)
+
+
+def fastest_growth_of(problem: Problem, tied: Tied, found: PatternPoles, least: float) -> PatternGrowth:
+    """Return the fastest growth of what is tied."""
+    modes, low, high = tied.modes, least, 4.0 * least
     problem = along_alone(problem, modes)
-    while (beyond := counted(problem, modes, Contour.of(problem, modes, high))) is not None:
+    while (beyond := _counted(problem, tied, Contour.of(problem, modes, high))[0]) is not None:
         found, low, high = beyond, high, 4.0 * high
     while high > _ROUGHLY * low:
         middle = float(np.sqrt(low * high))
-        beyond = counted(problem, modes, Contour.of(problem, modes, middle))
+        beyond = _counted(problem, tied, Contour.of(problem, modes, middle))[0]
         found, low, high = (found, low, middle) if beyond is None else (beyond, middle, high)
     best = PatternGrowth(int(found.patterns[0]), low, np.nan)
     for row, ratio in zip(found.patterns, found.ratio, strict=True):
@@ -189,19 +227,19 @@ def fastest_growth(problem: Problem, max_order: int, found: PatternPoles, least:
         lowest = np.flatnonzero((way <= np.append(way[1:], np.inf)) & (way <= np.append(np.inf, way[:-1])))
         nearest = [np.argsort(way)[:_STARTS], lowest[np.argsort(way[lowest])[:_STARTS]]]
         starts = found.nodes[np.unique(np.concatenate(nearest))]
-        s = _newton(problem, modes, int(row), starts, 0.5 * low)
+        s = _newton(problem, tied, int(row), starts, 0.5 * low)
         if s.size and s.real.max() > best.rate:
             fastest = s[s.real.argmax()]
             best = PatternGrowth(int(row), float(fastest.real), abs(float(fastest.imag)))
     return best
 
 
-def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: float) -> ComplexArray:
+def _newton(problem: Problem, tied: Tied, row: int, s: ComplexArray, slowest: float) -> ComplexArray:
     """Return the zeros of a pattern's determinant that Newton's method finds from some places, none left of a rate."""
     passive, change, farthest = problem.open_loop, s, 2.0 * np.abs(s).max(initial=0.0)
     for _ in range(_ITERATIONS):
         step = 1e-6 * np.abs(s)
-        here, ahead = determinants(problem, passive, modes, np.concatenate([s, s + step]))[row].reshape(2, -1)
+        here, ahead = _determinants(problem, passive, tied, np.concatenate([s, s + step]))[row].reshape(2, -1)
         change = here * step / np.where(ahead == here, 1e-300, ahead - here)
         near = np.abs(s - change) < farthest
         s, change = (s - change)[near], change[near]
@@ -211,16 +249,16 @@ def _newton(problem: Problem, modes: Modes, row: int, s: ComplexArray, slowest: 
     return np.asarray(s[np.abs(change) < 1e-6 * np.abs(s)])
 
 
-def nearest_ratio_of_ties(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> float:
+def nearest_ratio_of_tie(problem: Problem, tied: Tied, least: float) -> float:
     """Return the least ratio of determinants, infinite where nothing had to be counted; 0 where a pattern grows by more than a rate."""
-    found, nearest = _growing(problem, max_order, least, wavenumber)
+    found, nearest = growing_of(problem, tied, least)
     return nearest if found is None else 0.0
 
 
-def growth_of_ties_beyond(problem: Problem, max_order: int, rate: float, wavenumber: float = 0.0) -> float:
-    """Return the rate of the fastest growth at an axial wavenumber, or the rate given where nothing grows faster."""
-    found = growing(problem, max_order, rate, wavenumber)
-    return rate if found is None else fastest_growth(problem, max_order, found, rate, wavenumber).rate
+def growth_of_tie_beyond(problem: Problem, tied: Tied, rate: float) -> float:
+    """Return the rate of the fastest growth of what is tied, or the rate given where nothing grows faster."""
+    found, _ = growing_of(problem, tied, rate)
+    return rate if found is None else fastest_growth_of(problem, tied, found, rate).rate
 
 
 def require_stable_ties(problem: Problem, max_order: int, duration: float, wavenumber: float = 0.0) -> float:
@@ -231,11 +269,16 @@ def require_stable_ties(problem: Problem, max_order: int, duration: float, waven
     """
     if wavenumber == 0.0:
         require_resolved(problem, max_order)
-    found, nearest = _growing(problem, max_order, 1.0 / duration, wavenumber)
+    return require_stable_tie(problem, Tied(Modes.up_to(max_order, wavenumber)), duration)
+
+
+def require_stable_tie(problem: Problem, tied: Tied, duration: float) -> float:
+    """Raise InputError, and return how near it is to growing, as :func:`require_stable_ties` of what is tied."""
+    found, nearest = growing_of(problem, tied, 1.0 / duration)
     if found is None:
         return nearest
     cut, laws = segments_of(problem.system), laws_of(problem.system)
-    fastest = fastest_growth(problem, max_order, found, 1.0 / duration, wavenumber)
+    fastest = fastest_growth_of(problem, tied, found, 1.0 / duration)
     turns = fastest.frequency if not fastest.frequency < 1e-9 * fastest.rate else 0.0  # rounding of a real pole
     hertz = turns / (2.0 * np.pi * problem.scales.time)
     if laws[0].dead:
@@ -250,8 +293,7 @@ def require_stable_ties(problem: Problem, max_order: int, duration: float, waven
             where += f"{fastest.pattern} with {others}, ..."
     entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
     told = f"by e^({fastest.rate:.3g} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
-    at = f" at the axial wavenumber {wavenumber:.3g}/a" if wavenumber else ""
-    raise InputError(entries, f"{value} makes the closed loop unstable{at}: {where} {told}", remedy(problem))
+    raise InputError(entries, f"{value} makes the closed loop unstable{tied.place}: {where} {told}", remedy(problem))
 
 
 def _guilty(control: PDControl | Feedback) -> tuple[str, str]:

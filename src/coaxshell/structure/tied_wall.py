@@ -13,6 +13,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.structure.belts import Belts
 from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall, length_of
 from coaxshell.structure.shell_model import Gain, Leading, WallOperator
 
@@ -33,9 +34,12 @@ class TiedWall(ElectrodedWall):
     ----------
     reads : tuple of Read, or None
         What its actuators answer; None for its own reading alone.
+    belts : Belts, or None
+        Those into which its electrodes are cut along the axis; None where they are not.
     """
 
     reads: tuple[Read, ...] | None = None
+    belts: Belts | None = None
 
     @property
     def shares(self) -> dict[int, float] | None:
@@ -67,10 +71,33 @@ class TiedWall(ElectrodedWall):
         stiffening = np.maximum(self.gains.stiffening(modes.orders, alone), 0.0)
         return np.asarray(np.sqrt(alone**2 + stiffening * self._spread(modes)))
 
+    @property
+    def shown_potentials(self) -> int:
+        """How many voltages stations show: under belts one more, of the charge that strain brings under a belt."""
+        return super().shown_potentials + (1 if self.gains is not None and self.belts is not None else 0)
+
     def shown_voltages(self, modes: Modes, s: ComplexArray) -> tuple[Gain, ...]:
-        """Return those of its layers and what it reads per unit (V, W, U), and 0 for what it gives, which is no matter of it alone."""
+        """Return those of its layers and what it reads per unit (V, W, U), and 0 for what it gives, which is no matter of it alone.
+
+        Under belts that of its charge comes before what it reads.
+        """
         found, read = tuple(gain.columns for gain in self.potential_gains(modes)), self.sensor_gain(modes).columns
-        return found if self.gains is None else (*found, read, read.times(0.0))
+        if self.gains is None:
+            return found
+        held = () if self.belts is None else (self.charge_voltage(modes).columns,)
+        return (*found, *held, read, read.times(0.0))
+
+    @property
+    def capacitance(self) -> float:
+        """The sum of mu33~/t of all actuators."""
+        return sum(held for _, held in self.charges(Modes(np.zeros(1))))
+
+    def charge_voltage(self, modes: Modes) -> Gain:
+        """Return the charge that strain brings to all actuators together, over their capacitance, per unit (V, W, U), V."""
+        each = [gain for gain, _ in self.charges(modes)]
+        v, w = (np.sum([getattr(one, name) for one in each], axis=0) / self.capacitance for name in ("v", "w"))
+        along = [one.u for one in each if one.u is not None]
+        return Gain(v, w, np.sum(along, axis=0) / self.capacitance if along else None)
 
     def _size(self, modes: Modes) -> FloatArray:
         """Return |P| times the sum of |k||S| of all that it reads, over M, of each order."""

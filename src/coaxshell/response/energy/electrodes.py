@@ -6,6 +6,8 @@ the wall, the work of the actuators on it, charges the layer's capacitance, (1/2
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
@@ -29,21 +31,41 @@ def electrical_energy(motion: Motion) -> tuple[FloatArray, FloatArray] | None:
         charges = () if wall.gains is None else wall.charges(motion.modes)
         if wall.gains is None or not charges:
             continue
-        driven, area = True, wall.radius * motion.circle
-        volts, held_by = driven_at(motion, i, wall)
-        moved = [one for one, _ in held_by]
-        if isinstance(wall, SegmentedWall):
-            volts, moved, area = on_segments(wall, volts, moved, motion.around)
-        history = grid.invert(volts)
-        for strained, (_, capacitance) in zip(moved, charges, strict=True):
-            current = s * (strained + capacitance * volts)
-            supplied += SurfaceWork(grid, area, current)(volts)
-            held += 0.5 * capacitance * np.einsum("m,hmt,hmt->t", area, history, history)
+        driven, one = True, driven_at(motion, i, wall)
+        history = grid.invert(one.charging)
+        for strained, capacitance in one.charges:
+            if one.charging is one.volts:
+                supplied += SurfaceWork(grid, one.weight, s * (strained + capacitance * one.volts))(one.volts)
+            else:
+                supplied += SurfaceWork(grid, one.weight, s * strained)(one.volts)
+                supplied += SurfaceWork(grid, one.weight, s * (capacitance * one.charging))(one.charging)
+            held += 0.5 * capacitance * np.einsum("m,hmt,hmt->t", one.weight, history, history)
     return (supplied, held) if driven else None
 
 
-def driven_at(motion: Motion, shell: int, wall: ShellModel) -> tuple[ComplexArray, list[tuple[ComplexArray, float]]]:
-    """Return the transforms of a wall's voltage, V, and of the charge of each actuator without that voltage, with its capacitance."""
+class DrivenWall(NamedTuple):
+    """What amplifiers give to one wall, in orders or on its segments.
+
+    Attributes
+    ----------
+    volts : ndarray, shape (parities, orders or N, nodes)
+        Transforms of the voltage that meets the charge of strain.
+    charging : ndarray, same shape
+        That which charges the capacitance; the same but where electrodes are cut along the axis.
+    charges : list of (ndarray, float)
+        Transforms of the charge of each actuator without the voltage, and its capacitance.
+    weight : ndarray, shape (orders or N,)
+        Of each in an integral around, over a.
+    """
+
+    volts: ComplexArray
+    charging: ComplexArray
+    charges: list[tuple[ComplexArray, float]]
+    weight: FloatArray
+
+
+def driven_at(motion: Motion, shell: int, wall: ShellModel) -> DrivenWall:
+    """Return what amplifiers give to a thin wall, by its segments where it has some."""
     assert wall.gains is not None
     w, v = motion.normal[shell], motion.tangential[shell]
     u = None if motion.axial is None else motion.axial[shell]
@@ -51,7 +73,14 @@ def driven_at(motion: Motion, shell: int, wall: ShellModel) -> tuple[ComplexArra
         volts = wall.gains.at(motion.grid.nodes, motion.modes) * _combined(wall.sensor_gain(motion.modes), v, w, u)
     else:
         volts = motion.voltage[shell]
-    return volts, [(_combined(charge, v, w, u), capacitance) for charge, capacitance in wall.charges(motion.modes)]
+    known = wall.charges(motion.modes)
+    moved, weight = [_combined(charge, v, w, u) for charge, _ in known], wall.radius * motion.circle
+    more = None if motion.charged is None else motion.charged[:, None] * volts
+    if isinstance(wall, SegmentedWall):
+        more = None if more is None else on_segments(wall, more, [], motion.around)[0]
+        volts, moved, weight = on_segments(wall, volts, moved, motion.around)
+    charging = volts if more is None else more
+    return DrivenWall(volts, charging, [(one, capacitance) for one, (_, capacitance) in zip(moved, known, strict=True)], weight)
 
 
 def on_segments(

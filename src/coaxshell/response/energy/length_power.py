@@ -14,14 +14,14 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.response.energy.electrodes import driven_at, on_segments
+from coaxshell.response.energy.electrodes import DrivenWall, driven_at
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.whole_length import along_the_length
 from coaxshell.solver.axial.motion import wave_motions
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.structure.electroded_wall import ElectrodedWall
-from coaxshell.structure.segmented_wall import SegmentedWall
 
 
 @dataclass(frozen=True)
@@ -71,16 +71,10 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
     grid = length.grid
     products = {i: np.zeros((3, grid.time.size)) for i in walls}
     for j, wave in enumerate(wave_motions(problem, length.sampling, grid, length.forces)):
-        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident, voltage=wave.voltage)
+        known = {"voltage": wave.voltage, "around": wave.around, "charged": wave.charged}
+        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident, **known)
         for i, wall in walls.items():
-            volts, charges = driven_at(motion, i, wall)
-            moved, weight = [one for one, _ in charges], wall.radius * motion.circle
-            if isinstance(wall, SegmentedWall):
-                volts, moved, weight = on_segments(wall, volts, moved, wave.around)
-            held = sum(capacitance for _, capacitance in charges)
-            current = (sum(moved, np.zeros_like(volts)) + held * volts) * grid.nodes
-            u, c, weight = grid.invert(volts), grid.invert(current), wave.length * weight
-            products[i] += [np.einsum("m,hmt,hmt->t", weight, a, b) for a, b in ((u, c), (u, u), (c, c))]
+            products[i] += _products(driven_at(motion, i, wall), grid, wave.length)
         if progress is not None:
             progress((j + 1.0) / length.count, f"axial wavenumber {j + 1:,} of {length.count:,}")
     scales, kept = problem.scales, slice(None, None, solution.settings.refinement)
@@ -88,3 +82,20 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
     step = solution.settings.time_step * scales.time
     found = [LengthPower(i, watts * one[0, kept], watts * np.sqrt(one[1, kept] * one[2, kept]), step) for i, one in products.items()]
     return found, "per metre of length" if length.uniform else "over the whole length"
+
+
+def _products(driven: DrivenWall, grid: LaplaceGrid, length: float) -> FloatArray:
+    """Return the integrals of u i, u^2 and i^2 over a wall in one wave, (3, T)."""
+    held, weight = sum(capacitance for _, capacitance in driven.charges), length * driven.weight
+    strained = sum((one for one, _ in driven.charges), np.zeros_like(driven.volts))
+
+    def over(one: FloatArray, other: FloatArray) -> FloatArray:
+        return np.asarray(np.einsum("m,hmt,hmt->t", weight, one, other))
+
+    u, i = grid.invert(driven.volts), grid.invert((strained + held * driven.volts) * grid.nodes)
+    found = np.stack([over(u, i), over(u, u), over(i, i)])
+    if driven.charging is driven.volts:
+        return found
+    slow, fast = (grid.invert(held * one * grid.nodes) for one in (driven.volts, driven.charging))
+    field = grid.invert(driven.charging)
+    return found + np.stack([over(field, fast) - over(u, slow), over(field, field) - over(u, u), over(fast, fast) - over(slow, slow)])

@@ -58,6 +58,8 @@ class Motion:
         by it where the motion has less.
     around : int
         How many parities there are of the circle, for each of the axis; all where there is none of the axis.
+    charged : ndarray, shape (orders,), or None
+        By how much more voltages charge layers than they move walls.
     """
 
     problem: Problem
@@ -74,6 +76,7 @@ class Motion:
     solid: SolidSpectra | FacedMotion | None = None
     usual_power: FloatArray | None = None
     around: int = 2
+    charged: FloatArray | None = None
 
     @classmethod
     def of(cls, solution: ModalSolution, every: int, spectra: SolvedSpectra | None = None) -> Motion:

@@ -75,7 +75,9 @@ def whole_length_energy(solution: SpatialSolution, every: int = 10, progress: Pr
     for j, wave in enumerate(wave_motions(problem, sampling, grid, forces)):
         moved = wave.normal, wave.tangential, wave.axial
         known = every * settings.refinement, wave.incident
-        motion = Motion(problem, grid, wave.modes, *moved, *known, solid=wave.solid, voltage=wave.voltage, around=wave.around)
+        motion = Motion(
+            problem, grid, wave.modes, *moved, *known, solid=wave.solid, voltage=wave.voltage, around=wave.around, charged=wave.charged
+        )
         power += [wave.length * motion.power(wall).sum() for wall in range(power.size)]
         if not uniform:
             motion = replace(motion, usual_power=_ALIKE * power / (count * wave.length))
@@ -127,7 +129,7 @@ class AlongTheLength:
     @property
     def count(self) -> int:
         """Number of axial wavenumbers."""
-        return 1 if self.uniform else len(self.sampling.modes)
+        return len(self.sampling.modes)
 
     @property
     def forces(self) -> WallForces | None:
@@ -167,10 +169,9 @@ def whole_length_cost(solution: SpatialSolution) -> Cost:
     problem, settings = solution.problem, solution.settings
     require_balanced(problem)
     sampling = whole_length_sampling(problem, settings)
-    uniform = not isinstance(problem.sources[0], SphericalFrontGeometry)
     entries = float(solution.fields["w"][0].shape[0] * (sampling.max_order + 1) * settings.steps * settings.refinement)
     memory = 2.0 * ARRAYS * solution.fields["w"][0].nbytes * settings.refinement
-    return Cost(memory, (1 if uniform else len(sampling.modes)) * (_WAVE + _ENTRY * entries) / WORKERS)
+    return Cost(memory, len(sampling.modes) * (_WAVE + _ENTRY * entries) / WORKERS)
 
 
 def _lines(solution: SpatialSolution, sampling: AxialSampling, grid: LaplaceGrid, progress: Progress | None) -> LineSolution | None:

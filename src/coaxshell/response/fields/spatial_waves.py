@@ -23,10 +23,11 @@ from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.response.fields.inversion import direct_matrix, window
 from coaxshell.response.fields.modal_field import Transfer, region_slopes
 from coaxshell.response.fields.request import SMEAR, FieldRequest, Region, Tell, filter_weight
+from coaxshell.solver.axial.belts import driven_sets
 from coaxshell.solver.axial.causality import reach
 from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.faced_motion import faces_of
-from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts
 from coaxshell.solver.axial.solution import SpatialSolution
@@ -117,9 +118,8 @@ class SpatialWaves:
 
     def sets(self, block: slice) -> list[WaveSet]:
         """Return all waves at a slice of the nodes."""
-        return wave_sets(
-            self.problem, self.sampling, self.z, self.grid.nodes[block], None if self.forces is None else self.forces.at(block)
-        )
+        forces = None if self.forces is None else self.forces.at(block)
+        return driven_sets(self.problem, self.sampling, self.z, self.grid, block, forces)
 
     def drive(self, waves: WaveSet, j: int, block: slice) -> Drive:
         """Return what wave j of a set drives the fluids with, at a slice of the nodes."""
@@ -131,7 +131,7 @@ class SpatialWaves:
         incident = np.zeros(moved.shape[2:], np.complex128)
         for number, (family, w) in enumerate(zip(waves.families, faces, strict=True)):
             moved[:, :, number, : w.shape[2]] = w * weight
-            if family.groups:
+            if family.groups and family.acts_in(j):
                 slope = self._incident(family, radial)
                 incident[number, : slope.shape[0]] = slope * weight
         return Drive(radial, moved, incident)

@@ -19,7 +19,9 @@ Line sources and plane waves across the axis are uniform along it: k = 0, e = 1,
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -36,6 +38,9 @@ from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.excitation import SourceGroup, source_groups, superposed
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
+
+Named = Mapping[str, ComplexArray]
+"""Amplitudes by what walls are read for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +60,10 @@ class Family:
         Of absorbers, instead of sources.
     odd_forces : bool
         Whether of these forces what is odd along z.
+    origin : float
+        z about which e is even, in a.
+    of_voltages : int or None
+        Of the voltages of belts, instead of sources: 0 those along cos kz, 1 along sin kz.
     """
 
     groups: list[SourceGroup]
@@ -64,6 +73,41 @@ class Family:
     parities: int
     forces: WallForces | None = None
     odd_forces: bool = False
+    origin: float = 0.0
+    of_voltages: int | None = None
+
+    def acts_in(self, wave: int) -> bool:
+        """Return whether it is part of a wave at all: uniform sources are of k = 0 alone."""
+        return bool(self.mean[wave] > 0.0)
+
+
+class Driver(Protocol):
+    """What the voltages of belts do to the waves of a set, at a block of nodes (:mod:`coaxshell.solver.axial.belts`)."""
+
+    @property
+    def order(self) -> list[int]:
+        """All waves by number, those of a class side by side."""
+        ...
+
+    def amplitudes(self, wave: int) -> list[ComplexArray]:
+        """Return what walls are read for in a wave, one array a family."""
+        ...
+
+    def together(self, amplitudes: list[ComplexArray], some: list[int]) -> list[tuple[FloatArray, ComplexArray]]:
+        """Return mean squares along the axis and what all families make of some waves together, of each parity of the axis."""
+        ...
+
+    def squares_beyond(self, modes: Modes) -> FloatArray:
+        """Return the squares of W and of the strains that voltages move in a wave left out, (shells, 2, orders)."""
+        ...
+
+    def take_under(self, fields: dict[str, ComplexArray], shape: tuple[int, ...], number: int, some: list[int], of: Named) -> None:
+        """Add to the fields at stations what belts over them read of some waves of a family, and take it out of their amplitudes."""
+        ...
+
+    def add_given(self, fields: dict[str, ComplexArray], shape: tuple[int, ...]) -> None:
+        """Add to the fields at stations what belts over them give."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +121,19 @@ class WaveSet:
     families : list of Family
     fluids : SharedParts or None
         Where the added masses of the fluids at these waves are found, or left for the next run.
+    belts : Driver or None
+        What the voltages of belts do, where electrodes are cut along the axis.
     """
 
     modes: list[Modes]
     families: list[Family]
     fluids: SharedParts | None = None
+    belts: Driver | None = None
+
+    @property
+    def order(self) -> list[int]:
+        """The waves in the order in which they are best solved: those that belts tie to each other side by side."""
+        return list(range(len(self.modes))) if self.belts is None else self.belts.order
 
     @property
     def wavenumber(self) -> npt.NDArray[np.number]:
@@ -134,7 +186,7 @@ def wave_sets(
     if uniform:
         ones = np.ones((stations.size, 1))
         sets.append(WaveSet([Modes.up_to(top)], [Family(uniform, ones, np.zeros_like(ones), np.ones(1), parities)]))
-    families = [Family(groups, *sampling.shares(stations - z0), sampling.mean, parities) for z0, groups in spherical.items()]
+    families = [Family(groups, *sampling.shares(stations - z0), sampling.mean, parities, origin=z0) for z0, groups in spherical.items()]
     if forces is not None:
         families += _force_families(sampling, stations, forces)
     return [*sets, WaveSet(sampling.modes, families, sampling.fluids)] if families else sets

@@ -1,7 +1,7 @@
 """What waves above the highest order and axial wavenumber would add, from a sample (:mod:`coaxshell.solver.axial.samples`).
 
-Absorbers add two things: their forces excite these waves too, and feel walls that are softer by them
-(:mod:`coaxshell.solver.axial.softened`).
+Voltages of electrodes that are cut along the axis excite these waves too. Absorbers add two things: their forces excite them, and feel
+walls that are softer by them (:mod:`coaxshell.solver.axial.softened`).
 
 Norms along the contour weigh early times. How long a motion goes on is known at the stations, order by order; what is left out goes on
 as the highest orders kept do (:mod:`coaxshell.solver.orders_left_out`).
@@ -16,9 +16,10 @@ import numpy as np
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.belts import driven_sets
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
-from coaxshell.solver.axial.samples import samples_of, untied
+from coaxshell.solver.axial.samples import samples_of, spherical_samples, untied
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.softened import Softened
 from coaxshell.solver.axial.solution import StationSpectra
@@ -48,6 +49,12 @@ def left_out(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, force
                 squares = squares_of(problem, grid, sample.modes, family) * (float(family.mean[-1]) * sample.weight)
                 found.orders[...] += squares @ sample.higher_order
                 found.axial[...] += squares @ ~sample.higher_order
+    for waves in [] if problem.belts is None else driven_sets(problem, sampling, np.zeros(1), grid, NODES):
+        assert waves.belts is not None
+        for sample in spherical_samples(sampling):
+            squares = waves.belts.squares_beyond(sample.modes) * (0.5 * sample.weight)
+            found.orders[...] += squares @ sample.higher_order
+            found.axial[...] += squares @ ~sample.higher_order
     return found
 
 

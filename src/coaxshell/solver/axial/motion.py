@@ -24,12 +24,13 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.belts import charged, driven_sets
 from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.faced_motion import motions_and_faces
-from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.point_forces import WallPoints
-from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.sampling import AxialSampling, spherical_fronts
 from coaxshell.solver.axial.sums import amplitudes_of, given_voltages
 from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.excitation import incident_of
@@ -57,6 +58,8 @@ class WaveMotion:
         What the faces do, where they move differently.
     voltage : ndarray or None
         Transforms of the actuators' voltages, (shells, parities, orders, nodes), where feedback ties walls or orders to each other.
+    charged : ndarray, shape (orders,), or None
+        By how much more they charge layers, where electrodes are cut along the axis (:func:`coaxshell.solver.axial.belts.charged`).
     """
 
     modes: Modes
@@ -71,6 +74,8 @@ class WaveMotion:
     _grid: LaplaceGrid
     solid: FacedMotion | None = None
     voltage: ComplexArray | None = None
+    charged: FloatArray | None = None
+    _number: int = 0
 
     @property
     def around(self) -> int:
@@ -80,7 +85,10 @@ class WaveMotion:
     def incident(self, basis: RadialBasis) -> tuple[ComplexArray, ComplexArray]:
         """Return modal pressure and slope dp/dr on the outermost surface as if nothing were there, each (parities, orders, nodes)."""
         parities = motion_parities(self._problem)
-        sources = [i for i, family in enumerate(self._families) if family.forces is None]
+        sources = [i for i, family in enumerate(self._families) if family.groups and family.acts_in(self._number)]
+        if not sources:  # uniform ones, of k = 0 alone
+            nothing = np.zeros((self._around * self._shares.shape[1], *self.normal.shape[2:]), np.complex128)
+            return nothing, nothing
         found = [np.stack(incident_of(self._families[i].groups, parities, self._grid, basis)) for i in sources]
         pressure, slope = _superposed(self._shares[sources], found, self._around)
         return pressure, slope
@@ -118,9 +126,10 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
     around = around if forces is None else max(around, forces.parities)
     blocks = node_blocks(grid, sampling.max_order)
     per_block = [
-        _one_set(wave_sets(problem, sampling, origin, grid.nodes[block], None if forces is None else forces.at(block))) for block in blocks
+        _one_set(driven_sets(problem, sampling, origin, grid, block, None if forces is None else forces.at(block))) for block in blocks
     ]
-    waves = _one_set(wave_sets(problem, sampling, origin, grid.nodes, forces))
+    waves = _one_set(driven_sets(problem, sampling, origin, grid, slice(None), forces))
+    spherical = bool(spherical_fronts(problem))
     for j, modes in enumerate(waves.modes):
         shares = np.array([[family.even[0, j], family.odd[0, j]] for family in waves.families])
         if not shares[:, 1].any():
@@ -138,17 +147,18 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         make_shapes(problem, [modes])
         with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
             motion = np.concatenate(list(pool.map(work, range(len(blocks)))), axis=-1)
-        length = sampling.period * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
+        length = (sampling.period if spherical else 1.0) * (1.0 if modes.two_dimensional else 0.5) if waves.modes is sampling.modes else 1.0
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
         solid = FacedMotion(motion[3:5], motion[5:7]) if problem.two_faced else None
-        known = waves.families, shares, around, problem, grid, solid, motion[-1] if problem.tied else None
+        voltage = motion[-1] if problem.tied else None
+        known = waves.families, shares, around, problem, grid, solid, voltage, charged(problem, sampling, j), j
         yield WaveMotion(modes, length, motion[0], motion[1], motion[2], *known)
 
 
 def _one_set(sets: list[WaveSet]) -> WaveSet:
     """Return all families in one set: forces of absorbers under uniform sources have their one wavenumber, k = 0."""
-    return WaveSet(sets[0].modes, [family for waves in sets for family in waves.families])
+    return sets[0] if len(sets) == 1 else WaveSet(sets[0].modes, [family for waves in sets for family in waves.families])
 
 
 def _superposed(shares: FloatArray, amplitudes: list[ComplexArray], around: int) -> ComplexArray:

@@ -27,8 +27,11 @@ from coaxshell.solver.axial.inclination import require_leading_fronts
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.structure.belts import Belts
 from coaxshell.structure.laminate import require_axial_constants
 
+_BELTS = 1.5
+"""Stretches on which sources are felt, in a period for integrals along the whole axis where electrodes are cut along it."""
 MOST_WAVES = 100_000
 """The most axial wavenumbers of a run."""
 
@@ -124,6 +127,8 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
     places = [*(z / length for z in settings.stations), *sorted(held)]
     fronts += [_from_point(problem, z, fronts, fastest) for z in sorted(held)]
     needed = least_period(settings.duration, places, fronts, fastest)
+    if problem.belts is not None:
+        needed = _of_belts(problem, settings, problem.belts, needed, fronts, fastest)
     given = None if settings.axial_period is None else settings.axial_period / length
     if given is not None and given < needed * (1.0 - 1e-12):
         raise InputError(
@@ -131,7 +136,7 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
             f"{settings.axial_period:g} m is too short: images of the source, one period away, are felt at the stations within the run",
             f"give at least {rounded_up(needed * length):g} m, or leave it out",
         )
-    if not fronts:
+    if not fronts and problem.belts is None:
         return AxialSampling(math.pi / highest, settings.modes, highest)  # the next wavenumber would be 2 k_max
     period = given or needed
     waves = period * highest / (2.0 * math.pi)
@@ -158,7 +163,40 @@ def whole_length_sampling(problem: Problem, settings: Settings) -> AxialSampling
     assert settings.axial_modes is not None
     highest, fronts = settings.axial_modes, spherical_fronts(problem)
     length = felt_length(settings.duration, fronts, fastest_wave(problem, highest))
+    if problem.belts is not None:
+        return AxialSampling(_whole_belts(problem.belts, _BELTS * length), settings.modes, highest)
     return AxialSampling(length or math.pi / highest, settings.modes, highest)
+
+
+def _whole_belts(belts: Belts, length: float) -> float:
+    """Return the least period of whole belts that is no shorter than a length, one at least, in a."""
+    return max(1, math.ceil(length / belts.pitch - 1e-9)) * belts.pitch
+
+
+def _of_belts(problem: Problem, settings: Settings, belts: Belts, needed: float, fronts: list[Front], speed: float) -> float:
+    """Return the period of whole belts that images of the sources stay behind of, in a, *needed* where nothing is cut along the axis.
+
+    A belt has one voltage, and what it reads at one end it gives at the other at once, which no speed of a wave bounds but fades from belt
+    to belt; the period is longer by half of the stretch on which sources are felt.
+
+    Raises
+    ------
+    InputError
+        If wavenumbers end before they see an electrode, or the period given has no whole number of belts.
+    """
+    highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
+    if highest * belts.length < math.pi * (1.0 - 1e-12):
+        found = (
+            f"{belts.length * length:g} m are less than half of the shortest wave along the axis, {2.0 * math.pi / highest * length:.3g} m"
+        )
+        least = math.ceil(math.pi / belts.length - 1e-9)
+        raise InputError("control.segment_length", found, f"use axial_modes={least} or more, or longer electrodes")
+    if settings.axial_period is not None:
+        count = settings.axial_period / length / belts.pitch
+        if abs(count - round(count)) > 1e-6:
+            found = f"{settings.axial_period:g} m is no whole number of electrodes {belts.pitch * length:g} m apart"
+            raise InputError("axial_period", found, f"give {math.ceil(count) * belts.pitch * length:.10g} m, or leave it out")
+    return _whole_belts(belts, needed + 0.5 * felt_length(settings.duration, fronts, speed))
 
 
 def fastest_wave(problem: Problem, highest: float) -> float:

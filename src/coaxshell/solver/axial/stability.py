@@ -3,7 +3,8 @@
 A wave (m, k) is a system by itself. Walls that stay passive with their feedback cannot make one grow (:mod:`coaxshell.solver.passivity`),
 which is asked at a sample of wavenumbers; poles of those in doubt are counted at fewer, as they move with k as smoothly as with the order.
 So does the least |D/D0| on the contour, which a pole passes at 0: between wavenumbers where that is more than it changes none is counted.
-Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`).
+Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`), and where
+electrodes are cut along the axis a class of wavenumbers is (:mod:`coaxshell.solver.axial.belts`).
 
 Where one grows the fastest of them is told: each of the others is asked for poles beyond the fastest growth found so far alone.
 """
@@ -16,12 +17,13 @@ from itertools import pairwise
 import numpy as np
 
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.belt_ties import ties_of_belts
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import growth_beyond, nearest_ratio, require_stable
 from coaxshell.solver.tied import require_resolved
-from coaxshell.solver.tied_stability import growth_of_ties_beyond, nearest_ratio_of_ties, require_stable_ties
+from coaxshell.solver.tied_stability import Tied, growth_of_tie_beyond, nearest_ratio_of_tie, require_stable_tie
 
 ASKED, CHECKED, FIRST = 24, 16, 5
 """Wavenumbers at which passivity is asked, and at which poles are counted: at most, and where no zero can be near at least."""
@@ -34,21 +36,37 @@ def require_stable_waves(problem: Problem, sampling: AxialSampling, duration: fl
     if problem.tied:
         require_resolved(problem, sampling.max_order)
     least = 1.0 / duration
-    waves = sample(sampling.modes if problem.tied else doubtful_waves(problem, sample(sampling.modes, ASKED), least))
+    if problem.tied:
+        _require_stable_ties(problem, _ties(problem, sampling), duration)
+        return
+    waves = sample(doubtful_waves(problem, sample(sampling.modes, ASKED), least))
 
     def nearest(number: int) -> float:
-        ratio = nearest_ratio_of_ties if problem.tied else nearest_ratio
-        return ratio(problem, waves[number].max_order, least, float(waves[number].wavenumber))
+        return nearest_ratio(problem, waves[number].max_order, least, float(waves[number].wavenumber))
 
     def growth(number: int, rate: float) -> float:
-        beyond = growth_of_ties_beyond if problem.tied else growth_beyond
-        return beyond(problem, waves[number].max_order, rate, float(waves[number].wavenumber))
+        return growth_beyond(problem, waves[number].max_order, rate, float(waves[number].wavenumber))
 
     known = look_closer(nearest, len(waves))
     if 0.0 in known.values():
         worst = waves[worst_wave(growth, known, len(waves), least)]
-        refuse = require_stable_ties if problem.tied else require_stable
-        refuse(problem, worst.max_order, duration, wavenumber=float(worst.wavenumber))
+        require_stable(problem, worst.max_order, duration, wavenumber=float(worst.wavenumber))
+
+
+def _ties(problem: Problem, sampling: AxialSampling) -> Sequence[Tied]:
+    """Return what feedback ties: waves of some of the wavenumbers, or the classes of belts."""
+    if problem.belts is not None:
+        return ties_of_belts(problem, sampling)
+    return [Tied(Modes.up_to(modes.max_order, float(modes.wavenumber))) for modes in sample(sampling.modes)]
+
+
+def _require_stable_ties(problem: Problem, ties: Sequence[Tied], duration: float) -> None:
+    """Raise InputError, naming the fastest growth, if something of what is tied is unstable."""
+    least = 1.0 / duration
+    known = look_closer(lambda number: nearest_ratio_of_tie(problem, ties[number], least), len(ties))
+    if 0.0 in known.values():
+        worst = worst_wave(lambda number, rate: growth_of_tie_beyond(problem, ties[number], rate), known, len(ties), least)
+        require_stable_tie(problem, ties[worst], duration)
 
 
 def look_closer(nearest: Callable[[int], float], count: int) -> dict[int, float]:

@@ -13,11 +13,13 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import tell_share
+from coaxshell.solver.axial.belts import driven_sets
 from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.faced_motion import faced_amplitudes
-from coaxshell.solver.axial.families import Family, WaveSet, outside_loads, wave_sets
+from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.normals import motions_of, normals_of, piezoelectric_layers, potentials_of
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
 from coaxshell.solver.coupling import ModalSystem
@@ -52,21 +54,28 @@ def station_sums(
     fields: dict[str, ComplexArray] = {}
     squares = np.zeros((2, shape[1], 2, shape[3]))
     names = amplitude_names(problem)
-    sets = wave_sets(problem, sampling, stations, s, None if forces is None else forces.at(block))
+    sets = driven_sets(problem, sampling, stations, grid, block, None if forces is None else forces.at(block))
     done, whole, bends = 0, pair_count(sets), any(wall.faces_move_alike and wall.moves for wall in problem.shells)
     for waves in sets:
         for first in range(0, len(waves.modes), TOGETHER):
-            some = range(first, min(first + TOGETHER, len(waves.modes)))
+            some = waves.order[first : first + TOGETHER]
             amplitudes = [np.zeros((len(names), len(some), *shape[1:]), np.complex128) for _ in waves.families]
             for place, j in enumerate(some):
                 for one, solved in zip(amplitudes, amplitudes_of(problem, waves, j, grid, block), strict=True):
                     one[:, place, :, : solved.shape[2], : waves.modes[j].count] = solved
                 done += waves.modes[j].count
                 tell_share(done / whole)
-            for family, found in zip(waves.families, amplitudes, strict=True):
-                _add(fields, shape, family, waves.wavenumber, some, dict(zip(names, found, strict=True)), derivatives=bends)
-                under = squares[int(family.forces is not None)]
-                under += mean_squares(family.mean[some.start : some.stop], waves.wavenumber[some.start : some.stop], *found[:3])
+            for number, (family, found) in enumerate(zip(waves.families, amplitudes, strict=True)):
+                named = dict(zip(names, found, strict=True))
+                if waves.belts is not None:
+                    waves.belts.take_under(fields, shape, number, some, named)
+                _add(fields, shape, family, waves.wavenumber, some, named, derivatives=bends)
+                if waves.belts is None:
+                    squares[int(family.forces is not None)] += mean_squares(family.mean[some], waves.wavenumber[some], *found[:3])
+            for mean, moved in [] if waves.belts is None else waves.belts.together([found[:3] for found in amplitudes], some):
+                squares[0] += mean_squares(mean, waves.wavenumber[some], *moved)
+        if waves.belts is not None:
+            waves.belts.add_given(fields, shape)
     return {**fields, SQUARES: squares}
 
 
@@ -87,6 +96,8 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
     """
     if problem.two_faced:
         return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
+    if waves.belts is not None:
+        return waves.belts.amplitudes(j)
     if problem.tied:
         tied = TiedWave(problem, grid.nodes[block], waves.modes[j], max(family.parities for family in waves.families))
         return [_tied_motions(problem, tied, family, grid, block) for family in waves.families]
@@ -99,32 +110,11 @@ def _tied_motions(problem: Problem, tied: TiedWave, family: Family, grid: Laplac
     free = np.stack([np.stack(each) for each in normals_of(problem, tied.bare, family, grid, block)], axis=1)
     moved = tied.driven(free)
     motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
-    potentials = np.array(_potentials(problem, tied.bare, piezoelectric_layers(problem), *motion))
+    potentials = np.array(potentials_of(problem, tied.bare, piezoelectric_layers(problem), *motion))
     for i, wall in enumerate(problem.shells):
         if wall.shows_control:
             potentials[wall.shown_potentials - 1, i] = moved.voltage[i]
     return np.concatenate([np.stack(moved[:3]), potentials])
-
-
-def motions_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
-    """Return W, V, U and potentials of a wave under the loads of a family, (3 + layers, shells, parities, orders, nodes)."""
-    layers, motions = piezoelectric_layers(problem), []
-    for normal in normals_of(problem, system, family, grid, block):
-        motion = [normal, system.tangential(normal), system.axial(normal)]
-        motions.append(np.array([*motion, *_potentials(problem, system, layers, *motion)]))
-    return np.stack(motions, axis=2)
-
-
-def normals_of(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> list[list[ComplexArray]]:
-    """Return W of every shell, (orders, nodes), under the loads of a family, for each parity around."""
-    modes, found = system.modes, []
-    on_outermost = outside_loads(family, system.radial, grid, block)
-    forces = {} if family.forces is None else family.forces.loads(problem, modes, odd=family.odd_forces)
-    for parity in range(family.parities):
-        each = [system.solve_outside(on_outermost[parity])] if on_outermost else []
-        each += [system.solve(surface, pressures[parity]) for surface, pressures in forces.items()]
-        found.append([np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)])
-    return found
 
 
 def given_voltages(problem: Problem, modes: Modes, s: ComplexArray, amplitudes: ComplexArray) -> ComplexArray:
@@ -146,40 +136,18 @@ def amplitude_names(problem: Problem) -> list[str]:
     return [*(READ if problem.two_faced else READ[:3]), *potentials]
 
 
-def piezoelectric_layers(problem: Problem) -> int:
-    """Return the largest number of voltages that a wall shows: of piezoelectric layers, and what some laws read and give."""
-    return max(wall.shown_potentials for wall in problem.shells)
-
-
-def _potentials(
-    problem: Problem,
-    system: ModalSystem,
-    layers: int,
-    normal: list[ComplexArray],
-    tangential: list[ComplexArray],
-    axial: list[ComplexArray],
-) -> list[list[ComplexArray]]:
-    """Return the voltages that each wall shows (:meth:`ShellModel.shown_voltages`), by voltage and wall; 0 of a wall with fewer."""
-    found = [[np.zeros_like(w) for w in normal] for _ in range(layers)]
-    for i, (wall, w, v, u) in enumerate(zip(problem.shells, normal, tangential, axial, strict=True)):
-        for number, per in enumerate(wall.shown_voltages(system.modes, system.s)):
-            found[number][i] = per.v * v + per.w * w + (0.0 if per.u is None else per.u * u)
-    return found
-
-
 def _add(
     fields: dict[str, ComplexArray],
     shape: tuple[int, ...],
     family: Family,
     wavenumber: npt.NDArray[np.number],
-    some: range,
+    some: list[int],
     amplitudes: dict[str, ComplexArray],
     *,
     derivatives: bool,
 ) -> None:
     """Add some waves of a family to the fields, by e and o and, if the stresses of thin walls need them, their derivatives."""
-    part = slice(some.start, some.stop)
-    even, odd, k = family.even[:, part], family.odd[:, part], wavenumber[part]
+    even, odd, k = family.even[:, some], family.odd[:, some], wavenumber[some]
     shares = {name: (odd if of_odd(name) else even, amplitude) for name, amplitude in amplitudes.items()}
     if derivatives:
         w, v, u = (amplitudes[name] for name in ("w", "v", "u"))

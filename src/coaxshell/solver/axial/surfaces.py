@@ -13,7 +13,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family
-from coaxshell.solver.axial.sums import normals_of
+from coaxshell.solver.axial.normals import normals_of
 from coaxshell.solver.axial.tied_faces import TiedFaces
 from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
 from coaxshell.solver.cascade import FaceMotion

@@ -23,6 +23,8 @@ from coaxshell.solver.electrode_patterns import patterns_of, segments_of
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all
+from coaxshell.structure.shell_model import Gain, ShellModel
+from coaxshell.structure.tied_wall import TiedWall
 
 
 class Driven(NamedTuple):
@@ -40,7 +42,58 @@ def motion_parities(problem: Problem) -> int:
     return 2 if dead else source_parities(problem)
 
 
-class TiedWave:
+class OpenWave:
+    """Walls and fluids in one wave, and what voltages do in it, without feedback.
+
+    Parameters
+    ----------
+    problem : Problem
+    s : ndarray, shape (nodes,)
+    modes : Modes
+
+    Attributes
+    ----------
+    bare : ModalSystem
+    response : VoltageResponse
+    """
+
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes) -> None:
+        self._problem, self.bare = problem, ModalSystem(problem.open_loop, s, modes)
+        self._compliance = self.bare.compliance()
+        self.response = VoltageResponse.of_system(self.bare, problem, self._compliance)
+
+    def readings(self, normal: ComplexArray) -> ComplexArray:
+        """Return what the sensors of walls under control read, (walls, parities, orders, nodes), of the W of all shells."""
+        ratios = [(wall.tangential, wall.axial) for wall in self.bare.shells]
+        sensed = [self._problem.shells[i].sensor_gain(self.bare.modes).columns.recovered(*ratios[i]) for i in self.response.shells]
+        return np.stack([gain * normal[i] for gain, i in zip(sensed, self.response.shells, strict=True)])
+
+    def charges_per_volt(self) -> ComplexArray:
+        """Return what the charge of each wall under control is over its capacitance, V, per volt on each, (walls, walls, orders, nodes)."""
+        return VoltageResponse.of_system(self.bare, self._problem, self._compliance, charge_of).read
+
+    def moved(self, voltage: ComplexArray, normal: ComplexArray | None = None) -> Driven:
+        """Return what walls do under voltages, (walls, parities, orders, nodes), besides what W of all shells is without them."""
+        response, shape = self.response, (len(self.bare.shells), *voltage.shape[1:])
+        moved = np.zeros(shape, np.complex128) if normal is None else normal.copy()
+        for load, volts, j in zip(response.load, voltage, response.shells, strict=True):
+            moved += self._compliance[:, j, None] * (load * volts)
+        tangential = np.stack([wall.tangential * w for wall, w in zip(self.bare.shells, moved, strict=True)])
+        axial = np.stack(self.bare.axial(list(moved)))
+        for place, i in enumerate(response.shells):
+            tangential[i] += response.slid[place] * voltage[place]
+            if response.slid_axially is not None:
+                axial[i] += response.slid_axially[place] * voltage[place]
+        return Driven(moved, tangential, axial, of_all(self._problem, response, voltage))
+
+
+def charge_of(wall: ShellModel, modes: Modes) -> Gain:
+    """Return the charge that strain brings to the actuators of a wall over their capacitance, per unit (V, W, U), V."""
+    assert isinstance(wall, TiedWall)
+    return wall.charge_voltage(modes)
+
+
+class TiedWave(OpenWave):
     """The loops of one wave.
 
     Parameters
@@ -51,34 +104,15 @@ class TiedWave:
         All orders from 0 to the highest where electrodes are cut.
     parities : int, optional
         How many the motion has around the circle; as many as under the sources unless given.
-
-    Attributes
-    ----------
-    bare : ModalSystem
-        Walls and fluids without feedback.
     """
 
     def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, parities: int = 1) -> None:
-        self._problem, self.bare = problem, ModalSystem(problem.open_loop, s, modes)
-        self._compliance = self.bare.compliance()
-        self._response = VoltageResponse.of_system(self.bare, problem, self._compliance)
-        patterns = patterns_of(problem, self._response.shells, modes.orders, max(parities, motion_parities(problem)))
-        self._loops = ElectrodeLoops.of(problem, self._response, patterns, s)
+        super().__init__(problem, s, modes)
+        patterns = patterns_of(problem, self.response.shells, modes.orders, max(parities, motion_parities(problem)))
+        self._loops = ElectrodeLoops.of(problem, self.response, patterns, s)
 
     def driven(self, normal: ComplexArray) -> Driven:
         """Return what walls do with feedback that do W, (shells, parities, orders, nodes), without it."""
-        loops, response, modes = self._loops, self._response, self.bare.modes
-        ratios = [(wall.tangential, wall.axial) for wall in self.bare.shells]
-        sensed = [self._problem.shells[i].sensor_gain(modes).columns.recovered(*ratios[i]) for i in response.shells]
-        readings = np.stack([gain * normal[i] for gain, i in zip(sensed, response.shells, strict=True)])
-        voltage = loops.patterns.in_orders(loops.voltages(loops.patterns.readings(readings)))[:, : normal.shape[1]]
-        moved = normal.copy()
-        for load, volts, j in zip(response.load, voltage, response.shells, strict=True):
-            moved += self._compliance[:, j, None] * (load * volts)
-        tangential = np.stack([wall.tangential * w for wall, w in zip(self.bare.shells, moved, strict=True)])
-        axial = np.stack(self.bare.axial(list(moved)))
-        for place, i in enumerate(response.shells):
-            tangential[i] += response.slid[place] * voltage[place]
-            if response.slid_axially is not None:
-                axial[i] += response.slid_axially[place] * voltage[place]
-        return Driven(moved, tangential, axial, of_all(self._problem, response, voltage))
+        loops = self._loops
+        voltage = loops.patterns.in_orders(loops.voltages(loops.patterns.readings(self.readings(normal))))
+        return self.moved(voltage[:, : normal.shape[1]], normal)
