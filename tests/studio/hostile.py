@@ -132,6 +132,7 @@ LAWS = [
 """A law for each shell, to be spoilt."""
 
 CROSSED = {"numerator": [1.0], "matrix": [[1, 0.3], [0.6, 1]], "weights": [0, 1, 1], "transducers": "electrodes"}
+BELTS = {**CROSSED, "segment_pitch": "80 cm", "segment_length": "80 cm"}
 
 STUDY = {
     "over": {"absorbers.mass": {"from": 1, "to": 2, "count": 2}},
@@ -211,7 +212,7 @@ def requests(seed=1, count=1100):
     schema = System.model_json_schema()
     systems = [described(name) for name in presets.names()]
     systems += [{**described("bare"), "absorbers": [POINT]}, {**described("bare"), "source": {**described("bare")["source"], "z": 0.3}}]
-    systems += [{**described("electrodes"), "control": law} for law in (LAWS, LAWS, CROSSED)]
+    systems += [{**described("electrodes"), "control": law} for law in (LAWS, LAWS, CROSSED, BELTS)]
     for raw in RAW:
         for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open", "/api/project"):
             yield "POST", path, raw

@@ -44,6 +44,8 @@ _TIED = 1.6
 """How much longer a wave takes whose orders or walls feedback ties to each other."""
 _PER_FORCE = 0.35e-6
 """Seconds that a force at one point takes at an order and node, where electrodes are cut."""
+_BELTS = 1.6
+"""How much longer it takes than that where electrodes are cut along the axis."""
 _STEP = 2e-3
 """Seconds of a step of the march of a single absorber along the axis, by Newton's method."""
 
@@ -69,7 +71,7 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     kept = stations * amplitudes * (fields * (size.plane + size.history) + 6.0 * size.plane)
     turns = 2.0 if size.nodes < _SIDE_BY_SIDE else 1.0
     lines = _lines_cost(line_layout(problem, sampling), size, pairs) if system.absorber_list else Cost(0.0)
-    waves = turns * pairs * 0.3e-6 * size.shells * (_TIED if problem.tied else 1.0)
+    waves = turns * pairs * 0.3e-6 * size.shells * (_TIED if problem.tied else 1.0) * (_BELTS if problem.belts else 1.0)
     forces = 2 * (len(system.absorber_list) + len(system.point_absorbers)) if problem.cut else 0
     waves += turns * pairs * _PER_FORCE * forces
     again = _passes(problem, size) if lines.seconds or points else 0.0  # for what absorbers feel and do
