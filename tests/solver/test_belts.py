@@ -184,6 +184,10 @@ def test_uniform_sources_move_all_belts_alike():
     energy = gaps.energy(every=25)
     assert energy.attrs["extent"] == "per metre of length"
     assert np.abs(energy.closure_relative).max() < 2e-5
+    problem, volts = gaps.spatial.problem, gaps.spatial.at(0).control_voltage[:, 0, :, -1]
+    around = np.pi * np.where(np.arange(volts.shape[1]) == 0, 2.0, 1.0) @ volts.T**2
+    held = sum(0.5 * wall.capacitance * wall.radius * each for wall, each in zip(problem.shells, around, strict=True))
+    assert float(energy.actuator_field[-1]) == pytest.approx(problem.scales.line_energy * 0.5 / 0.8 * held, rel=1e-6)
 
 
 def test_balances_close_and_amplifiers_are_told_at_stations():

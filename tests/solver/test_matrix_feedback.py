@@ -16,7 +16,7 @@ from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.stability import Contour, fed_orders
-from coaxshell.solver.tied_stability import _counted, _growing, collocated, growing
+from coaxshell.solver.tied_stability import Tied, _counted, collocated, growing, growing_of
 from coaxshell.solver.voltage_response import VoltageResponse
 
 PLANE = presets.load("electrodes").replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4))
@@ -109,8 +109,8 @@ def test_orders_that_nothing_is_fed_back_to_are_not_counted():
         problem = dimensionless(under([[1.0, 0.4], [0.2, 1.0]], 3.0, delay=delay, weights=[0, 0, 1.0, 0.5]))
         modes, orders = Modes.up_to(6), np.array([2.0, 3.0])
         assert_allclose(fed_orders(problem, modes), orders)
-        whole, nearest = _counted(problem, modes, Contour.of(problem, modes, 0.5))
-        found, near = _growing(problem, 6, 0.5, 0.0)
+        whole, nearest = _counted(problem, Tied(modes), Contour.of(problem, modes, 0.5))
+        found, near = growing_of(problem, Tied(modes), 0.5)
         assert (found is not None) == (whole is not None) == grows
         assert near == pytest.approx(nearest, rel=1e-3)
         assert fed_orders(dimensionless(under([[1.0, 0.4], [0.2, 1.0]])), modes).size == 7

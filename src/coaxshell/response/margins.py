@@ -167,9 +167,9 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
     problem, orders = _problem(system, settings)
     if problem.belts is not None:
         pitch = problem.belts.pitch * problem.scales.length
-        told = f"{pitch:g} m: electrodes are cut along the axis, of whose loops no margins are known yet"
+        what = f"{pitch:g} m: electrodes are cut along the axis, of whose loops no margins are known yet"
         remedy = "leave segment_pitch out for those of strips along the whole length; a run tells whether its loops are stable"
-        raise InputError("control.segment_pitch", told, remedy)
+        raise InputError("control.segment_pitch", what, remedy)
     highest = settings.axial_modes or float(orders.max_order)
     sampling = AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, orders.max_order, highest)
     found: dict[str, dict[int, FloatArray]] = {}

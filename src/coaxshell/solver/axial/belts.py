@@ -53,7 +53,7 @@ def driven_sets(
     under = [np.real(family.even) * classes.read[0] * over[:, None] for family in middles]
     about_zero = np.array([[np.real(family.even[0]), -np.real(family.odd[0])] for family in zero])
     driver = BeltDriver(problem, sampling, classes, families, about_zero, under, (nearest, over), grid, block)
-    return [WaveSet(sampling.modes, families, driver)]
+    return [WaveSet(sampling.modes, families, sampling.fluids, driver)]
 
 
 def classes_of(belts: Belts, sampling: AxialSampling) -> BeltClasses:
@@ -291,4 +291,4 @@ class BeltDriver:
 
     def _left(self, number: int, per: ComplexArray, volts: ComplexArray) -> ComplexArray:
         """Return what the waves left out of a class show per volt, *per*, (walls, orders, nodes), of voltages (stations, walls, ...)."""
-        return np.einsum("wmk,zwpmk,m->zpmk", per, volts, self._left_over[number])
+        return np.asarray(np.einsum("wmk,zwpmk,m->zpmk", per, volts, self._left_over[number]))
