@@ -1,16 +1,18 @@
 """Changes in the studio's page itself, in Chromium at 1280 x 720: from an event to the curves drawn, and whose processor time that takes.
 
-``python -m benchmarks.studio_page``. Needs Chromium, which ``make test`` installs. The page is asked nothing while it works: each question
-would take processor time from what is measured. Errors and warnings, which curves do not wait for, are left out. Its resolution is that of
-the preview, so that no full resolution follows; processor times, of the server with its workers and of the page's main thread, are means.
+``python -m benchmarks.studio_page`` measures all, ``python -m benchmarks.studio_page gain space`` some of it (``--help`` names them). Needs
+Chromium, which ``make test`` installs. The page is asked nothing while it works: each question would take processor time from what is
+measured. Errors and warnings, which curves do not wait for, are left out. Its resolution is that of the preview, so that no full resolution
+follows; processor times, of the server with its workers and of the page's main thread, are means.
 """
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -23,15 +25,13 @@ from coaxshell.model import System, presets
 
 UNDISTURBED, BETWEEN = 0.4, 0.3
 """Seconds after a change in which the page is left alone, and from its answer to the next change."""
-SLIDERS = (
-    ("absorbers", "absorbers.mass", range(180, 210, 3)),
-    ("absorbers", "absorbers.damping", range(180, 210, 3)),
-    ("hybrid", "absorbers.mass", range(180, 210, 3)),
-    ("hybrid", "absorbers.damping", range(180, 210, 3)),
-    ("hybrid", "control.derivative", range(70, 80)),
-    ("laws", "control[1].derivative", range(286, 296)),
-)
-"""Preset, entry and places of its slider."""
+SLIDERS = {
+    "absorbers": ("absorbers", ("absorbers.mass", "absorbers.damping"), range(180, 210, 3)),
+    "hybrid": ("hybrid", ("absorbers.mass", "absorbers.damping"), range(180, 210, 3)),
+    "gain": ("hybrid", ("control.derivative",), range(70, 80)),
+    "laws": ("laws", ("control[1].derivative",), range(286, 296)),
+}
+"""By what is measured: preset, entries and places of their sliders."""
 ENTRIES = (
     ("shells[0].layers[1].thickness", [f"{10 + 0.1 * step} mm" for step in range(1, 9)]),
     ("shells[1].layers[1].material.density", [f"{7000 + 10 * step} kg/m^3" for step in range(1, 9)]),
@@ -44,35 +44,59 @@ MOVE = """([path, place]) => {
   slider.dispatchEvent(new Event("input", { bubbles: true }));
 }"""
 
-
-SPATIAL = (("bare", "0"), ("hybrid", "0"), ("bare", "0, 0.5"))
-"""Preset and stations of previews in three dimensions."""
+SPATIAL = {"space": ("bare", "0"), "hybrid-space": ("hybrid", "0"), "stations": ("bare", "0, 0.5")}
+"""By what is measured: preset and stations of previews in three dimensions; of the hybrid system the slider of a mass too."""
 SIZE = "performance.getEntriesByType('resource').filter(one => one.name.endsWith('/api/solve')).at(-1)?.transferSize ?? 0"
 
 
 def main() -> None:
-    """Start a server and a browser and print the medians."""
+    """Start a server and a browser and print the medians of what is asked for."""
+    names = [*SLIDERS, "structure", *SPATIAL]
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("what", nargs="*", choices=[[], *names], metavar="what", help=", ".join(names))
+    what = parser.parse_args().what or names
     with served() as (address, pid), sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1280, "height": 720})
         page.route("**/judgement", lambda route: route.fulfill(json={"estimates": None, "warnings": []}))
         watch = Watch(page, pid)
         page.goto(address)
-        for preset, path, places in SLIDERS:
-            _open(page, address, _system(preset), limits.table_of(limits.PREVIEW))
-            watch.told(f"{preset}, {path}", [partial(page.evaluate, MOVE, [path, str(place)]) for place in places])
-        _open(page, address, _system("hybrid"), limits.table_of(limits.PREVIEW))
-        page.evaluate("for (const part of document.querySelectorAll('#form details')) part.open = true")
-        for path, texts in ENTRIES:
-            box = page.locator(f'input[type=text][data-path="{path}"]').first
-            watch.told(f"hybrid, {path}", [partial(_type, box, text) for text in texts])
-        for preset, stations in SPATIAL:
-            table = limits.table_of(limits.PREVIEW_SPATIAL) | {"stations": [float(one) for one in stations.split(",")]}
-            begun, before = processor_of_all(pid), time.perf_counter()
-            _open(page, address, _system(preset), table)
-            told = f"{time.perf_counter() - before:.1f} s, server {processor_of_all(pid) - begun:.2f} s of processor time"
-            print(f"{preset} in three dimensions, stations {stations}, opened with the bare system: {told}", flush=True)
+        for name in what:
+            if name in SPATIAL:
+                _in_space(page, watch, address, *SPATIAL[name])
+            elif name == "structure":
+                _of_structure(page, watch, address)
+            else:
+                preset, paths, places = SLIDERS[name]
+                for path in paths:
+                    _open(page, address, _system(preset), limits.table_of(limits.PREVIEW))
+                    watch.told(f"{preset}, {path}", _moves(page, path, places))
         browser.close()
+
+
+def _moves(page: Any, path: str, places: Iterable[int]) -> list[Callable[[], object]]:
+    return [partial(page.evaluate, MOVE, [path, str(place)]) for place in places]
+
+
+def _of_structure(page: Any, watch: Watch, address: str) -> None:
+    """Measure entries of the structure, typed."""
+    _open(page, address, _system("hybrid"), limits.table_of(limits.PREVIEW))
+    page.evaluate("for (const part of document.querySelectorAll('#form details')) part.open = true")
+    for path, texts in ENTRIES:
+        box = page.locator(f'input[type=text][data-path="{path}"]').first
+        watch.told(f"hybrid, {path}", [partial(_type, box, text) for text in texts])
+
+
+def _in_space(page: Any, watch: Watch, address: str, preset: str, stations: str) -> None:
+    """Measure a page from its address to the curves of a preview in three dimensions, and a slider of the absorbers, if there are any."""
+    table = limits.table_of(limits.PREVIEW_SPATIAL) | {"stations": [float(one) for one in stations.split(",")]}
+    before = watch.spent()[0]
+    drawn, whole = _open(page, address, _system(preset), table)
+    server = watch.spent()[0] - before
+    told = f"{drawn:.1f} s with the page's opening, {whole:.1f} s with the bare system; server {server:.2f} s of processor time"
+    print(f"{preset} in three dimensions, stations {stations}: {told}", flush=True)
+    if preset == "hybrid":
+        watch.told(f"{preset} in three dimensions, absorbers.mass", _moves(page, "absorbers.mass", range(190, 205, 3)))
 
 
 def _system(name: str) -> System:
@@ -84,15 +108,20 @@ def _system(name: str) -> System:
     return system.replace(control=[system.control.replace(shells=[shell]) for shell in (0, 1)])
 
 
-def _open(page: Any, address: str, system: System, resolution: dict[str, Any]) -> None:
-    """Open a system at a resolution and wait until it and the bare one are drawn."""
+def _open(page: Any, address: str, system: System, resolution: dict[str, Any]) -> tuple[float, float]:
+    """Open a system at a resolution; return the seconds until it is drawn, and until it and the bare one are."""
     held = {"v": 1, "system": system.model_dump(mode="json"), "resolution": resolution}
     page.goto(address.partition("?")[0] + "page/icon.svg")
+    begun = time.perf_counter()
     page.goto(f"{address}#{fragment(held)}")
-    _wait(page, "Boolean(window.coaxshell?.state?.runs?.current && !window.coaxshell.state.job)")
+    _wait(page, "Boolean(window.coaxshell?.state?.runs?.current)")
+    drawn = time.perf_counter() - begun
+    _wait(page, "!window.coaxshell.state.job")
     bare = "!window.coaxshell.state.system.control && !window.coaxshell.state.system.absorbers?.count"
     _wait(page, f"Boolean(window.coaxshell.state.runs.bare || ({bare}))")
+    whole = time.perf_counter() - begun
     time.sleep(1.5)  # errors and warnings, and what stands for full resolution
+    return drawn, whole
 
 
 def _type(box: Any, text: str) -> None:

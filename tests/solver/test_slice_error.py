@@ -11,6 +11,7 @@ import coaxshell as cx
 from coaxshell.apps.paper.sphere.compared import compare
 from coaxshell.apps.paper.sphere.error_map import RESOLUTION, as_table, decayed, error_map, shocked
 from coaxshell.model.pulses import Exponential, Gaussian, Sampled, Step
+from coaxshell.solver.checks import slice_of_sphere
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.slice_error import equivalent_decay, from_table, slice_error, slice_map
 
@@ -74,6 +75,11 @@ def test_a_spherical_source_in_two_dimensions_is_warned_of_once():
     held = cx.presets.load("hybrid")
     held = held.replace(control=held.control.replace(saturation=True))
     assert warned(held)[0].endswith("use dimensions=3 without saturation")
+    driven = cx.presets.load("electrodes-hybrid")
+    (told,) = slice_of_sphere(dimensionless(driven), 2.0)
+    assert told.endswith("use dimensions=3")
+    (told,) = slice_of_sphere(dimensionless(driven.with_overrides({"control.segments": 24})), 2.0)
+    assert told.endswith("use dimensions=3 without absorbers")  # which are refused beside segments there
     near = BARE.source.replace(distance=3.0, angle=90.0)
     (both,) = warned(BARE.replace(source=[BARE.source, near]))
     assert f"about {100 * slice_error(dimensionless(BARE.replace(source=near)), 2.0).value:.0f} %" in both

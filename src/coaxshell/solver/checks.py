@@ -13,7 +13,7 @@ from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.bubble import first_pulse
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, saturates, wired
+from coaxshell.model.gains import law_of, saturates, segments_of, ties_shells, wired
 from coaxshell.model.parts import laws_of
 from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
@@ -275,12 +275,9 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     if error.value <= SLICE_LIMIT:
         return []
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
-    laws = laws_of(problem.system)
     changed = " without saturation" if saturates(problem.system) else ""
-    if any(law.transducers == "electrodes" for law in laws):
-        changed = ' with transducers="paper"'
-    if problem.two_faced and laws:
-        changed = " without feedback"
+    if problem.system.absorber_list and (segments_of(problem.system) is not None or ties_shells(problem.system)):
+        changed = " without absorbers"  # beside which segments and matrices are refused there
     return [
         f"source: two dimensions solve a slice through a spherical front, whose hoop stress differs from the sphere's by about "
         f"{about} % (relative RMS; {low} to {high} % as systems differ), more than {limit} %; use dimensions=3{changed}"

@@ -148,7 +148,7 @@ def test_a_running_one_tells_its_best_and_can_be_cancelled(linked_page):
     page = with_form(linked_page())
     describe(page, "2000")
     start(page)
-    until(page, "/designs, best inner.peak stress [\\d.]+ \\w*Pa/.test(document.querySelector('#study-jobs .job .note')?.textContent)")
+    until(page, "/designs, best inner · peak stress [\\d.]+ \\w*Pa/.test(document.querySelector('#study-jobs .job .note')?.textContent)")
     page.locator("#study-jobs .job").first.get_by_role("button", name="Cancel").click()
     page.locator('#study-jobs [data-state="cancelled"]').wait_for()
 

@@ -90,6 +90,25 @@ NAMES = """async count => {
 }"""
 
 
+TOLD = """async () => {
+  const {inWords} = await import('/page/js/words.js'), {span} = await import('/page/js/ranges.js');
+  const {spelt} = await import('/page/js/study_fields.js');
+  return [inWords('use wetted = "faces" (about 6 %) or theory = "elastic"'), inWords('use refinement = 2'), spelt('inner.peak_stress'),
+          spelt('shells[0].layers[1].thickness'), span('control.derivative', 0, true), span('control.derivative', 0)];
+}"""
+
+
+def test_the_page_tells_entries_by_its_own_words_and_ranges_of_gains_by_their_layers(linked_page):
+    assert linked_page().evaluate(TOLD) == [
+        "use Wetted “faces” (about 6 %) or Theory “elastic”",
+        "use Refinement 2",
+        "inner · peak stress",
+        "inner · layer 2 · thickness",
+        {"from": 0, "to": 10, "scale": "linear"},
+        {"from": -1000, "to": 0, "scale": "linear"},
+    ]
+
+
 def test_the_page_names_shells_and_fluids_as_the_library_does(linked_page):
     page = linked_page()
     for count in (1, 2, 3, 12):

@@ -57,7 +57,7 @@ def again(page):
 def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page, count):
     page = open_preset(open_page, server, SMALL if count == 6 else SECONDS, preset="hybrid")
     start(page, path="absorbers.mass", from_=2, to=90, count=count, scale="linear", metric="outer.peak_stress")
-    mine = page.locator("#study-jobs .job").filter(has_text="outer.peak stress over absorbers.mass").first
+    mine = page.locator("#study-jobs .job").filter(has_text="outer · peak stress over absorbers · mass").first
     mine.wait_for()
     again(page)
     mine.wait_for()

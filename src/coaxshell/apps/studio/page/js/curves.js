@@ -36,6 +36,12 @@ function panels(result, quantity, which) {
   return which.flatMap((shell, column) => [0, 1].map((end) => ({ shell, end, column, row: end, title: `${shellName(shell, result.shells.length)}, ${end ? "tail" : "head"}` })));
 }
 
+// Whether charts that stand beside each other have no room for that, as on a phone.
+export const narrow = () => matchMedia("(max-width: 640px)").matches;
+
+// A legend above a chart, which makes room for as many lines as it takes; below it would lie on the words of the axis where a chart is low.
+export const above = (style, more = {}) => ({ orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { ...style, size: 11 }, ...more });
+
 // What all charts of the page share.
 export function frame(more = {}) {
   const style = { color: colour("muted"), size: 12, family: "system-ui, sans-serif" };

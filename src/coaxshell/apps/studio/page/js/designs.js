@@ -1,7 +1,7 @@
 // Named designs: kept, solved one after another, compared in one table and on one plot with what differs marked; a project file holds them.
 import { client, request } from "./api.js";
 import { row } from "./arrays.js";
-import { SETTINGS, UNITS, frame } from "./curves.js";
+import { SETTINGS, UNITS, above, frame } from "./curves.js";
 import { differences, setUp as readUnits } from "./differences.js";
 import { by, el, saveText, toast } from "./dom.js";
 import { finished } from "./events.js";
@@ -169,7 +169,7 @@ const bars = ({ run }) => new Map(run.bars.map((bar) => [`${bar.shell === null |
 function comparison(solved) {
   const each = solved.map(bars), first = Math.max(0, solved.indexOf(designs[reference])), keys = [...new Set(each.flatMap((one) => [...one.keys()]))];
   const names = [...new Set(keys.map((key) => key.split("/")[0]))].sort((a, b) => order(a) - order(b));
-  const table = el("table", { class: "peaks designs" }, el("caption", {}, `Largest magnitudes; the change is against “${solved[first].name}”, the least of each row stands bold`),
+  const table = el("table", { class: "peaks designs" }, el("caption", {}, solved.length > 1 ? `Largest magnitudes; the change is against “${solved[first].name}”, the least of each row stands bold` : "Largest magnitudes: keep another design to compare it"),
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), ...solved.map(({ name }) => el("th", { scope: "col", class: "number" }, name)))),
     ...names.map((name) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 1 + solved.length }, name ? capital(name.includes("shell") ? name : `${name} shell`) : "Absorbers")),
       ...keys.filter((key) => key.split("/")[0] === name).map((key) => {
@@ -213,7 +213,7 @@ function chart() {
   for (const { values } of found) for (const value of values) largest = Math.max(largest, Math.abs(value));
   const { label: words, unit } = each.find((one) => one.name === quantity) ?? { label: "", unit: "" }, scale = prefixed(unit, largest), time = UNITS[world.unit()];
   const { style, axis, layout } = frame({ height: 340, showlegend: true, hovermode: "x" });
-  Object.assign(layout, { legend: { orientation: "h", y: -0.22, font: style }, margin: { l: 68, r: 12, t: 12, b: 40 }, uirevision: `${quantity}${place}${world.unit()}`,
+  Object.assign(layout, { legend: above(style), margin: { l: 68, r: 12, t: 12, b: 40 }, uirevision: `${quantity}${place}${world.unit()}`,
     xaxis: { ...axis, title: { text: `time (${time.name})`, font: style, standoff: 4 } }, yaxis: { ...axis, title: { text: `${words} (${scale.unit})`, font: style } } });
   const traces = found.map(({ one, values, times }) => {
     const i = designs.indexOf(one);

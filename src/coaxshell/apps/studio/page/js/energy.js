@@ -2,7 +2,7 @@
 import { request } from "./api.js";
 import * as cuts from "./cuts.js";
 import { by, el } from "./dom.js";
-import { SETTINGS, UNITS, frame } from "./curves.js";
+import { SETTINGS, UNITS, above, frame } from "./curves.js";
 import { finished } from "./events.js";
 import { colour } from "./theme.js";
 import { prefixed, show } from "./units.js";
@@ -81,7 +81,7 @@ function chart(answer, run, unit) {
   })));
   if (total) traces.push({ x: time, y: y(total, (value) => value), name: "work of the exterior pressure", type: "scatter", mode: "lines", line: { color: colour("text"), width: 1.6 }, hovertemplate: `%{y:.3g} ${scale.unit}<extra></extra>` });
   const { style, axis, layout } = frame({ showlegend: true, height: 380, hovermode: "x unified" });
-  Object.assign(layout, { legend: { orientation: "h", y: -0.2, traceorder: "normal", font: { ...style, size: 11 } }, margin: { l: 68, r: 12, t: 12, b: 40 },
+  Object.assign(layout, { legend: above(style, { traceorder: "normal" }), margin: { l: 68, r: 12, t: 12, b: 40 },
     xaxis: { ...axis, title: { text: `time (${name})`, font: style } }, yaxis: { ...axis, title: { text: `energy ${answer.extent === "over the whole length" ? "over the whole length " : ""}(${scale.unit})`, font: style } } });
   const plot = el("div", { id: "energy-plot", role: "img", "aria-label": `Energy over time, up to ${show(largest, joule, 3)}` });
   by("energy").replaceChildren(plot, el("p", { class: "note" }, `Hatched: lost for good. Stores, losses and the work done agree within ${show(100 * answer.closure, "", 2)}\u202f% of the work.`));

@@ -54,7 +54,7 @@ export function together(path, value, control) {
 // One line for a closed group: which shells, with what.
 export function digest(law, shells) {
   const gain = (value) => [value].flat().map((one) => show(Number(one), "", 3)).join(" / ");
-  const what = "numerator" in law ? `H(s) of degree ${[law.numerator].flat().length - 1} over ${[law.denominator ?? 1].flat().length - 1}` : GAINS.map((name) => gain(law[name])).join(", ");
+  const what = "numerator" in law ? `H(s) of degree ${[law.numerator].flat().length - 1} over ${[law.denominator ?? 1].flat().length - 1}` : `gains ${GAINS.map((name) => gain(law[name])).join(", ")}`;
   return law.shells === undefined || law.shells === "all" || shells === 1 ? what : `${numbers(law, shells).map((i) => shellName(i, shells)).join(", ")}: ${what}`;
 }
 

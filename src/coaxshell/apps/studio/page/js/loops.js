@@ -1,5 +1,5 @@
 // The control panel: how much the loop of each shell stands, as a traffic light; voltage against its limit; Bode and Nyquist of the loop that stands least.
-import { SETTINGS, frame } from "./curves.js";
+import { SETTINGS, above, frame, narrow } from "./curves.js";
 import { by, el } from "./dom.js";
 import { Panel } from "./panel.js";
 import { colour } from "./theme.js";
@@ -62,7 +62,7 @@ function voltages(name) {
 }
 
 function bode(shells, arrays) {
-  const { style, axis, layout } = frame({ showlegend: true, height: 400, hovermode: "closest" }), traces = [];
+  const { style, axis, layout } = frame({ showlegend: true, height: narrow() ? 780 : 400, hovermode: "closest" }), traces = [];
   shells.forEach(({ name, order }, i) => {
     const hertz = arrays[`frequency/${i}`].values, re = arrays[`real/${i}`].values, im = arrays[`imaginary/${i}`].values, line = { color: colour(`series-${i % HUES}`), width: 1.6, dash: i % 2 ? "dash" : "solid", simplify: false };
     const shared = { type: "scatter", mode: "lines", name: `${name}, order ${order}`, legendgroup: i, line, showlegend: false };
@@ -72,10 +72,11 @@ function bode(shells, arrays) {
   });
   traces.push({ type: "scatter", mode: "markers", x: [1], y: [0], xaxis: "x3", yaxis: "y3", name: "where it would grow", showlegend: true, marker: { symbol: "cross-thin", size: 12, line: { width: 2, color: colour("bad") } }, hoverinfo: "skip" });
   const log = { ...axis, type: "log", exponentformat: "power", dtick: 1, zeroline: false };
-  Object.assign(layout, { margin: { l: 60, r: 12, t: 12, b: 44 }, legend: { orientation: "h", y: -0.18, font: style },
-    xaxis: { ...log, domain: [0, 0.52], showticklabels: false }, yaxis: { ...log, domain: [0.55, 1], title: { text: "|L|", font: style }, anchor: "x" },
-    xaxis2: { ...log, domain: [0, 0.52], matches: "x", anchor: "y2", title: { text: "frequency (Hz)", font: style, standoff: 4 } }, yaxis2: { ...axis, domain: [0, 0.45], range: [-180, 180], dtick: 90, title: { text: "phase of L (°)", font: style } },
-    xaxis3: { ...axis, domain: [0.64, 1], range: [-FAR, FAR], anchor: "y3", title: { text: "Re L", font: style, standoff: 4 } }, yaxis3: { ...axis, range: [-FAR, FAR], anchor: "x3", scaleanchor: "x3", title: { text: "Im L", font: style, standoff: 4 } },
+  const [left, right, gain, phase, plane] = narrow() ? [[0, 1], [0, 1], [0.77, 1], [0.52, 0.73], [0, 0.4]] : [[0, 0.52], [0.64, 1], [0.55, 1], [0, 0.45], [0, 1]];
+  Object.assign(layout, { margin: { l: 60, r: 12, t: 12, b: 44 }, legend: above(style),
+    xaxis: { ...log, domain: left, showticklabels: false }, yaxis: { ...log, domain: gain, title: { text: "|L|", font: style }, anchor: "x" },
+    xaxis2: { ...log, domain: left, tickangle: 0, matches: "x", anchor: "y2", title: { text: "frequency (Hz)", font: style, standoff: 4 } }, yaxis2: { ...axis, domain: phase, range: [-180, 180], dtick: 90, title: { text: "phase of L (°)", font: style } },
+    xaxis3: { ...axis, domain: right, range: [-FAR, FAR], anchor: "y3", title: { text: "Re L", font: style, standoff: 4 } }, yaxis3: { ...axis, domain: plane, range: [-FAR, FAR], anchor: "x3", scaleanchor: "x3", title: { text: "Im L", font: style, standoff: 4 } },
     shapes: [{ type: "circle", xref: "x3", yref: "y3", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: colour("strong-line"), width: 1 } }] });
   return { traces, layout };
 }

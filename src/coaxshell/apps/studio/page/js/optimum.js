@@ -1,6 +1,6 @@
 // What an optimisation came to: baseline against best with units, convergence or front, and any of its designs made the current system.
 import { request } from "./api.js";
-import { SETTINGS, frame } from "./curves.js";
+import { SETTINGS, above, frame } from "./curves.js";
 import { el, toast } from "./dom.js";
 import { spelt } from "./study_fields.js";
 import { colour } from "./theme.js";
@@ -60,7 +60,7 @@ function comparison({ targets, variables }, baseline, chosen, isFront) {
   const line = (one, before, after) => {
     const change = typeof after === "number" && typeof before === "number" ? percent(after, before) : null;
     const better = one.goal && change !== null && Math.abs(change) >= 0.05 ? ((change < 0) === (one.goal === "minimise") ? "better" : "worse") : "";
-    return el("tr", { title: one.label }, el("th", { scope: "row" }, spelt(one.name).replaceAll(".", ".\u200b"), ...words(one).map((word) => el("small", {}, word))), number(before, one.unit), number(after, one.unit), el("td", { class: `number ${better}` }, inComparison(change)));
+    return el("tr", { title: one.label }, el("th", { scope: "row" }, spelt(one.name), ...words(one).map((word) => el("small", {}, word))), number(before, one.unit), number(after, one.unit), el("td", { class: `number ${better}` }, inComparison(change)));
   };
   const rows = (title, list, key) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 4 }, title)), ...list.map((one, k) => line(one, baseline[key][k], chosen[key][k])));
   return el("table", { class: "peaks optimum" }, el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Quantity"), ...["Baseline", isFront ? "Chosen" : "Best", "Change"].map((word) => el("th", { scope: "col", class: "number" }, word)))),
@@ -95,13 +95,11 @@ function drawHistory(plot, { targets, history }) {
     line("baseline", [1, count.length], scaled([goal.baseline, goal.baseline], scale.factor), "text", "dot"), line("best so far", count, scaled(history.best, scale.factor), "current", "solid", "hv")];
   const ends = [goal.baseline, ...history.best, known[Math.floor(0.8 * (known.length - 1))]].filter((value) => value !== null && value !== undefined);
   const low = Math.min(...ends, ...known.slice(0, 1)), high = Math.max(...ends), margin = 0.08 * (high - low) || 0.1 * Math.abs(high) || 1;
-  Object.assign(layout, { legend: legend(style), margin: { l: 72, r: 12, t: 30, b: 44 }, xaxis: { ...axis, zeroline: false, title: { text: "designs tried", font: style }, range: [0, count.length + 1] },
+  Object.assign(layout, { legend: above(style), margin: { l: 72, r: 12, t: 30, b: 44 }, xaxis: { ...axis, zeroline: false, title: { text: "designs tried", font: style }, range: [0, count.length + 1] },
     yaxis: { ...axis, zeroline: false, title: { text: axisName(goal, scale), font: style }, range: [(low - margin) / scale.factor, (high + margin) / scale.factor] } });
   describe(plot, `${spelt(goal.name)} of each design tried; the best so far falls to ${text(history.best.at(-1), goal.unit)}`.replace("falls to –", "is none"));
   window.Plotly.react(plot, traces, layout, SETTINGS);
 }
-
-const legend = (style) => ({ orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { ...style, size: 11 } });
 
 // All designs by their two objectives, the front among them; a click on one of the front makes it the current system.
 function drawFront(plot, result, chosen, choose) {
@@ -116,7 +114,7 @@ function drawFront(plot, result, chosen, choose) {
     { ...dots("front", front.map((one) => of(one)[0]), front.map((one) => of(one)[1]), "circle", "current", { size: 8 }), mode: "lines+markers", line: { color: colour("current"), width: 1.2 }, customdata: front.map((one) => one.number), hovertemplate: `${hover.replace("<extra>", "; click to use it<extra>")}` },
     { ...dots("baseline", [x.baseline === null ? null : x.baseline / scales[0].factor], [y.baseline === null ? null : y.baseline / scales[1].factor], "diamond", "text", { size: 9 }), hoverinfo: "skip" },
     ...(chosen.targets[i] === null ? [] : [{ ...dots("chosen", [of(chosen)[0]], [of(chosen)[1]], "circle-open", "pinned", { size: 14, line: { width: 2.5, color: colour("pinned") } }), hoverinfo: "skip" }])];
-  Object.assign(layout, { legend: legend(style), margin: { l: 72, r: 12, t: 30, b: 44 }, xaxis: { ...axis, zeroline: false, title: { text: axisName(x, scales[0]), font: style }, ...within(front, x, i, scales[0]) }, yaxis: { ...axis, zeroline: false, title: { text: axisName(y, scales[1]), font: style }, ...within(front, y, j, scales[1]) } });
+  Object.assign(layout, { legend: above(style), margin: { l: 72, r: 12, t: 30, b: 44 }, xaxis: { ...axis, zeroline: false, title: { text: axisName(x, scales[0]), font: style }, ...within(front, x, i, scales[0]) }, yaxis: { ...axis, zeroline: false, title: { text: axisName(y, scales[1]), font: style }, ...within(front, y, j, scales[1]) } });
   describe(plot, `Front of ${spelt(x.name)} against ${spelt(y.name)}, ${front.length} designs; choose one in the list above`);
   window.Plotly.react(plot, traces, layout, SETTINGS);
   if (plot.wired) return;

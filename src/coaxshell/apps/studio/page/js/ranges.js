@@ -42,10 +42,10 @@ export function handleAt(range, value) {
 }
 
 // Between what a study may vary a field that has a value now: a decade to either side, a gain up to twice itself, else a quarter.
-export function span(path, value) {
+export function span(path, value, electrodes = false) {
   const range = rangeOf(path.replace("[*]", ""));
   if (range?.kind === "linear") return { from: range.low, to: range.high, scale: "linear" };
-  if (range?.kind === "signed") return value ? { from: Math.min(2 * value, 0), to: Math.max(2 * value, 0), scale: "linear" } : { from: -range.high / 10, to: 0, scale: "linear" };
+  if (range?.kind === "signed") return value ? { from: Math.min(2 * value, 0), to: Math.max(2 * value, 0), scale: "linear" } : electrodes ? { from: 0, to: 10, scale: "linear" } : { from: -range.high / 10, to: 0, scale: "linear" };
   if (range?.kind === "log") return value > 0 ? { from: Math.max(range.low, rounded(value / 10)), to: Math.min(range.high, rounded(10 * value)), scale: "log" } : { from: range.low, to: range.high, scale: "log" };
   return value ? { from: rounded(Math.min(0.75 * value, 1.25 * value)), to: rounded(Math.max(0.75 * value, 1.25 * value)), scale: "linear" } : { from: 0, to: 1, scale: "linear" };
 }

@@ -19,14 +19,17 @@ export function fields(each = false) {
 export function spelt(text) {
   const shells = shellCount();
   return text.replace(/\bshells\[(\d+)\]/g, (_, i) => shellName(Number(i), shells)).replace(/\bfluids\[(\d+)\]/g, (_, i) => regionSide(Number(i), shells))
-    .replace(/\b(layer|absorber)s\[(\d+)\]/g, (_, name, i) => `${name} ${Number(i) + 1}`).replace(/\bcontrol\[(\d+)\]/g, (_, i) => `law ${Number(i) + 1}`).replaceAll("_", " ");
+    .replace(/\b(layer|absorber)s\[(\d+)\]/g, (_, name, i) => `${name} ${Number(i) + 1}`).replace(/\bcontrol\[(\d+)\]/g, (_, i) => `law ${Number(i) + 1}`).replace(/(?<=[a-z\d])\.(?=[a-z])/gi, " · ").replaceAll("_", " ");
 }
 
 export const unitOf = (path) => fields(true).find((field) => field.path === path)?.unit ?? "";
 
+// Whether a path is of a law whose layers have electrodes, whose gains are some ten thousand times smaller than those of the paper's.
+const byElectrodes = (system, path) => path.startsWith("control") && read(system, path.replace(/\.\w+$/, "")).transducers === "electrodes";
+
 // From, to and spacing for a field, as a person would type them.
 export function suggested(system, path) {
-  const value = read(system, path.replace("[*]", Array.isArray(system.absorbers) ? "[0]" : "")), unit = unitOf(path), { from, to, scale } = span(path, Number(value) || 0);
+  const value = read(system, path.replace("[*]", Array.isArray(system.absorbers) ? "[0]" : "")), unit = unitOf(path), { from, to, scale } = span(path, Number(value) || 0, byElectrodes(system, path));
   return { from: editable(from, unit), to: editable(to, unit), scale };
 }
 

@@ -71,5 +71,7 @@ export function inWords(text) {
     .replace(/\btime_step ?= ?([\d.e-]+)/g, "a time step of $1 a/c")
     .replace(/\bgive (time|pressure)_column, a name or a number from 1 on/g, "choose the column of $1")
     .replace(/\bgive (time|pressure)_unit\b/g, "choose the unit of $1")
+    .replace(/\b(wetted|theory|transducers) ?= ?"([\w-]+)"/g, (_, name, value) => `${title(name)} “${value}”`)
+    .replace(/\brefinement ?= ?(\d+)/g, "Refinement $1")
     .replace(/\bhalve time_step\b/g, "halve the time step under Resolution");
 }
