@@ -208,8 +208,8 @@ ELASTIC = (
     Mutation(
         "solid-not-symmetric",
         "solver/cascade.py",
-        "outer - self.walls[shell].back * (self._radii",
-        "outer - self.walls[shell].across * (self._radii",
+        "outer - self.walls[wall].back * (self._radii",
+        "outer - self.walls[wall].across * (self._radii",
         "feedback makes H_oi differ from H_io",
         "solver/test_exact_control.py",
     ),

@@ -40,8 +40,8 @@ WETTED = (
     Mutation(
         "cascade-inside",
         "solver/cascade.py",
-        "(h.outer - h.back * h.across * (inner * zeta) / divisor) * outer",
-        "(h.outer - h.back * h.across * (outer * zeta) / divisor) * outer",
+        "h.outer - h.back * h.across * (inner * zeta) / divisor",
+        "h.outer - h.back * h.across * (outer * zeta) / divisor",
         "what lies within a wall with two faces, seen from outside",
         "solver/test_cascade.py",
     ),

@@ -14,7 +14,12 @@ A gap between this face (a) and the next wall's inner one (b), p = g (aa w_a + a
 
     zeta = g bb + g^2 ba ab y r_o/(1 - g aa y r_o),      P = g ba e/(1 - g aa y r_o).
 
-H is nearly of rank one where a wall is thin; it is never inverted. A thin wall, a rigid one and one of any other theory stand side by side.
+H is nearly of rank one where a wall is thin; it is never inverted. Where both faces move by one W it is of rank one, h, and with d_i = d_o
+
+    y = h/(1 + h r_i zeta),      e = (d - h r_i P)/(1 + h r_i zeta),
+
+without the differences, which would leave nothing of a wall so light that h zeta is large. A thin wall, a rigid one and one of any other
+theory stand side by side.
 """
 
 from __future__ import annotations
@@ -116,6 +121,7 @@ class CascadeSystem:
         self.radial = RadialBasis(modes, s) if radial is None else radial
         self.walls = [wall.receptance(modes, s) for wall in problem.shells] if walls is None else list(walls)
         self._radii = [wall.wetted for wall in problem.shells]
+        self._alike = [wall.faces_move_alike for wall in problem.shells]
         self.fluids = fluid_operators(problem, self.radial, s)
         self._factor()
 
@@ -128,7 +134,7 @@ class CascadeSystem:
         for i, (h, (inner, outer)) in enumerate(zip(self.walls, self._radii, strict=True)):
             zeta, fluid = self._within[i], self.fluids[i + 1]
             divisor = 1.0 + h.inner * (inner * zeta)
-            y = (h.outer - h.back * h.across * (inner * zeta) / divisor) * outer
+            y = (h.outer / divisor if self._alike[i] else h.outer - h.back * h.across * (inner * zeta) / divisor) * outer
             gap = 1.0 - fluid.aa * y
             self._wall_divisor.append(divisor)
             self._seen.append(y)
@@ -169,12 +175,12 @@ class CascadeSystem:
         free_inner: list[Entry] = [0.0] * count  # as all within the wall that is pressed on
         driven: list[Entry] = [0.0] * count
         pressures: list[Entry] = [0.0] * count
-        free_inner[shell], driven[shell] = inner, outer - self.walls[shell].back * (self._radii[shell][0] * self._held(shell, inner))
+        free_inner[shell], driven[shell] = inner, self._driven(shell, inner, outer, 0.0)
         for i in range(shell, count):
             if i > shell:
                 h, radius = self.walls[i], self._radii[i][0]
                 free_inner[i] = -h.inner * (radius * pressures[i])
-                driven[i] = -h.back * (radius * (pressures[i] + self._held(i, free_inner[i])))
+                driven[i] = self._driven(i, free_inner[i], 0.0, pressures[i])
             if i + 1 < count:
                 pressures[i + 1] = self.fluids[i + 1].ba * driven[i] / self._gap_divisor[i]
         found: list[FaceMotion] = []
@@ -191,9 +197,12 @@ class CascadeSystem:
             beyond = w_inner
         return found[::-1]
 
-    def _held(self, wall: int, moved: Entry) -> Entry:
-        """Return the pressure on the inner face of a wall that would move by so much if nothing were within it."""
-        return self._within[wall] * moved / self._wall_divisor[wall]
+    def _driven(self, wall: int, inner: Entry, outer: Entry, pressure: Entry) -> Entry:
+        """Return e of a wall: its faces would move by *inner* under P of what lies within, and by *outer* under all else; P: *pressure*."""
+        if self._alike[wall]:
+            return inner / self._wall_divisor[wall]
+        held = self._within[wall] * inner / self._wall_divisor[wall]
+        return outer - self.walls[wall].back * (self._radii[wall][0] * (pressure + held))
 
     def determinant(self) -> ComplexArray:
         """Return what vanishes at the poles of the response, shape (orders, nodes): of thin walls the tridiagonal system's determinant."""
