@@ -26,9 +26,9 @@ def ring(count: int, damping: float = 1e6) -> cx.AbsorberRing:
 
 responses = {count: prepared.simulate(ring(count)) for count in (0, 5, 25)}
 for count, response in responses.items():
-    inner, outer = response.summary().shells
+    inside, outside = (shell.stress_rms / 1e3 for shell in response.summary().shells)
     print(
-        f"{count:2d} absorbers: RMS stress {inner.stress_rms / 1e3:.1f} kPa inside, {outer.stress_rms / 1e3:.1f} kPa outside"
+        f"{count:2d} absorbers: RMS stress {inside:.1f} kPa inside, {outside:.1f} kPa outside"
     )
 
 # %%

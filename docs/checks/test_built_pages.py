@@ -134,7 +134,7 @@ def test_code_is_not_wider_than_its_page(pages):
         if "source" in path.parts:
             continue
         text = path.read_text(encoding="utf-8")
-        blocks = re.findall(r'<div class="highlight-(?:sh|toml|python|text)[^"]*">.*?<pre>(.*?)</pre>', text, re.DOTALL)
+        blocks = re.findall(r'<div class="highlight-(?:sh|toml|python|Python|text)[^"]*">.*?<pre>(.*?)</pre>', text, re.DOTALL)
         lines = [html.unescape(re.sub(r"<[^>]+>", "", line)) for block in blocks for line in block.splitlines()]
         wide += [f"{path.name}: {line}" for line in lines if len(line) > WIDEST_CODE]
     assert wide == []

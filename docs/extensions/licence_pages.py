@@ -40,7 +40,8 @@ def licence(found: Distribution) -> str:
         return stated
     classifiers = [line.rsplit(" :: ", 1)[-1] for line in found.metadata.get_all("Classifier") or () if line.startswith("License ::")]
     named = [SPELLINGS.get(name, name) for name in classifiers if name != "OSI Approved"]
-    field = _field(found, "License").strip().splitlines()
+    whole = _field(found, "License")
+    field = ["MIT"] if "Permission is hereby granted, free of charge" in whole else whole.strip().splitlines()  # its whole text
     text = SPELLINGS.get(field[0].strip(), field[0].strip()) if field else ""
     if text in ALLOWED or not named:
         return text or "not stated"

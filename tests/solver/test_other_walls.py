@@ -32,8 +32,8 @@ class SprungWall(ShellModel):
     damper: float
 
     def passive(self, modes, s):
-        alike = np.ones((modes.count, 1))
-        return WallOperator(alike * (self.mass * s * s + self.damper * s + self.spring), np.zeros((modes.count, s.size), complex))
+        nothing = np.zeros((modes.count, s.size), complex)
+        return WallOperator(nothing + self.mass * s * s + self.damper * s + self.spring, nothing)
 
     def highest_frequency(self, modes):
         return np.full_like(modes.orders, np.sqrt(self.spring / self.mass))

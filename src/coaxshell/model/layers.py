@@ -69,7 +69,7 @@ class Layer(Described):
 
 
 class Shell(Described):
-    """Describe a thin circular cylindrical shell by its mid-surface radius and its layers, from the inside out."""
+    """Describe a circular cylindrical shell by the radius of its mid-surface and its layers, from the inside out."""
 
     radius: Length
     """Radius of the mid-surface (m)."""

@@ -8,6 +8,11 @@ _TURNING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 """What turns the direction of writing, and so can make a name look like another."""
 
 
+def rounded(value: float, digits: int) -> str:
+    """Return a number with so many digits, as 0.12, 8.4 or 110: up to a million without an exponent."""
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
 def visible(text: str, keep: str = "") -> str:
     """Return a text with � for every character that is a command rather than a letter, but for those to *keep*."""
     return "".join(letter if letter in keep or _is_seen(letter) else "�" for letter in text)

@@ -32,6 +32,7 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.texts import rounded
 from coaxshell.numerics.winding import turning
 from coaxshell.solver.cascade import CascadeSystem
 from coaxshell.solver.coupling import ModalSystem, determinant
@@ -373,7 +374,7 @@ def require_stable(problem: Problem, max_order: int, duration: float, shared: Sh
     listed = ", ".join(f"{order:.0f}" for order in unstable.orders[:5])
     listed += f", ..., {unstable.orders[-1]:.0f} ({unstable.orders.size} in all)" if unstable.orders.size > 5 else ""
     hertz = fastest.frequency / (2.0 * np.pi * problem.scales.time)
-    told = f"order {fastest.order} by e^({fastest.rate:.3g} t), t in transits, at {engineering(hertz, 'Hz')}"
+    told = f"order {fastest.order} by e^({rounded(fastest.rate, 3)} t), t in transits, at {engineering(hertz, 'Hz')}"
     raise InputError(
         " and ".join(names),
         f"{said} makes the closed loop unstable: order {listed}{where} grows without bound, fastest {told}",

@@ -26,6 +26,7 @@ from coaxshell.model.parts import laws_of
 from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.numerics.texts import rounded
 from coaxshell.numerics.winding import turning
 from coaxshell.solver.electrode_loops import ElectrodeLoops, shares_of
 from coaxshell.solver.electrode_patterns import patterns_of
@@ -292,7 +293,7 @@ def require_stable_tie(problem: Problem, tied: Tied, duration: float) -> float:
             where = f"order {listed}, with those that {cut} segments tie to it, grows without bound, fastest order "
             where += f"{fastest.pattern} with {others}, ..."
     entries, value = _guilty(laws[0]) if len(laws) == 1 else ("control", "these laws together")
-    told = f"by e^({fastest.rate:.3g} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
+    told = f"by e^({rounded(fastest.rate, 3)} t), t in transits" + (f", at {engineering(hertz, 'Hz')}" if np.isfinite(hertz) else "")
     raise InputError(entries, f"{value} makes the closed loop unstable{tied.place}: {where} {told}", remedy(problem))
 
 

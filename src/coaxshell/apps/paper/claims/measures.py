@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from coaxshell.apps.paper.observed import SIDES, Observed
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.texts import rounded
 
 POINTS = tuple((shell, side) for shell in ("inner", "outer") for side in SIDES)
 RAPID = 4.0
@@ -76,14 +77,9 @@ def extremum_near(time: FloatArray, values: FloatArray, instant: float) -> tuple
     return float(time[k]), float(magnitude[k] / magnitude.max())
 
 
-def two_digits(value: float) -> str:
-    """Return a number with two digits, as 0.12, 8.4 or 110: large ones without an exponent."""
-    return f"{float(f'{value:.2g}'):g}"
-
-
 def sentence(items: dict[tuple[str, str], float], form: str = "{} %", factor: float = 100.0) -> str:
     """Return values at points as text, "1 % at the inner head, 2 % at the inner tail"; to two digits unless the form tells."""
-    shown = [two_digits(factor * value) if form == "{} %" else factor * value for value in items.values()]
+    shown = [rounded(factor * value, 2) if form == "{} %" else factor * value for value in items.values()]
     return ", ".join(f"{form.format(value)} at the {shell} {side}" for (shell, side), value in zip(items, shown, strict=True))
 
 

@@ -17,6 +17,7 @@ from coaxshell.errors import InputError
 from coaxshell.model import Absorber, System, absorber_ring, presets
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.texts import rounded
 from coaxshell.solver.settings import Settings
 
 if TYPE_CHECKING:
@@ -189,6 +190,6 @@ def _shown(stresses: Stresses | None, name: str) -> str:
 
 def _outcome(effect: Effect) -> str:
     if effect.growth is not None:
-        return f"grows by e^({float(f'{effect.growth.rate:.3g}'):g} t), order {effect.growth.order}"
+        return f"grows by e^({rounded(effect.growth.rate, 3)} t), order {effect.growth.order}"
     assert effect.inner_change is not None
-    return f"{float(f'{effect.inner_change:.2g}'):g}"
+    return rounded(effect.inner_change, 2)

@@ -10,6 +10,7 @@ from coaxshell.apps.paper.slips.growth import growth
 from coaxshell.apps.paper.slips.switches import slipped
 from coaxshell.errors import InputError
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.texts import rounded
 from coaxshell.solver.settings import Settings
 from coaxshell.studies import structures
 from coaxshell.studies.structures import structure_of
@@ -72,7 +73,7 @@ def _prepared(system: System, resolution: Settings, slips: frozenset[str]) -> Pr
         if fastest is not None:
             raise InputError(
                 "slips",
-                f"{', '.join(sorted(slips))}: order {fastest.order} grows without bound, by e^({fastest.rate:.3g} t)",
+                f"{', '.join(sorted(slips))}: order {fastest.order} grows without bound, by e^({rounded(fastest.rate, 3)} t)",
                 f"use a duration below {1.0 / fastest.rate:.2g}",
             )
     return prepared
