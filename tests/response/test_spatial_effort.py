@@ -38,6 +38,17 @@ def test_uniform_sources_cost_what_they_do_in_two_dimensions():
     assert effort.extent == "per metre of length"
 
 
+def test_elastic_walls_cost_over_the_length_what_they_do_in_two_dimensions():
+    """By the charge of their layers; one without losses in one with them."""
+    layers = [one.replace(material=one.material.replace(loss_factor=0.03)) for one in PAIRS.shells[1].layers]
+    system = PAIRS.replace(shells=[PAIRS.shells[0].replace(theory="elastic"), PAIRS.shells[1].replace(theory="elastic", layers=layers)])
+    plane, few = system.replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4)), {**RUN, "modes": 2, "time_step": 0.02}
+    flat = cx.simulate(plane, **few).control_effort().shells
+    over_length = cx.simulate(plane, **few, dimensions=3, stations=[0.3]).control_effort(whole_length=True).over_length
+    for one, whole in zip(flat, over_length, strict=True):
+        assert (whole.real_power, whole.apparent_power) == pytest.approx((one.real_power, one.apparent_power), rel=1e-9)
+
+
 def test_power_at_all_stations_adds_up_to_that_over_the_length(spatial):
     ((_, outer), extent), period = length_power(spatial.spatial), spatial.spatial.sampling.period * PAIRS.reference_radius
     per_metre = np.stack([power(motion, 1).real for motion in spatial.motions])  # of half a period, the other its mirror image
@@ -63,5 +74,5 @@ def test_what_has_no_charge_is_told_without():
     paper = cx.presets.load("bare").replace(control=cx.PDControl(proportional=-1, derivative=-0.1))
     run = cx.simulate(paper, duration=0.3, time_step=2e-2, modes=2, dimensions=3, stations=[0.0])
     assert run.control_effort().each[0]["inner"].charge is None
-    with pytest.raises(InputError, match="no thin wall is driven"):
+    with pytest.raises(InputError, match="no wall is driven"):
         run.control_effort(whole_length=True)

@@ -4,6 +4,8 @@ Of wall i, with u and i the transforms of its actuators' voltage and current per
 :mod:`coaxshell.response.energy.whole_length`,
 
     P(t) = L [P(k_0) + (1/2) sum_j P(k_j)],      P(k) = oint u i ds,      S = (int u^2 dA  int i^2 dA)^(1/2) >= |P|.
+
+Charges of elastic walls are those of their driven layers, in orders; segments of thin ones are taken one by one.
 """
 
 from __future__ import annotations
@@ -18,10 +20,13 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.energy.electrodes import DrivenWall, driven_at
 from coaxshell.response.energy.motion import Motion
+from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
 from coaxshell.response.energy.whole_length import along_the_length
 from coaxshell.solver.axial.motion import wave_motions
 from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall
+from coaxshell.structure.shell_model import ShellModel
 
 
 @dataclass(frozen=True)
@@ -61,20 +66,29 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
     Raises
     ------
     InputError
-        If no thin wall is driven between electrodes, and as :func:`coaxshell.response.energy.whole_length.require_balanced`.
+        If no wall is driven between electrodes, and as :func:`coaxshell.response.energy.whole_length.require_balanced`.
     """
     problem = solution.problem
-    walls = {i: wall for i, wall in enumerate(problem.shells) if isinstance(wall, ElectrodedWall) and wall.gains is not None}
+    walls = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and _holds_charges(wall)]
     if not walls:
-        raise InputError("whole_length", "no thin wall is driven between electrodes, whose charge is known", "leave it out")
+        raise InputError("whole_length", "no wall is driven between electrodes, whose charge is known", "leave it out")
     length = along_the_length(solution, progress)
     grid = length.grid
     products = {i: np.zeros((3, grid.time.size)) for i in walls}
     for j, wave in enumerate(wave_motions(problem, length.sampling, grid, length.forces)):
-        known = {"voltage": wave.voltage, "around": wave.around, "charged": wave.charged}
-        motion = Motion(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident, **known)
-        for i, wall in walls.items():
-            products[i] += _products(driven_at(motion, i, wall), grid, wave.length)
+        motion = Motion(
+            *(problem, grid, wave.modes, wave.normal, wave.tangential, wave.axial, 1, wave.incident),
+            voltage=wave.voltage,
+            solid=wave.solid,
+            around=wave.around,
+            charged=wave.charged,
+        )
+        for i in walls:
+            wall = problem.shells[i]
+            if isinstance(wall, ElasticWall):
+                products[i] += wave.length * _of_solids(motion, i, wall)
+            else:
+                products[i] += _products(driven_at(motion, i, wall), grid, wave.length)
         if progress is not None:
             progress((j + 1.0) / length.count, f"axial wavenumber {j + 1:,} of {length.count:,}")
     scales, kept = problem.scales, slice(None, None, solution.settings.refinement)
@@ -99,3 +113,23 @@ def _products(driven: DrivenWall, grid: LaplaceGrid, length: float) -> FloatArra
     slow, fast = (grid.invert(held * one * grid.nodes) for one in (driven.volts, driven.charging))
     field = grid.invert(driven.charging)
     return found + np.stack([over(field, fast) - over(u, slow), over(field, field) - over(u, u), over(fast, fast) - over(slow, slow)])
+
+
+def _of_solids(motion: Motion, shell: int, wall: ElasticWall) -> FloatArray:
+    """Return the same of an elastic wall per length, by the charge per radian that all of its actuators hold under one voltage."""
+    volts, every, grid = volts_of(motion, shell), wall.transducers, motion.grid
+    assert volts is not None
+    assert every is not None
+    acting = np.flatnonzero(every.acting)
+    moved, capacitance = strokes(motion, shell, volts), capacitances(wall, motion)
+    charge = sum((moved[j] + capacitance[j][:, None] * volts[j] for j in acting), np.zeros_like(volts[0]))
+    u, i = grid.invert(volts[acting[0]].copy()), grid.invert(charge * grid.nodes)
+    return np.stack([np.einsum("m,hmt,hmt->t", motion.circle, a, b) for a, b in ((u, i), (u, u), (i, i))])
+
+
+def _holds_charges(wall: ShellModel) -> bool:
+    """Return whether a wall has actuators between electrodes."""
+    if isinstance(wall, ElasticWall):
+        every = wall.transducers
+        return every is not None and every.electrodes and bool(every.actuators)
+    return isinstance(wall, ElectrodedWall)

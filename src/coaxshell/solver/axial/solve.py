@@ -10,7 +10,7 @@ import numpy as np
 
 from coaxshell.acoustics.sources import PlaneGeometry
 from coaxshell.errors import InputError
-from coaxshell.model.gains import saturates
+from coaxshell.model.gains import limits_currents, saturates
 from coaxshell.model.system import System
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -228,6 +228,9 @@ def require_known(problem: Problem, settings: Settings) -> None:
     """Refuse what belongs to two dimensions, and stations that an inclined wave has passed before t = 0."""
     system = problem.system
     require_lines_alone(problem, settings)
+    if limits_currents(system):
+        told = "use current_saturation = false: two dimensions tell how much the limit matters"
+        raise InputError("control.current_saturation", "currents stop at their limit in two dimensions alone", told)
     if saturates(system):
         told = (
             "use saturation = false: a warning tells if a voltage at a station exceeds its limit, and two dimensions how much that matters"
