@@ -155,11 +155,12 @@ def _in_space(system: System, settings: Settings) -> Response:
 
 def _on_structure(system: System, settings: Settings) -> Response:
     """Return the response of a system by its structure, which is kept."""
-    prepared = _at_hand(system, settings)
+    key = structure_key(system, settings)
+    prepared = _Here.structures.get(key) or _structure(system.replace(absorbers=()), settings)
     try:
         return prepared.simulate(system.absorbers, progress=report)
     finally:
-        _Here.structures.put(structure_key(system, settings), prepared)  # weighed afterwards: it grows with the run
+        _Here.structures.put(key, prepared)  # weighed afterwards: it grows with the run
 
 
 def judge(system: System, settings: Settings) -> dict[str, Any]:
@@ -187,13 +188,10 @@ def bars(system: System, settings: Settings) -> list[dict[str, Any]]:
 
 def structure(system: System, settings: Settings) -> PreparedSystem:
     """Return all of a system but its absorbers, prepared: kept, or made and kept."""
-    prepared = _at_hand(system, settings)
-    _Here.structures.put(structure_key(system, settings), prepared)
+    key = structure_key(system, settings)
+    prepared = _Here.structures.get(key) or _structure(system.replace(absorbers=()), settings)
+    _Here.structures.put(key, prepared)
     return prepared
-
-
-def _at_hand(system: System, settings: Settings) -> PreparedSystem:
-    return _Here.structures.get(structure_key(system, settings)) or _structure(system.replace(absorbers=()), settings)
 
 
 def _live(settings: Settings) -> bool:

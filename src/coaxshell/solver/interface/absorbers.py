@@ -156,7 +156,7 @@ class AbsorberSet:
 def absorber_set(problem: Problem, absorbers: tuple[Absorber, ...], excited: int) -> AbsorberSet:
     """Return the dimensionless absorbers; where the sources excite one parity and the layout is symmetric, one of each mirrored pair."""
     one_parity = excited == 1 and not _dead_segments(problem)
-    places = [(_place(a, mirrored=False), _place(a, mirrored=True)) for a in absorbers] if one_parity else []
+    places = [_places(a) for a in absorbers] if one_parity else []
     symmetric = one_parity and sorted(repr(place) for place, _ in places) == sorted(repr(mirror) for _, mirror in places)
     carried: list[Absorber] = []
     multiplicity: list[float] = []
@@ -218,11 +218,13 @@ def _link_scales(scales: Scales) -> LinkScales:
     return LinkScales(scales.length, scales.pressure * scales.length, scales.time)
 
 
-def _place(absorber: Absorber, *, mirrored: bool) -> tuple[object, ...]:
-    """Return what makes two absorbers equal: rounded angle and all properties."""
-    angle = round((-absorber.angle if mirrored else absorber.angle) / _SAME_ANGLE) % round(360.0 / _SAME_ANGLE)
+def _places(absorber: Absorber) -> tuple[tuple[object, ...], tuple[object, ...]]:
+    """Return what makes an absorber, and its mirror image, equal to another one: rounded angle and all properties."""
     apart = absorber.model_dump(exclude={"angle", "outer_shell"}).values()
-    return (angle, linked_shells(absorber), *(repr(value) if isinstance(value, dict) else value for value in apart))
+    same = (linked_shells(absorber), *(repr(value) if isinstance(value, dict) else value for value in apart))
+    whole = round(360.0 / _SAME_ANGLE)
+    own, mirror = (round(angle / _SAME_ANGLE) % whole for angle in (absorber.angle, -absorber.angle))
+    return (own, *same), (mirror, *same)
 
 
 def admittance(absorbers: AbsorberSet, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
