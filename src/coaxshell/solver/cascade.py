@@ -100,6 +100,8 @@ class CascadeSystem:
         Bessel ratios at these nodes, if known.
     walls : sequence of FaceReceptance, optional
         Their receptances, if known.
+    fluids : sequence of FluidOperator, optional
+        Their operators, if known: they know nothing of feedback.
 
     Attributes
     ----------
@@ -116,13 +118,14 @@ class CascadeSystem:
         modes: Modes,
         radial: RadialBasis | None = None,
         walls: Sequence[FaceReceptance] | None = None,
+        fluids: Sequence[FluidOperator] | None = None,
     ) -> None:
         self.problem, self.s, self.modes = problem, s, modes
         self.radial = RadialBasis(modes, s) if radial is None else radial
         self.walls = [wall.receptance(modes, s) for wall in problem.shells] if walls is None else list(walls)
         self._radii = [wall.wetted for wall in problem.shells]
         self._alike = [wall.faces_move_alike for wall in problem.shells]
-        self.fluids = fluid_operators(problem, self.radial, s)
+        self.fluids = fluid_operators(problem, self.radial, s) if fluids is None else list(fluids)
         self._factor()
 
     def _factor(self) -> None:

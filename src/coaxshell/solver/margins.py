@@ -20,7 +20,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import ShareDone
 from coaxshell.numerics.winding import turning
-from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_loops import ElectrodeLoops, determinant_of
 from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import SPACING, Contour, along_alone, fed_orders, few_of, opened
@@ -143,10 +143,10 @@ def _tied(problem: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) 
     values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
     ratio = np.empty((modes.count, nodes.size), np.complex128)
     for block, matrix in _matrices(problem, problem.open_loop, modes, nodes):
-        ratio[:, block] = np.linalg.det(matrix)
+        ratio[:, block] = determinant_of(matrix)
         for wall, loop in enumerate(values):
             others = np.delete(np.delete(matrix, wall, axis=2), wall, axis=3)
-            loop[:, block] = 1.0 - ratio[:, block] / np.linalg.det(others)
+            loop[:, block] = 1.0 - ratio[:, block] / determinant_of(others)
         told(min(1.0, block.stop / nodes.size))
     return ratio, {shell: one for shell, one in zip(shells, values, strict=True) if one.any()}
 

@@ -17,7 +17,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import ShareDone
-from coaxshell.solver.electrode_loops import ElectrodeLoops
+from coaxshell.solver.electrode_loops import ElectrodeLoops, determinant_of
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of, segments_of
 from coaxshell.solver.margins import FURTHER, Loop, LoopMargins, followed, margins_of
 from coaxshell.solver.scaling import Problem
@@ -113,7 +113,7 @@ def _at(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexArray)
 def _alone(loops: ElectrodeLoops, wall: int) -> ComplexArray:
     """Return L of a wall in each pattern, (patterns, nodes)."""
     others = np.delete(np.delete(loops.matrix, wall, axis=2), wall, axis=3)
-    return np.asarray(1.0 - np.linalg.det(loops.matrix) / np.linalg.det(others))
+    return np.asarray(1.0 - determinant_of(loops.matrix) / determinant_of(others))
 
 
 def _eigenvalues(loops: ElectrodeLoops, wall: int) -> ComplexArray:

@@ -34,7 +34,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.texts import rounded
 from coaxshell.numerics.winding import turning
-from coaxshell.solver.cascade import CascadeSystem
+from coaxshell.solver.cascade import CascadeSystem, FluidOperator
 from coaxshell.solver.coupling import ModalSystem, determinant
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
@@ -116,32 +116,39 @@ class OpenLoop:
 
 @dataclass(frozen=True)
 class FacedLoop:
-    """The system without feedback at some nodes where walls have two faces: its determinant, by the cascade."""
+    """The system without feedback at some nodes where walls have two faces: its determinant, by the cascade, and its fluids."""
 
     determinant: ComplexArray
+    fluids: Sequence[FluidOperator]
+
+    @classmethod
+    def of(cls, passive: Problem, nodes: ComplexArray, modes: Modes) -> FacedLoop:
+        """Return it for a problem without feedback."""
+        system = _of_faces(passive, nodes, modes)
+        return cls(system.determinant(), system.fluids)
 
     @property
     def nbytes(self) -> int:
-        """Bytes of it."""
-        return self.determinant.nbytes
+        """Bytes of all arrays."""
+        return self.determinant.nbytes + sum(x.nbytes for fluid in self.fluids for x in fluid if isinstance(x, np.ndarray))
 
     def closed(self, problem: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
         """Return D_m/D0_m; of thin walls under electrodes with what feedback leaves along the hoop."""
-        ratio = _of_faces(problem, nodes, modes) / self.determinant
+        ratio = _of_faces(problem, nodes, modes, self.fluids).determinant() / self.determinant
         for wall in problem.shells:
             if wall.faces_move_alike and wall.gains is not None:
                 ratio = ratio * (1.0 - wall.gains.at(nodes, modes) * wall.fed_back_along(modes, nodes))
         return np.asarray(ratio)
 
 
-def _of_faces(problem: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
+def _of_faces(problem: Problem, nodes: ComplexArray, modes: Modes, fluids: Sequence[FluidOperator] | None = None) -> CascadeSystem:
     with one_blas_thread():  # many small matrices
-        return CascadeSystem(problem, nodes, modes).determinant()
+        return CascadeSystem(problem, nodes, modes, fluids=fluids)
 
 
 def opened(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None) -> OpenLoop | FacedLoop:
     """Return a problem without feedback; ``passive`` is it, made once for all nodes."""
-    return FacedLoop(_of_faces(passive, nodes, modes)) if problem.two_faced else OpenLoop.of(problem, nodes, modes, shared)
+    return FacedLoop.of(passive, nodes, modes) if problem.two_faced else OpenLoop.of(problem, nodes, modes, shared)
 
 
 def with_gains(problem: Problem, proportional: float, derivative: float) -> Problem:
@@ -269,7 +276,8 @@ def turned(
     nodes = contour.beyond(*ends.tolist())
     ratio = ratio_at(nodes, modes)
     for _ in range(_HALVINGS):  # a pole of strong feedback may lie there, close to the contour
-        quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > SPACING
+        turns_on = (np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])) > SPACING) & (nodes.imag[:-1] >= reached[:, None])
+        quick = turns_on.any(axis=0)  # of orders whose even nodes end there
         if not quick.any():
             break
         between = 0.5 * (nodes[1:] + nodes[:-1])[quick]

@@ -36,7 +36,7 @@ from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 from coaxshell.structure.shell_model import Gain
 
-_BLOCK = 512
+_BLOCK = 513  # a block of a contour shares a node with the next one
 _SPACING = 0.8
 _HALVINGS = 8
 _STARTS, _ITERATIONS = 12, 40
