@@ -120,8 +120,8 @@ ELASTIC = (
     Mutation(
         "solid-far-shapes",
         "structure/shape_sums.py",
-        "-np.sign(place) / (np.abs(place) + root)",
-        "np.sign(place) / (np.abs(place) + root)",
+        "-np.sign(fixed) * slope / (np.abs(fixed) + root)",
+        "np.sign(fixed) * slope / (np.abs(fixed) + root)",
         "polynomial of the shapes that do not resonate in a block: alternating above, not below",
         "structure/test_shape_sums.py",
     ),

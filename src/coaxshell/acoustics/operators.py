@@ -56,13 +56,27 @@ def annulus_amplitudes(inner: RadialFunctions, outer: RadialFunctions) -> Annulu
 def annulus(inner: RadialFunctions, outer: RadialFunctions) -> AnnulusOperator:
     """Return the wall operator of the annulus between two radii.
 
-    Reciprocity, r_a * ab = -r_b * ba, follows from the Wronskian and is kept to rounding.
+    With D = kr I'(kr)/I(kr) and E = kr K'(kr)/K(kr) at both, X = I(k ra)/I(k rb) and Y = K(k rb)/K(k ra),
+
+        aa = ra (D_b - X Y E_b)/N,    ab = rb X (E_a - D_a)/N,    ba = ra Y (D_b - E_b)/N,    bb = rb (E_a - X Y D_a)/N,
+
+    N = D_b E_a - X Y D_a E_b: what the amplitudes above give, by one division. Reciprocity, r_a * ab = -r_b * ba, follows from the
+    Wronskian and is kept to rounding.
     """
-    eps_i, eps_k, determinant = annulus_amplitudes(inner, outer)
-    both = eps_i * eps_k
-    return AnnulusOperator(
-        aa=(inner.exterior - both * inner.disc) / determinant,
-        ab=eps_i * (inner.disc - inner.exterior) / determinant,
-        ba=eps_k * (outer.exterior - outer.disc) / determinant,
-        bb=(outer.disc - both * outer.exterior) / determinant,
-    )
+    d_a, d_b, e_a, e_b = inner.i_slope, outer.i_slope, inner.k_slope, outer.k_slope
+    x, y = i_across(inner, outer), k_across(inner, outer)
+    both = x * y
+    aa, bb = both * e_b, both * d_a
+    inverse = d_b * e_a
+    inverse -= aa * d_a
+    np.reciprocal(inverse, out=inverse)
+    np.subtract(d_b, aa, out=aa)
+    np.subtract(e_a, bb, out=bb)
+    within, beyond = inverse * inner.radius, np.multiply(inverse, outer.radius, out=inverse)
+    aa *= within
+    bb *= beyond
+    x *= np.subtract(e_a, d_a, out=both)
+    x *= beyond
+    y *= np.subtract(d_b, e_b, out=both)
+    y *= within
+    return AnnulusOperator(aa, x, y, bb)

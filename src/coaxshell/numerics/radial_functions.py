@@ -71,24 +71,27 @@ class RadialFunctions:
         return k_sample(self.orders.astype(np.int64), self.argument)
 
     @cached_property
-    def disc(self) -> ComplexArray:
-        """I_m(kr)/(k I_m'(kr)) = r/(m + kr R_m) (DLMF 10.29.2), shape (M, n).
+    def i_slope(self) -> ComplexArray:
+        """kr I_m'(kr)/I_m(kr) = m + kr R_m (DLMF 10.29.2), shape (M, n)."""
+        slope = self.argument * (self.i_sample.ratio if self.sparse else self.keep(self.i_ratios))
+        slope += self.orders[:, None]
+        return slope
 
-        Wall pressure per unit wall acceleration of a disc of radius r.
-        """
-        derivative = self.argument * (self.i_sample.ratio if self.sparse else self.keep(self.i_ratios))
-        derivative += self.orders[:, None]
-        return np.divide(self.radius, derivative, out=derivative)
+    @cached_property
+    def k_slope(self) -> ComplexArray:
+        """kr K_m'(kr)/K_m(kr) = m - kr S_m (DLMF 10.29.2), shape (M, n)."""
+        slope = self.argument * (self.k_sample.ratio if self.sparse else self.keep(self.k_ratios))
+        return np.subtract(self.orders[:, None], slope, out=slope)
+
+    @cached_property
+    def disc(self) -> ComplexArray:
+        """I_m(kr)/(k I_m'(kr)) = r/(m + kr R_m), shape (M, n): wall pressure per unit wall acceleration of a disc of radius r."""
+        return np.asarray(self.radius / self.i_slope)
 
     @cached_property
     def exterior(self) -> ComplexArray:
-        """K_m(kr)/(k K_m'(kr)) = r/(m - kr S_m) (DLMF 10.29.2), shape (M, n).
-
-        Wall pressure per unit wall acceleration of the unbounded fluid outside radius r.
-        """
-        derivative = self.argument * (self.k_sample.ratio if self.sparse else self.keep(self.k_ratios))
-        np.subtract(self.orders[:, None], derivative, out=derivative)
-        return np.divide(self.radius, derivative, out=derivative)
+        """K_m(kr)/(k K_m'(kr)) = r/(m - kr S_m), shape (M, n): the same of the unbounded fluid outside radius r."""
+        return np.asarray(self.radius / self.k_slope)
 
 
 def i_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:

@@ -200,6 +200,22 @@ class CascadeSystem:
             beyond = w_inner
         return found[::-1]
 
+    def gap_compliance(self) -> tuple[tuple[ComplexArray, ComplexArray], tuple[ComplexArray, ComplexArray]]:
+        """Return the displacements of both faces of the one gap of two walls per inward pressure on either, first on the inner wall.
+
+        Each face seen with all behind it is a receptance, w_a = y_a q_a and w_b = y_b q_b, and the gap ties both to each other,
+        q_a = p_a + g (aa w_a + ab w_b), q_b = p_b - g (ba w_a + bb w_b): two equations instead of two ways through all walls.
+        """
+        h, gap, sea = self.walls[1], self.fluids[1], self.fluids[2]
+        y_a, (r_i, r_o) = self._seen[0], self._radii[1]
+        divisor = 1.0 - h.outer * (r_o * sea.aa)
+        y_b = (h.inner + h.across * h.back * (r_o * sea.aa) / divisor) * r_i
+        alone_a, alone_b = self._gap_divisor[0], 1.0 + y_b * gap.bb
+        across = y_a * y_b
+        inverse = 1.0 / (alone_a * alone_b + across * gap.ab * gap.ba)
+        across *= inverse
+        return (y_a * alone_b * inverse, across * gap.ab), (-across * gap.ba, y_b * alone_a * inverse)
+
     def _driven(self, wall: int, inner: Entry, outer: Entry, pressure: Entry) -> Entry:
         """Return e of a wall: its faces would move by *inner* under P of what lies within, and by *outer* under all else; P: *pressure*."""
         if self._alike[wall]:

@@ -123,14 +123,15 @@ def _spectral_bytes(size: Size) -> float:
     n, plane = size.shells, size.plane
     linear = (2.0 + size.solids) * n * size.source_parities * plane
     linear *= 2.0 if size.reflections else 1.0  # a round's own and the one before
-    structure = linear + ((size.surfaces**2 + (0 if size.solids else n)) * plane if size.linked else 0.0)
+    units = size.surfaces**2 + (2.0 * n * size.surfaces if size.solids else n)  # of solids the loads on all faces
+    structure = linear + (units * plane if size.linked else 0.0)
     ports = 1.5 * (2.0 * size.solids - 1.0) * n * COMPLEX * _BLOCK_PAIRS * WORKERS if size.solids else 0.0  # rows of what solids answer
     solved = structure + size.tabulated * 5.5 * plane + _block_bytes(size, size.nodes) + ports
     tabulated = structure + size.tabulated * (9.0 * plane + 35.0 * size.orders * size.nodes)
     stages = [solved, tabulated, structure + COMPLEX * 513 * size.orders * (10.0 + 12.0 * n) * size.feedback]
     held = structure
     if size.linked:
-        forced = (2.0 + 2.0 * size.solids) * n * size.parities * plane  # of solids all that forces move, and all together
+        forced = (2.0 + size.solids) * n * size.parities * plane
         forces = REAL * 6.0 * size.points * size.instants
         working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
         stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.parities * plane]

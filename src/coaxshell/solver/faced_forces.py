@@ -11,10 +11,12 @@ real part of the kernels, so that the march cannot grow.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.convolution import summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -44,42 +46,30 @@ def surface_motion(problem: Problem, normal: ComplexArray, faces: ComplexArray) 
 
 def surfaces_of(problem: Problem, answers: list[WallAnswer]) -> ComplexArray:
     """Return the displacements of all surfaces, shape (surfaces, orders, nodes), from what the walls do."""
-    return np.stack(_moved(problem, [answer.faces for answer in answers]))
+    return np.stack(moved_surfaces(problem, [answer.faces for answer in answers]))
 
 
-def _moved(problem: Problem, faces: list[FaceMotion]) -> list[ComplexArray]:
+def moved_surfaces(problem: Problem, faces: list[FaceMotion]) -> list[ComplexArray]:
     """Return the displacement of each surface, of shape (orders, nodes)."""
     return [faces[i].inner if side == 0 else faces[i].outer for i, side, _ in problem.surfaces]
 
 
-def surface_compliance(
-    problem: Problem, grid: LaplaceGrid, s: ComplexArray, modes: Modes, progress: Progress | None = None
-) -> ComplexArray:
+def surface_compliance(problem: Problem, s: ComplexArray, modes: Modes) -> ComplexArray:
     """Return the displacement of every surface per modal pressure on every other, shape (surfaces, surfaces, orders, nodes).
 
     Parameters
     ----------
     problem : Problem
         Its walls resolve the waves of the nodes.
-    grid : LaplaceGrid
-        As many nodes as *s* has, by which they are divided into blocks.
     s : ndarray, shape (nodes,)
+        A block of nodes.
     modes : Modes
-    progress : callable, optional
     """
-    count = len(problem.surfaces)
-    found = np.empty((count, count, modes.count, s.size), np.complex128)
-    make_shapes(problem, modes, s)
-
-    def work(block: slice) -> None:
-        cascade = CascadeSystem(problem, s[block], modes)  # what walls show beside their faces is not asked for
-        for j, surface in enumerate(problem.surfaces):
-            for i, moved in enumerate(_moved(problem, cascade.solve(surface.shell, 1.0, surface.side))):
-                found[i, j, :, block] = moved
-
-    with one_blas_thread():
-        map_node_blocks(node_blocks(grid, modes.count), work, progress, "frequencies")
-    return found
+    cascade = CascadeSystem(problem, s, modes)  # what walls show beside their faces is not asked for
+    if [(one.shell, one.side) for one in problem.surfaces] == [(0, 1), (1, 0)]:
+        return np.array(cascade.gap_compliance())
+    columns = [moved_surfaces(problem, cascade.solve(surface.shell, 1.0, surface.side)) for surface in problem.surfaces]
+    return np.stack([np.stack([column[i] for column in columns]) for i in range(len(columns))])
 
 
 def moved_by_forces(
@@ -122,19 +112,52 @@ def moved_by_forces(
     return found
 
 
+Pair = tuple[int, int]
+"""Numbers of a surface and of one that is pressed on."""
+
+
 def march_weights(problem: Problem, grid: LaplaceGrid, modes: Modes, progress: Progress | None = None) -> FloatArray:
     """Return the step weights of modal pressures in the velocities of the surfaces, shape (surfaces, surfaces, orders, T).
 
     The velocity of surface i at t_n is sum_k weights[i, j, :, k] p_j(t_(n - k)); ``grid`` is that of the march.
     """
-    fine, s = trapezoidal_nodes(grid)
-    spectrum = surface_compliance(problem.resolving(band(fine)), fine, s, modes, progress)
     count = len(problem.surfaces)
-    found = np.empty((count, count, modes.count, grid.time.size))
-    for i in range(count):
-        for j in range(count):
-            found[i, j] = step_weights(spectrum[i, j], fine, s, grid)
-    return found
+    pairs = [(i, j) for i in range(count) for j in range(count)]
+    found = combined_march_weights(problem, grid, modes, {pair: np.eye(modes.count) for pair in pairs}, progress)
+    return np.stack([found[pair] for pair in pairs]).reshape(count, count, modes.count, -1)
+
+
+def combined_march_weights(
+    problem: Problem, grid: LaplaceGrid, modes: Modes, shares: Mapping[Pair, FloatArray], progress: Progress | None = None
+) -> dict[Pair, FloatArray]:
+    """Return step weights of :func:`march_weights` of some pairs of surfaces, combined over the orders before they are inverted.
+
+    Parameters
+    ----------
+    problem : Problem
+    grid : LaplaceGrid
+    modes : Modes
+    shares : dict of (int, int) to ndarray, shape (rows, orders)
+        Of each pair.
+    progress : callable, optional
+
+    Returns
+    -------
+    dict of (int, int) to ndarray, shape (rows, T)
+    """
+    fine, s = trapezoidal_nodes(grid)
+    problem = problem.resolving(band(fine))
+    make_shapes(problem, modes, s)
+    found = {pair: np.empty((len(rows), s.size), np.complex128) for pair, rows in shares.items()}
+
+    def work(block: slice) -> None:
+        values = surface_compliance(problem, s[block], modes)
+        for pair, rows in shares.items():
+            found[pair][:, block] = real_product(rows, values[pair])
+
+    with one_blas_thread():
+        map_node_blocks(node_blocks(fine, modes.count), work, progress, "frequencies")
+    return {pair: step_weights(spectrum, fine, s, grid) for pair, spectrum in found.items()}
 
 
 def trapezoidal_nodes(grid: LaplaceGrid) -> tuple[LaplaceGrid, ComplexArray]:

@@ -6,8 +6,9 @@ on the faces give everything within it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,6 @@ from coaxshell.numerics.progress import Progress
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.excitation import SurfaceLoads
 from coaxshell.solver.scaling import Problem, Surface
-from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import slid_of
@@ -55,11 +55,13 @@ class FacedSystem:
     problem : Problem
     s : ndarray, shape (nodes,)
     modes : Modes
+    some : slice, optional
+        What of each wall is read: all, or :data:`MOTION` alone.
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes) -> None:
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, some: slice = slice(None)) -> None:
         self._problem, self._s, self._modes = problem, s, modes
-        ports = [_port(wall, modes, s) for wall in problem.shells]
+        ports = [port(wall, modes, s, some) for wall in problem.shells]
         self.cascade = CascadeSystem(problem, s, modes, walls=[receptance for receptance, _ in ports])
         self.radial = self.cascade.radial
         self._reading: list[ComplexArray | WallOperator] = [reading for _, reading in ports]
@@ -67,7 +69,7 @@ class FacedSystem:
 
     def under_sources(self, load: ComplexArray) -> list[WallAnswer]:
         """Return what all walls do under a pressure on the surface that the exterior fluid wets."""
-        return [self._answer(reading, faces) for reading, faces in zip(self._reading, self.cascade.solve_outside(load), strict=True)]
+        return [read(reading, faces) for reading, faces in zip(self._reading, self.cascade.solve_outside(load), strict=True)]
 
     def under_force(self, surface: Surface, load: ComplexArray | float) -> list[WallAnswer]:
         """Return what all walls do under an inward pressure on one surface of a wall."""
@@ -134,14 +136,16 @@ class FacedSystem:
     def _together(self, each: Sequence[Sequence[FaceMotion]]) -> list[WallAnswer]:
         """Return what all walls do in several motions of their faces at once."""
         faces = [FaceMotion(*(sum(parts[1:], parts[0]) for parts in zip(*moving, strict=True))) for moving in zip(*each, strict=True)]
-        return [self._answer(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
+        return [read(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
 
-    def _answer(self, reading: ComplexArray | WallOperator, faces: FaceMotion) -> WallAnswer:
-        if isinstance(reading, WallOperator):
-            axial = 0.0 if reading.axial is None else reading.axial * faces.outer
-            return WallAnswer(faces.outer, reading.tangential * faces.outer, 0.0, [], faces, axial)
-        normal, tangential, hoop, *potentials = reading[:, 0] * faces.load_inner + reading[:, 1] * faces.load_outer
-        return WallAnswer(normal, tangential, hoop, potentials, faces)
+
+def read(reading: ComplexArray | WallOperator, faces: FaceMotion) -> WallAnswer:
+    """Return what a wall does whose faces move so; ``reading`` is what it shows by :func:`port`."""
+    if isinstance(reading, WallOperator):
+        axial = 0.0 if reading.axial is None else reading.axial * faces.outer
+        return WallAnswer(faces.outer, reading.tangential * faces.outer, 0.0, [], faces, axial)
+    normal, tangential, *more = reading[:, 0] * faces.load_inner + reading[:, 1] * faces.load_outer
+    return WallAnswer(normal, tangential, more[0] if more else 0.0, more[1:], faces)
 
 
 def sensed_place(wall: ElasticWall) -> int:
@@ -151,9 +155,94 @@ def sensed_place(wall: ElasticWall) -> int:
     return place
 
 
-def _port(wall: ShellModel, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray | WallOperator]:
-    """Return how a wall answers, and what it shows: per load on either face, (3 or more, 2, orders, nodes), or of one W per W."""
-    return wall.two_port(modes, s) if isinstance(wall, ElasticWall) else (wall.receptance(modes, s), wall.operator(modes, s))
+def port(wall: ShellModel, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> tuple[FaceReceptance, ComplexArray | WallOperator]:
+    """Return how a wall answers, and what it shows: per load on either face, (3 or more, 2, orders, nodes), or of one W per W.
+
+    Of walls of solids without control ``some`` of that alone, if asked for.
+    """
+    if not isinstance(wall, ElasticWall):
+        return wall.receptance(modes, s), wall.operator(modes, s)
+    return wall.two_port(modes, s) if wall.shows_control else wall.two_port(modes, s, some)
+
+
+MOTION, STRESS, POTENTIALS = slice(0, 2), slice(2, 3), slice(3, None)
+"""Places of what a wall shows: W and V, the hoop stress at its design depth, and potentials."""
+
+
+class Written(NamedTuple):
+    """What walls show beside the motion of their references, as it has been put down (:class:`SolidSpectra`)."""
+
+    faces: ComplexArray
+    hoop: ComplexArray
+    potentials: ComplexArray
+
+
+class Unread:
+    """What walls show beside the motion of their references, read from the loads on the faces when it is first asked for.
+
+    Many runs never do. Voltages from without are no loads.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its walls resolve the waves of the grid.
+    grid : LaplaceGrid
+    modes : Modes
+    normal : ndarray, shape (shells, parities, M + 1, nodes)
+        W.
+    loads : ndarray, shape (2, shells, parities, M + 1, nodes)
+    """
+
+    def __init__(self, problem: Problem, grid: LaplaceGrid, modes: Modes, normal: ComplexArray, loads: ComplexArray) -> None:
+        self.problem, self._grid, self._modes, self._normal, self._loads = problem, grid, modes, normal, loads
+
+    @cached_property
+    def faces(self) -> ComplexArray:
+        """Displacements of the faces: w_a = sum_b H_ab r_b q_b, where they move alike W."""
+        found = np.stack([self._normal, self._normal])
+
+        def work(wall: ElasticWall, shell: int, block: slice) -> None:
+            h, (inner, outer) = wall.receptance(self._modes, self._grid.nodes[block]), wall.wetted
+            on_inner, on_outer = (r * q for r, q in zip((inner, outer), self._loads[:, shell, ..., block], strict=True))
+            found[0, shell, ..., block] = h.inner * on_inner + h.across * on_outer
+            found[1, shell, ..., block] = h.back * on_inner + h.outer * on_outer
+
+        self._each(work)
+        return found
+
+    @cached_property
+    def hoop(self) -> ComplexArray:
+        """Hoop stress at the design depths."""
+        return np.asarray(self._shown(STRESS, 1)[0])
+
+    @cached_property
+    def potentials(self) -> ComplexArray:
+        """Open-circuit voltages."""
+        return self._shown(POTENTIALS, _layers(self.problem))
+
+    def _shown(self, some: slice, count: int) -> ComplexArray:
+        found = np.zeros((count, *self._normal.shape), np.complex128)
+
+        def work(wall: ElasticWall, shell: int, block: slice) -> None:
+            per_load = wall.two_port(self._modes, self._grid.nodes[block], some)[1]  # under control all of it has been put down
+            inner, outer = self._loads[:, shell, ..., block]
+            for row, (by_inner, by_outer) in zip(found, per_load, strict=False):  # a wall may have fewer layers
+                row[shell, ..., block] = by_inner * inner + by_outer * outer
+
+        self._each(work)
+        return found
+
+    def _each(self, work: Callable[[ElasticWall, int, slice], None]) -> None:
+        """Do the work for each wall of solids at each block of nodes."""
+        make_shapes(self.problem, self._modes, self._grid.nodes)
+
+        def of_block(block: slice) -> None:
+            for shell, wall in enumerate(self.problem.shells):
+                if isinstance(wall, ElasticWall):
+                    work(wall, shell, block)
+
+        with one_blas_thread():
+            map_node_blocks(node_blocks(self._grid, self._modes.max_order), of_block, None, "motion within the walls")
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,43 +253,68 @@ class SolidSpectra:
     ----------
     normal, tangential : ndarray, shape (shells, parities, M + 1, nodes)
         W and V of the reference surfaces.
-    hoop : ndarray, same shape
-        Hoop stress of elastic walls at their design depths, in rho_e c_e^2; 0 of others.
-    faces, loads : ndarray, shape (2, shells, parities, M + 1, nodes)
-        Displacements of the inner and the outer faces and the loads on them, positive inward.
-    potentials : ndarray, shape (layers, shells, parities, M + 1, nodes)
-        Open-circuit voltages of the piezoelectric layers of elastic walls, V, from the inside out; 0 of walls with fewer.
+    loads : ndarray, shape (2, shells, parities, M + 1, nodes)
+        Loads on the inner and the outer faces, positive inward.
+    beside : Written or Unread
+        What else walls show: it has been put down, or is read when it is first asked for.
     """
 
     normal: ComplexArray
     tangential: ComplexArray
-    hoop: ComplexArray
-    faces: ComplexArray
     loads: ComplexArray
-    potentials: ComplexArray
+    beside: Written | Unread
+
+    @property
+    def faces(self) -> ComplexArray:
+        """Displacements of the inner and the outer faces, positive inward, shape (2, shells, parities, M + 1, nodes)."""
+        return self.beside.faces
+
+    @property
+    def hoop(self) -> ComplexArray:
+        """Hoop stress of elastic walls at their design depths, in rho_e c_e^2, shape (shells, parities, M + 1, nodes); 0 of others."""
+        return self.beside.hoop
+
+    @property
+    def potentials(self) -> ComplexArray:
+        """Open-circuit voltages of the piezoelectric layers of elastic walls, V, from the inside out; 0 of walls with fewer.
+
+        Shape (layers, shells, parities, M + 1, nodes).
+        """
+        return self.beside.potentials
 
     def put(self, parity: int, nodes: slice, answers: Sequence[WallAnswer]) -> None:
         """Put down what all walls do, in one parity at a slice of the nodes; what thin walls do not show stays 0."""
         for shell, wall in enumerate(answers):
-            at = (shell, parity, slice(None), nodes)
-            self.normal[at], self.tangential[at] = wall.normal, wall.tangential
-            if isinstance(wall.hoop, np.ndarray):
-                self.hoop[at] = wall.hoop
-            for layer, potential in enumerate(wall.potentials):
-                self.potentials[(layer, *at)] = potential
+            self.put_read(shell, parity, nodes, wall)
             for side in (0, 1):
-                self.faces[(side, *at)], self.loads[(side, *at)] = wall.faces[side], wall.faces[2 + side]
+                self.loads[side, shell, parity, :, nodes] = wall.faces[2 + side]
+                if isinstance(self.beside, Written):
+                    self.beside.faces[side, shell, parity, :, nodes] = wall.faces[side]
+
+    def put_read(self, shell: int, parity: int, nodes: slice, wall: WallAnswer) -> None:
+        """Put down what one wall shows of itself."""
+        at = (shell, parity, slice(None), nodes)
+        self.normal[at], self.tangential[at] = wall.normal, wall.tangential
+        if isinstance(wall.hoop, np.ndarray):
+            self.beside.hoop[at] = wall.hoop
+        for layer, potential in enumerate(wall.potentials):
+            self.beside.potentials[(layer, *at)] = potential
 
     def plus(self, other: SolidSpectra) -> SolidSpectra:
         """Return both motions together; parities that one of them lacks are at rest there."""
-        parts = (self.normal, self.tangential, self.hoop, self.faces, self.loads, self.potentials)
-        others = (other.normal, other.tangential, other.hoop, other.faces, other.loads, other.potentials)
-        return SolidSpectra(*(_together(a, b) for a, b in zip(parts, others, strict=True)))
+        normal, tangential, loads = (_together(getattr(self, x), getattr(other, x)) for x in ("normal", "tangential", "loads"))
+        beside = Written(*(_together(getattr(self, name), getattr(other, name)) for name in Written._fields))
+        return SolidSpectra(normal, tangential, loads, beside)
+
+    @property
+    def layers(self) -> int:
+        """How many potentials there are."""
+        return len(self.beside.potentials) if isinstance(self.beside, Written) else _layers(self.beside.problem)
 
     @property
     def nbytes(self) -> int:
-        """Bytes beside W and V."""
-        return self.hoop.nbytes + self.faces.nbytes + self.loads.nbytes + self.potentials.nbytes
+        """Bytes beside W and V, of all that may be read."""
+        return 2 * self.loads.nbytes + (1 + self.layers) * self.normal.nbytes
 
 
 def _together(a: ComplexArray, b: ComplexArray) -> ComplexArray:
@@ -218,12 +332,32 @@ class FacedMotion(NamedTuple):
     loads: ComplexArray
 
 
+def _layers(problem: Problem) -> int:
+    """Return how many potentials the wall that shows most has."""
+    return max(wall.shown_potentials for wall in problem.shells if isinstance(wall, ElasticWall))
+
+
 def nothing_moves(problem: Problem, parities: int, orders: int, nodes: int) -> SolidSpectra:
     """Return transforms of walls at rest, of a structure some of whose walls have two faces."""
     shape = (len(problem.shells), parities, orders, nodes)
-    layers = max(wall.shown_potentials for wall in problem.shells if isinstance(wall, ElasticWall))
-    motion, faces, potentials = (np.zeros((n, *shape), np.complex128) for n in (3, 4, layers))
-    return SolidSpectra(motion[0], motion[1], motion[2], faces[:2], faces[2:], potentials)
+    layers = _layers(problem)
+    normal, tangential, hoop = (np.zeros(shape, np.complex128) for _ in range(3))  # apart: memory is had again by what is not too large
+    faces, loads = (np.zeros((2, *shape), np.complex128) for _ in range(2))
+    return SolidSpectra(normal, tangential, loads, Written(faces, hoop, np.zeros((layers, *shape), np.complex128)))
+
+
+def room_for(problem: Problem, grid: LaplaceGrid, modes: Modes, loads: ComplexArray) -> tuple[SolidSpectra, slice]:
+    """Return where to put all that walls do under loads on their faces, known or to be put there too, and what of it is read now.
+
+    W and V; where walls are under control the voltages too, and with them all but the motion of the faces.
+    """
+    normal, tangential = (np.empty(loads.shape[1:], np.complex128) for _ in range(2))
+    beside = Unread(problem, grid, modes, normal, loads)
+    found = SolidSpectra(normal, tangential, loads, beside)
+    if not any(wall.shows_control for wall in problem.shells):
+        return found, MOTION
+    vars(beside).update(hoop=np.zeros_like(normal), potentials=np.zeros((_layers(problem), *normal.shape), np.complex128))
+    return found, slice(None)
 
 
 def make_shapes(problem: Problem, modes: Modes, s: ComplexArray) -> None:
@@ -233,33 +367,23 @@ def make_shapes(problem: Problem, modes: Modes, s: ComplexArray) -> None:
             wall.two_port(modes, s[:1])
 
 
-def solid_spectra(
-    problem: Problem,
-    grid: LaplaceGrid,
-    modes: Modes,
-    shared: SharedParts | None = None,
-    progress: Progress | None = None,
-    returned: ComplexArray | None = None,
-) -> SolidSpectra:
-    """Return all transforms of a structure under its sources.
+def solid_spectra(problem: Problem, grid: LaplaceGrid, modes: Modes, loads: SurfaceLoads, progress: Progress | None = None) -> SolidSpectra:
+    """Return all transforms of a structure under the loads of its sources.
 
     Parameters
     ----------
     problem : Problem
     grid : LaplaceGrid
     modes : Modes
-    shared : SharedParts, optional
-        Where modal loads are found, or left for others.
+    loads : SurfaceLoads
     progress : callable, optional
-    returned : ndarray, shape (parities, M + 1, nodes), optional
-        Load of what the planes of the sea send back.
     """
-    loads = SurfaceLoads(problem, grid, modes, shared, returned)
-    found = nothing_moves(problem, loads.parities, modes.count, grid.nodes.size)
+    shape = (2, len(problem.shells), loads.parities, modes.count, grid.nodes.size)
+    found, read_now = room_for(problem, grid, modes, np.empty(shape, np.complex128))
     make_shapes(problem, modes, grid.nodes)
 
     def work(block: slice) -> None:
-        system = FacedSystem(problem, grid.nodes[block], modes)
+        system = FacedSystem(problem, grid.nodes[block], modes, read_now)
         for parity, load in enumerate(loads(system.radial, block)):
             found.put(parity, block, system.under_sources(load))
 

@@ -206,8 +206,8 @@ class ModalSolution(JudgedLate):
     estimates: Estimates
     warnings: tuple[str, ...] = field(default_factory=tuple)
     timings: dict[str, float] = field(default_factory=dict)
-    hoop: FloatArray | None = None
-    potentials: FloatArray | None = None
+    hoop: FloatArray | None = field(default_factory=type(None))  # no default of the class: it may be read later
+    potentials: FloatArray | None = field(default_factory=type(None))
     normal_rate: FloatArray | None = None
     tangential_rate: FloatArray | None = None
     absorber_displacement: FloatArray | None = None
@@ -237,8 +237,36 @@ class ModalSolution(JudgedLate):
         """Take over estimates and warnings of the run that this is a part of, when either is first read."""
         super().judge_when_read(lambda _: Judgement(run.estimates, run.warnings))
 
+    def make_when_read(self, name: str, make: Callable[[], FloatArray]) -> None:
+        """Leave a history to be made of the transforms when it is first read: now where they are not kept, and of a run that is copied."""
+        here = vars(self)
+        if self.spectra is None:
+            here[name] = make()
+            return
+        here.pop(name, None)
+        here["_later"] = {**self._left, name: make}
+
+    @property
+    def _left(self) -> dict[str, Callable[[], FloatArray]]:
+        found: dict[str, Callable[[], FloatArray]] = vars(self).get("_later", {})
+        return found
+
+    def here(self, name: str) -> bool:
+        """Whether a history need not be made yet."""
+        return name in vars(self)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what is not here until it is read."""
+        if name in (left := vars(self).get("_later", {})):
+            vars(self)[name] = left[name]()
+            left.pop(name, None)  # with all that it needs
+            return vars(self)[name]
+        return super().__getattr__(name)
+
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy takes over: all but the transforms."""
+        for name in tuple(self._left):
+            getattr(self, name)
         return {**self._judged(), "spectra": None}
 
     def field(self, name: str) -> FloatArray:

@@ -13,13 +13,15 @@ from coaxshell.model.feedback import Feedback
 from coaxshell.model.gains import limits_voltages, saturates
 from coaxshell.model.parts import laws_of
 from coaxshell.model.system import System
+from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.finite import require_finite
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.actuation import pressure_asked, voltage_asked
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.dimensions import require_two_dimensions
 from coaxshell.solver.excitation import source_parities
-from coaxshell.solver.finite import numerical_failures, require_finite_stages
+from coaxshell.solver.finite import FINER, numerical_failures, require_finite_stages
 from coaxshell.solver.interface.absorbers import absorber_set
 from coaxshell.solver.interface.linked import solve_linked
 from coaxshell.solver.judgement import judgement
@@ -28,6 +30,7 @@ from coaxshell.solver.reflections import reflected
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.solver.solid_spectra import SolidSpectra
 from coaxshell.solver.solution import Estimates, ModalSolution
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.stability import require_stable
@@ -153,10 +156,6 @@ def _solved(
         stopwatch.lap("absorbers and saturation")
     require_finite_stages(solved)
     w, v = (grid.invert(x)[..., keep] for x in (solved.normal, solved.tangential))
-    hoop = potentials = None
-    if solved.solid is not None:
-        hoop = grid.invert(solved.solid.hoop)[..., keep]
-        potentials = grid.invert(solved.solid.potentials)[..., keep] if solved.solid.potentials.size else None
     correction = np.zeros_like(w) if saturate else None
     w_rate = v_rate = asked = voltage = None
     by_order = not any(isinstance(law, Feedback) for law in laws_of(system)) and not problem.two_faced and solved.voltage is None
@@ -176,8 +175,6 @@ def _solved(
         v,
         Estimates.unknown(len(problem.shells)),
         timings=stopwatch.seconds,
-        hoop=hoop,
-        potentials=potentials,
         normal_rate=w_rate,
         tangential_rate=v_rate,
         absorber_displacement=solved.displacement[:, keep] if links.count else None,
@@ -187,5 +184,15 @@ def _solved(
         segment_voltage=None if solved.segments is None else solved.segments[..., keep],
     )
     solution.keep(solved)
+    if solved.solid is not None:
+        for name in ("hoop", "potentials") if solved.solid.layers else ("hoop",):
+            solution.make_when_read(name, partial(_of_solids, solved.solid, name, grid, keep))
     solution.judge_when_read(partial(judgement, solved=solved, asked_for=asked_for, asked=asked))
     return solution
+
+
+def _of_solids(solid: SolidSpectra, name: str, grid: LaplaceGrid, keep: slice) -> FloatArray:
+    """Return the histories of what walls of solids show beside their motion, at the instants that are kept."""
+    found = grid.invert(getattr(solid, name))[..., keep]
+    require_finite(found, name, remedy=FINER)
+    return found

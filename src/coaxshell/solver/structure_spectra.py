@@ -17,7 +17,8 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.excitation import SurfaceLoads
-from coaxshell.solver.faced_forces import march_weights, moved_by_forces, surface_compliance, surface_motion
+from coaxshell.solver.faced_answers import UnderSources, UnitFaces, answers_of_faces, read_within, under_pressures
+from coaxshell.solver.faced_forces import march_weights, moved_by_forces, surface_motion
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.kernels import sensor_rate_weights, velocity_weights, voltage_law, voltage_weights
 from coaxshell.solver.quadrature import trapezoidal_weights, unresolved_orders
@@ -36,7 +37,11 @@ class _UnitAnswers:
     ----------
     compliance, ratio : ndarray or None
         C_ij and V/W.
+    faces : UnitFaces or None
+        What loads act on all faces, where walls have two; its compliance is ``compliance``.
     kernels, kernels_transposed, kernels_with_voltage : KernelTable or None
+    marched : bool
+        Whether absorbers have marched whose kernels were added up over the orders before they were inverted.
     classes : dict
         Kernels added up by classes of orders, of lattices met so far (:mod:`coaxshell.solver.interface.seen`).
     sensor_rates : ndarray or None
@@ -47,9 +52,11 @@ class _UnitAnswers:
 
     compliance: ComplexArray | None = None
     ratio: ComplexArray | None = None
+    faces: UnitFaces | None = None
     kernels: KernelTable | None = None
     kernels_transposed: KernelTable | None = None
     kernels_with_voltage: KernelTable | None = None
+    marched: bool = False
     classes: dict[Hashable, KernelTable] = field(default_factory=dict)
     sensor_rates: FloatArray | None = None
     open_loop: _UnitAnswers | None = None
@@ -104,6 +111,7 @@ class StructureSpectra:
         self.units, self.notes, self.returned = units or _UnitAnswers(), notes, returned
         self._progress = progress
         self._under_sources: tuple[ComplexArray, ComplexArray] | None = None
+        self._faces: UnderSources | None = None
         self._solid: SolidSpectra | None = None
 
     def same_structure(self, problem: Problem) -> bool:
@@ -137,11 +145,7 @@ class StructureSpectra:
         """
         problem, grid, modes = self.problem, self.grid, self.modes
         if problem.two_faced:
-            if self._under_sources is None:
-                self._solid = solid_spectra(problem, grid, modes, self.shared, self._progress, self.returned)
-                self._under_sources = self._solid.normal, self._solid.tangential
-            if units and self.units.compliance is None:
-                self.units.compliance = surface_compliance(problem, grid, grid.nodes, modes, self._progress)
+            self._solve_faces(units=units)
             return
         count, each = len(problem.shells), (modes.count, grid.nodes.size)
         loads = SurfaceLoads(problem, grid, modes, self.shared, self.returned) if self._under_sources is None else None
@@ -171,7 +175,31 @@ class StructureSpectra:
         if units:
             self.units.compliance, self.units.ratio = compliance, ratio
 
+    def _solve_faces(self, *, units: bool) -> None:
+        """Do the same where walls have two faces, which are read within only where no forces are to come."""
+        problem, grid, modes, unknown = self.problem, self.grid, self.modes, self._solid is None and self._faces is None
+        loads = SurfaceLoads(problem, grid, modes, self.shared, self.returned) if unknown else None
+        if units and self.units.faces is None:
+            under, unit = answers_of_faces(problem, grid, modes, loads, self._progress)
+            self._faces, self.units.faces, self.units.compliance = under or self._faces, unit, unit.compliance
+        elif loads is not None:
+            self._solid = solid_spectra(problem, grid, modes, loads, self._progress)
+
+    @property
+    def faces(self) -> UnderSources:
+        """What the sources do to walls some of which have two faces: loads on all faces, displacements of the surfaces."""
+        self.solve(units=False)
+        if self._faces is None:
+            solid = self.solid
+            assert solid is not None
+            self._faces = UnderSources(solid.loads, surface_motion(self.problem, solid.normal, solid.faces))
+        return self._faces
+
     def _sources(self) -> tuple[ComplexArray, ComplexArray]:
+        if self.problem.two_faced:
+            solid = self.solid
+            assert solid is not None
+            return solid.normal, solid.tangential
         self.solve(units=False)
         assert self._under_sources is not None
         return self._under_sources
@@ -179,7 +207,10 @@ class StructureSpectra:
     @property
     def solid(self) -> SolidSpectra | None:
         """What walls of two faces do under the sources; None where there is none."""
-        self.solve(units=False)
+        if self.problem.two_faced:
+            self.solve(units=False)
+            if self._solid is None:
+                self._solid = read_within(self.problem, self.grid, self.modes, self.faces, self._progress)
         return self._solid
 
     @property
@@ -195,7 +226,7 @@ class StructureSpectra:
     @property
     def surface_motion(self) -> ComplexArray:
         """Displacements under the sources alone of the surfaces on which links act, shape (surfaces, parities, M + 1, nodes)."""
-        return self.normal if self.solid is None else surface_motion(self.problem, self.normal, self.solid.faces)
+        return self.faces.surfaces if self.problem.two_faced else self.normal
 
     @property
     def compliance(self) -> ComplexArray:
@@ -208,6 +239,8 @@ class StructureSpectra:
     def unit_bytes(self) -> int:
         """Bytes of the answers to unit pressures."""
         self.solve(units=True)
+        if self.units.faces is not None:
+            return self.units.faces.nbytes
         return sum(0 if x is None else x.nbytes for x in (self.units.compliance, self.units.ratio))
 
     @property
@@ -335,8 +368,11 @@ class StructureSpectra:
         pressure : ndarray, shape (surfaces, parities, M + 1, nodes)
             Transforms of modal pressures, positive inward.
         """
-        if self.solid is not None:
-            whole = self.solid.plus(moved_by_forces(self.problem, self.grid, self.modes, pressure, progress=self._progress))
+        if self.problem.two_faced:
+            self.solve(units=True)
+            assert self.units.faces is not None
+            moved = under_pressures(self.faces, self.units.faces, pressure)
+            whole = read_within(self.problem, self.grid, self.modes, moved, self._progress)
             return Moved(whole.normal, whole.tangential, whole)
         parities = max(pressure.shape[1], self.normal.shape[1])
         shape = (*pressure.shape[:1], parities, *pressure.shape[2:])

@@ -126,16 +126,19 @@ class ElasticWall(LayeredWall):
         loop = self.loop(modes, s)
         return FaceReceptance(*found) if loop is None else self._under_loop(FaceReceptance(*found), loop)
 
-    def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
+    def two_port(self, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes).
 
         W and V of the middle, hoop stress at the design depth and potentials in the middle of the piezoelectric layers, whose faces are
-        grounded, in the sign of the sensor equation. Under control two more: what the law reads, and the voltage that it gives.
+        grounded, in the sign of the sensor equation. Under control two more: what the law reads, and the voltage that it gives. Without
+        control ``some`` of it, if asked for.
         """
+        if self.transducers is None:
+            rows = [0, 1, 2, *range(3, 3 + 2 * len(self.asked_of_port))[2 * (some.start or 0) : some.stop and 2 * some.stop]]
+            found = self._summed(modes, s, [weights[:, rows] for weights in self._of_port(modes)])
+            return FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
         found = self._summed(modes, s, self._of_port(modes))
         shown = found[3:].reshape(-1, 2, *found.shape[1:])
-        if self.transducers is None:
-            return FaceReceptance(*found[:3]), shown
         loop = self._loop(modes, s, self._law(modes, s))
         shown = shown + self.signs_of(self.asked_of_port) * self._by_volts(modes, s, self.asked_of_port, loop)
         return self._under_loop(FaceReceptance(*found[:3]), loop), np.concatenate(

@@ -84,7 +84,7 @@ class LossySolidWall(ElasticWall):
 
     def prepare(self, modes: Modes) -> None:
         """Make the shapes of its pieces."""
-        self._port.prepare(modes)
+        self._kept_reading(tuple(self.asked_of_port)).prepare(modes)
         if self.driven_pieces is not None:
             self._driven(self.asked_of_port).prepare(modes)
 
@@ -97,12 +97,13 @@ class LossySolidWall(ElasticWall):
         found = self.answered(modes, s)
         return self._under_loop(found.receptance, self._closed_by(found, self._law(modes, s)))
 
-    def two_port(self, modes: Modes, s: ComplexArray) -> tuple[FaceReceptance, ComplexArray]:
+    def two_port(self, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes)."""
         if self.driven_pieces is not None:
             return self._port_under_loop(self.asked_of_port, modes, s)[:2]
-        chain, shown = self._port.at(modes, s)
-        shown[3:] *= -1.0  # potentials, as without losses
+        asked = self.asked_of_port[some]
+        chain, shown = self._kept_reading(tuple(asked)).at(modes, s)
+        shown *= self.signs_of(asked)  # of potentials, as without losses
         return _receptance(chain), self._per_load(shown)
 
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
@@ -222,9 +223,14 @@ class LossySolidWall(ElasticWall):
 
     # Readings
 
+    def _kept_reading(self, asked: tuple[Asked, ...]) -> WallReading:
+        if asked not in self._kept_readings:
+            self._kept_readings[asked] = self._reading(asked)
+        return self._kept_readings[asked]
+
     @cached_property
-    def _port(self) -> WallReading:
-        return self._reading(self.asked_of_port)
+    def _kept_readings(self) -> dict[tuple[Asked, ...], WallReading]:
+        return {}
 
     @cached_property
     def _stations(self) -> WallReading:

@@ -6,7 +6,8 @@ and A = (omega^2 + c)/h a term is (1/h)/(A + w), and
     1/(A + w) = +-1/sqrt(A^2 - 1) sum over k of (2 - [k = 0]) (-+1)^k rho^-k T_k(w),      rho = |A| + sqrt(A^2 - 1),
 
 upper signs where A > 0: real coefficients, which shapes of one order share as one polynomial. The nodes lie beside the axis of real z, on
-an ellipse of Bernstein's of size rho_w, and the rest after K terms is about (rho_w/rho)^K.
+an ellipse of Bernstein's of size rho_w, and the rest after K terms is about (rho_w/rho)^K. A block that reaches far, as the last of the
+trapezoidal rule do, is better seen by u = 1/z: a term is u/(1 + omega^2 u), and fewer shapes resonate.
 """
 
 from __future__ import annotations
@@ -88,25 +89,48 @@ def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> Com
 def _smooth(squares: FloatArray, z: ComplexArray, rows: int) -> _Smooth:
     """Return it; no terms where nodes are few or lie too far from a segment of the real axis."""
     orders, shapes = squares.shape
-    lowest, highest = float(z.real.min()), float(z.real.max())
-    centre, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest)
-    w = (z - centre) / half if half > 0.0 else np.full_like(z, np.inf)
-    root = np.sqrt(w * w - 1.0) if half > 0.0 else w
-    size = float(np.maximum(np.abs(w + root), np.abs(w - root)).max()) if half > 0.0 else math.inf
-    if size > WIDEST or z.size < FEWEST:
+    count, least = next((terms, ratio) for most, terms, ratio in CHOICES if rows <= most)
+    seen = [one for one in (_Seen.of(z, least), _Seen.of(1.0 / z, least)) if one is not None] if z.size >= FEWEST else []
+    if not seen:
         none = np.zeros(orders, dtype=np.int64)
         return _Smooth(none, none + shapes, np.zeros((orders, shapes, 0)), np.zeros((0, z.size), np.complex128))
-    count, least = next((terms, ratio) for most, terms, ratio in CHOICES if rows <= most)
-    place = (squares + centre) / half
-    edge = 0.5 * (least * size + 1.0 / (least * size))  # where rho is so much
-    below, above = place < -edge, place > edge
-    root = np.sqrt(np.where(below | above, place * place - 1.0, 1.0))
-    ratio = np.where(below | above, -np.sign(place) / (np.abs(place) + root), 0.0)
+    parts = [(one.centre + squares, one.half + 0.0 * squares) for one in seen[:1]]
+    parts += [(1.0 + squares * one.centre, squares * one.half) for one in seen[1:]]  # 1/(omega^2 + z) = u/(1 + omega^2 u), u = 1/z
+    far = [np.abs(fixed) > one.edge * slope for one, (fixed, slope) in zip(seen, parts, strict=True)]
+    best = int(np.argmax([np.count_nonzero(one) for one in far]))
+    (fixed, slope), smooth, w = parts[best], far[best], seen[best].places
+    root = np.sqrt(np.where(smooth, fixed * fixed - slope * slope, 1.0))
+    ratio = np.where(smooth, -np.sign(fixed) * slope / (np.abs(fixed) + root), 0.0)
     series = np.empty((orders, shapes, count))
-    series[..., 0] = np.where(below | above, np.sign(place) / (half * root), 0.0)
+    series[..., 0] = np.where(smooth, np.sign(fixed) / root, 0.0)
     series[..., 1:] = 2.0 * series[..., :1] * np.cumprod(np.broadcast_to(ratio[..., None], (orders, shapes, count - 1)), axis=-1)
     terms = np.empty((count, z.size), np.complex128)
     terms[0], terms[1] = 1.0, w
     for k in range(2, count):
         terms[k] = 2.0 * w * terms[k - 1] - terms[k - 2]
-    return _Smooth(np.count_nonzero(below, axis=1), shapes - np.count_nonzero(above, axis=1), series, terms)
+    if best:
+        terms /= z  # of u/(1 + omega^2 u)
+    low = smooth & ((fixed > 0.0) if best else (fixed < 0.0))
+    return _Smooth(np.count_nonzero(low, axis=1), shapes - np.count_nonzero(smooth & ~low, axis=1), series, terms)
+
+
+class _Seen(NamedTuple):
+    """A variable on a block, about real: its middle and half of its range, where the nodes are in these, and from where poles are far."""
+
+    centre: float
+    half: float
+    places: ComplexArray
+    edge: float
+
+    @classmethod
+    def of(cls, variable: ComplexArray, least: float) -> _Seen | None:
+        """Return it, of poles whose rho is *least* times that of the nodes; None where these lie too far from the axis."""
+        lowest, highest = float(variable.real.min()), float(variable.real.max())
+        centre, half = 0.5 * (lowest + highest), 0.5 * (highest - lowest)
+        if half <= 0.0:
+            return None
+        w = (variable - centre) / half
+        root = np.sqrt(w * w - 1.0)
+        size = float(np.maximum(np.abs(w + root), np.abs(w - root)).max())
+        rho = least * size
+        return None if size > WIDEST else cls(centre, half, w, 0.5 * (rho + 1.0 / rho))

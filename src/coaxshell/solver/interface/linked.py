@@ -58,6 +58,7 @@ def solve_linked(
         force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
         moved = Moved(structure.normal, structure.tangential, structure.solid)
         return SolvedSpectra(structure, absorbers, *moved, force, displacement)
+    structure.solve(units=True)  # in one pass with the sources, where nothing has been asked of it yet
     if absorbers.is_linear if exact is None else exact:
         if is_ring(absorbers) and structure.problem.point_force_shares is point_force_shares:
             found = solve_ring(structure, absorbers)

@@ -21,6 +21,7 @@ import numpy as np
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import KernelTable
+from coaxshell.solver.faced_forces import combined_march_weights
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints, PointsAlone
 from coaxshell.solver.interface.lattice import channels, folding
 from coaxshell.solver.kernels import combined_velocity_weights
@@ -67,7 +68,7 @@ class SeenStructure(StructureSpectra):
         held = np.unique(self.of_orders.surface).tolist()
         pairs = [(i, j) for i in held for j in held]
         if problem.two_faced:
-            return {(i, j): shares(i, j) @ whole.kernels.kernels[i, j] for i, j in pairs}
+            return self._faced_weights({(i, j): shares(i, j) for i, j in pairs})
         late = unresolved_orders(problem, grid, whole.modes)
         found = {
             (i, j): combined_velocity_weights(problem, grid, whole.compliance[i, j], (i, j), np.where(late, 0.0, shares(i, j)))
@@ -78,6 +79,14 @@ class SeenStructure(StructureSpectra):
             for i, j in pairs:
                 found[i, j] += shares(i, j)[:, late] @ late_weights[i, j]
         return found
+
+    def _faced_weights(self, shares: dict[tuple[int, int], FloatArray]) -> dict[tuple[int, int], FloatArray]:
+        """Return the same where walls have two faces: of the first absorbers by sums alone, of others by the kernels that all share."""
+        whole, fewer = self.whole, sum(len(rows) for rows in shares.values()) < len(shares) * self.modes.count
+        if whole.units.kernels is None and fewer and not whole.units.marched:
+            whole.units.marched = True
+            return combined_march_weights(self.problem, self.grid, self.modes, shares)
+        return {pair: rows @ whole.kernels.kernels[pair] for pair, rows in shares.items()}
 
 
 class StructureOfClasses(SeenStructure):
