@@ -48,7 +48,8 @@ class SprungWall(ShellModel):
     def energy(self, motion):
         weight = 0.5 * self.radius * motion.circle
         kinetic = self.mass * square(weight, motion.w_rate, motion.w_rate)
-        return WallEnergy(kinetic, self.spring * square(weight, motion.w, motion.w), np.zeros_like(kinetic))
+        held = self.spring * square(weight, motion.w, motion.w)
+        return WallEnergy(kinetic, held, np.zeros_like(kinetic))
 
     @property
     def dissipates(self):
