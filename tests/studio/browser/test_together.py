@@ -107,6 +107,24 @@ def test_a_link_holds_the_whole_system(server, small_page):
     assert system_of(page) == cx.presets.load("active")
 
 
+def test_the_last_link_followed_is_opened(small_page):
+    """Whatever is kept of the form in the address before the page hears of a link, and whichever answer comes first."""
+    page, links = small_page, {}
+    for preset in ("bare", "active"):
+        page.locator("#preset").select_option(label=preset)
+        links[preset] = address_of(page, cx.presets.load(preset).name)
+    page.evaluate("link => { const old = location.hash; location.hash = link; history.replaceState(null, '', old); }", links["bare"])
+    until(page, "window.coaxshell.state.system.control === null")
+    held = []
+    page.route("**/api/link/open", lambda route: route.continue_() if held else held.append(route))
+    page.evaluate("links => { for (const link of links) location.hash = link; }", [links["bare"], links["active"]])
+    until(page, "window.coaxshell.state.system.control !== null")
+    with page.expect_response("**/api/link/open"):
+        held[0].continue_()
+    page.wait_for_timeout(200)
+    assert system_of(page) == cx.presets.load("active")
+
+
 @pytest.mark.parametrize("ending", ["toml", "nc"])
 def test_a_file_comes_in_and_goes_out_again(small_page, tmp_path, ending):
     page = small_page

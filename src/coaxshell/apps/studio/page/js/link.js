@@ -15,9 +15,9 @@ export async function encode(content) {
   return "#s=" + btoa(text).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
 }
 
-// The fragment as the server's routes take it, or null when the address holds no system.
-export function held() {
-  return location.hash.startsWith("#s=") ? location.hash.slice(1) : null;
+// The fragment as the server's routes take it, or null when an address holds no system.
+export function held(hash = location.hash) {
+  return hash.startsWith("#s=") ? hash.slice(1) : null;
 }
 
 const isLong = ({ system }) => [system.source].flat().some((source) => source?.pulse?.time?.length > LONG);

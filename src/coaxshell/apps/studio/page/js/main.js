@@ -175,14 +175,19 @@ function adopt(system, { since, keepForm = false } = {}) {
   keepLink();
 }
 
-// A system described somewhere else: by a preset, in a file, in a link.
+// A system described somewhere else: by a preset, in a file, in a link. The last one asked for is opened, whichever comes back first.
+let opening = 0;
 async function open(body, from, path = "/api/validate") {
+  const mine = (opening += 1);
+  let problem;
   try {
     const answer = await request(path, { body });
-    if (answer.ok) return opened(answer, from);
-    toast(`Not opened. ${told(answer.problem)}`);
-  } catch (error) { toast(`Not opened. ${told(error)}`); }
-  return null;
+    if (mine !== opening) return true;
+    if (answer.ok) return Boolean(opened(answer, from));
+    problem = answer.problem;
+  } catch (error) { problem = error; }
+  if (mine === opening) toast(`Not opened. ${told(problem)}`);
+  return mine !== opening;
 }
 
 // The list of presets shows what the system was made from; choosing that one again starts anew.
@@ -417,7 +422,10 @@ function wire() {
   document.addEventListener("theme", () => { if (page.runs.current) drawRuns(); });
   tabs.onTab((name) => { drawTab(name); if (name === "studies") studies.fit(); if (page.system) keepLink(); });
   addEventListener("load", () => Object.keys(page.runs).length && drawRuns()); // plotly is read after the first request has gone: by now it is there
-  addEventListener("hashchange", () => link.held() && open({ fragment: link.held() }, "a link", "/api/link/open"));
+  addEventListener("hashchange", ({ newURL }) => { // not what the address is now: that may have been kept of the form meanwhile
+    const fragment = link.held(new URL(newURL).hash);
+    return fragment && open({ fragment }, "a link", "/api/link/open");
+  });
   files.setUp({ runs: () => page.runs, opened, described: content, films: () => page.world.films });
   studies.setUp(() => page, { preview, opened });
   designs.setUp(() => page, { previewOf, open, unit: () => page.unit, kept: guide.look });
