@@ -89,10 +89,12 @@ def test_the_best_is_the_library_s_and_can_be_adopted_and_taken_back(linked_page
     shown = dict(curves)["designs"]
     assert [value is None for value in shown] == [value is None for value in values]
     assert_allclose([1e3 * value for value in shown if value is not None], [value for value in values if value is not None], rtol=1e-12)
-    for theme in ("light", "dark")[: 1 + whole]:
-        assert page.evaluate("document.documentElement.dataset.theme") == theme
-        assert violations(page, "#more") == [], theme
+    themes = set()
+    for _ in range(1 + whole):  # the test before may have chosen either
+        themes.add(page.evaluate("document.documentElement.dataset.theme"))
+        assert violations(page, "#more") == [], themes
         page.locator("#theme").click()
+    assert len(themes) == 1 + whole
     before = system_of(page)
     page.locator("#study-use").click()
     until(page, "window.coaxshell.state.system.name.endsWith('optimised')")
