@@ -6,28 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from electrode_pairs import pairs
 
 import coaxshell as cx
 
-BASE = cx.presets.load("electrodes").replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4))
+PLANE = cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4)
 RUN: dict[str, Any] = {"duration": 0.6, "time_step": 2e-2, "modes": 3}
 MIXED = [[1.0, 0.5], [0.3, 0.8]]
 
 
-def under(
-    matrix: Any, theories: tuple[str, str] = ("elastic", "elastic"), loss_factor: float = 0.0, scale: float = 1.0, **law: Any
-) -> cx.System:
-    """Return pairs of electrodes under a lead, walls of two theories, all layers with a loss factor and *scale* times as thick."""
-    shells = []
-    for shell, theory in zip(BASE.shells, theories, strict=True):
-        layers = []
-        for layer in shell.layers:
-            standard = {"permittivity_reduction": "standard"} if isinstance(layer.material, cx.Piezoelectric) else {}
-            material = layer.material.replace(loss_factor=loss_factor, **standard)
-            layers.append(layer.replace(material=material, thickness=scale * layer.thickness))
-        shells.append(shell.replace(layers=layers, theory=theory, **({"wetted": "faces"} if theory == "thin" else {})))
-    control = cx.Feedback(numerator=[2 * BASE.transit_time, 3], transducers="electrodes", matrix=matrix, **law)
-    return BASE.replace(shells=shells, control=control)
+def under(matrix: Any, *which: Any, **law: Any) -> cx.System:
+    """Return pairs of electrodes under a lead that read each other, in a plane wave."""
+    return pairs(*which, matrix=matrix, **law).replace(source=PLANE)
 
 
 @pytest.mark.parametrize("loss_factor", [0.0, 0.05])

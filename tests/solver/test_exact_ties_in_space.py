@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from electrode_pairs import BOTH, pairs
 from scipy import special
 
 import coaxshell as cx
@@ -21,31 +22,16 @@ from coaxshell.solver.tied_stability import determinants, fastest_growth, growin
 from coaxshell.structure.axial import ENTRIES, U, V, W
 from coaxshell.structure.elastic_wall import ElasticWall
 
-PAIRS = cx.presets.load("electrodes")
 PLANE = cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4)
 SMALL: dict[str, Any] = {"duration": 0.4, "time_step": 2e-2, "modes": 3, "dimensions": 3, "axial_modes": 2.0, "axial_period": 12.0}
 MIXED = [[1.0, 0.5], [0.3, 0.8]]
 CUT: dict[str, Any] = {"segments": 3, "segment_gap": 0.02, "dead": [1]}
-BOTH, BESIDE_THIN = ("elastic", "elastic"), ("thin", "elastic")
-
-
-def system(theories: tuple[str, str], loss_factor: float = 0.0, scale: float = 1.0, numerator: Any = None, **law: Any) -> cx.System:
-    """Return pairs of electrodes under a lead, walls of two theories, all layers with a loss factor and *scale* times as thick."""
-    shells = []
-    for shell, theory in zip(PAIRS.shells, theories, strict=True):
-        layers = []
-        for layer in shell.layers:
-            standard = {"permittivity_reduction": "standard"} if isinstance(layer.material, cx.Piezoelectric) else {}
-            material = layer.material.replace(loss_factor=loss_factor, **standard)
-            layers.append(layer.replace(material=material, thickness=scale * layer.thickness))
-        shells.append(shell.replace(layers=layers, theory=theory, **({"wetted": "faces"} if theory == "thin" else {})))
-    control = cx.Feedback(numerator=numerator or [2 * PAIRS.transit_time, 3], transducers="electrodes", **law)
-    return PAIRS.replace(shells=shells, control=control)
+BESIDE_THIN = ("thin", "elastic")
 
 
 @cache
 def broken() -> cx.SpatialResponse:
-    return cx.simulate(system(BESIDE_THIN, matrix=MIXED, **CUT), stations=[0.0, 0.4], **SMALL)
+    return cx.simulate(pairs(BESIDE_THIN, matrix=MIXED, **CUT), stations=[0.0, 0.4], **SMALL)
 
 
 def pressures(s: complex, k: float, order: int, radii: tuple[float, ...], kinds: list[Any]) -> np.ndarray:
@@ -124,7 +110,7 @@ class Dense:
 
 def test_a_wave_is_all_its_orders_at_once() -> None:
     """A thin wall by U, V and W, an elastic one by its faces, fluids by Bessel functions, live segments one by one, all in one matrix."""
-    problem, top, s = dimensionless(system(BESIDE_THIN, matrix=MIXED, **CUT), 3), 3, np.array([0.7 + 6.0j])
+    problem, top, s = dimensionless(pairs(BESIDE_THIN, matrix=MIXED, **CUT), 3), 3, np.array([0.7 + 6.0j])
     modes, outside = Modes.up_to(top, 2.3), np.random.default_rng(3).normal(size=(2, top + 1))
     outside[1, 0] = 0.0
     dense, wave = Dense(problem, modes, complex(s[0]), outside), FacedWave(problem, s, modes)
@@ -147,7 +133,7 @@ def test_a_wave_is_all_its_orders_at_once() -> None:
 
 def test_what_an_elastic_wall_shows_is_its_motion_by_loads_and_volts() -> None:
     for theories, loss_factor in ((BOTH, 0.0), (BOTH, 0.05)):
-        problem, s = dimensionless(system(theories, loss_factor, matrix=MIXED), 3), np.array([0.7 + 6.0j, 2.0 + 40.0j])
+        problem, s = dimensionless(pairs(theories, loss_factor, matrix=MIXED), 3), np.array([0.7 + 6.0j, 2.0 + 40.0j])
         modes, wall = Modes.up_to(2, 1.5), problem.shells[1]
         assert isinstance(wall, ElasticWall)
         wave = FacedWave(problem, s, modes)
@@ -169,7 +155,7 @@ def test_what_an_elastic_wall_shows_is_its_motion_by_loads_and_volts() -> None:
     ids=["both", "lossy beside thin"],
 )
 def test_uniform_waves_are_two_dimensions(theories: tuple[str, str], loss_factor: float, law: dict[str, Any]) -> None:
-    described = system(theories, loss_factor, **law).replace(source=PLANE)
+    described = pairs(theories, loss_factor, **law).replace(source=PLANE)
     flat = cx.simulate(described, **{name: SMALL[name] for name in ("duration", "time_step", "modes")})
     space = cx.simulate(described, stations=[0.3], **SMALL)
     for read, where in (("sensor_voltage", {}), ("actuator_voltage", {}), ("stress", {}), ("stress", {"depth": "inner"})):
@@ -182,15 +168,15 @@ def test_shells_that_read_themselves_many_segments_and_thin_walls() -> None:
         few = {**SMALL, "modes": modes, "axial_modes": 0.6, "time_step": 4e-2}
         return np.asarray(cx.simulate(described, stations=[0.0], **few).spatial.fields["w"][0, 1])
 
-    own, unit = (moved(system(BESIDE_THIN, matrix=matrix)) for matrix in (None, [[1, 0], [0, 1]]))
+    own, unit = (moved(pairs(BESIDE_THIN, matrix=matrix)) for matrix in (None, [[1, 0], [0, 1]]))
     np.testing.assert_allclose(unit, own, rtol=0, atol=1e-12 * np.abs(own).max())
-    whole = moved(system(BESIDE_THIN), 8)
-    errors = [np.abs(moved(system(BESIDE_THIN, segments=count), 8) - whole).max() / np.abs(whole).max() for count in (4, 8)]
+    whole = moved(pairs(BESIDE_THIN), 8)
+    errors = [np.abs(moved(pairs(BESIDE_THIN, segments=count), 8) - whole).max() / np.abs(whole).max() for count in (4, 8)]
     assert errors[0] < 1e-2
     assert errors[0] / errors[1] > 2.5
     errors = []
     for scale in (1.0, 0.25):
-        exact, thin = (moved(system(each, scale=scale, matrix=MIXED, **CUT)) for each in (BOTH, ("thin", "thin")))
+        exact, thin = (moved(pairs(each, scale=scale, matrix=MIXED, **CUT)) for each in (BOTH, ("thin", "thin")))
         errors.append(np.linalg.norm(exact - thin) / np.linalg.norm(thin))
     assert errors[1] < 8e-4
     assert errors[1] < 0.27 * errors[0]
@@ -220,17 +206,17 @@ def test_poles_are_those_of_waves() -> None:
     late: dict[str, Any] = {"numerator": [1.4e-3, 0], "amplifier_corner": 5e3, "delay": "14 us", "segments": 5}
     rates = []
     for theories in (BESIDE_THIN, ("thin", "thin")):
-        problem = dimensionless(system(theories, scale=0.5, **late), 3)
+        problem = dimensionless(pairs(theories, scale=0.5, **late), 3)
         found = growing(problem, 4, 1.0, 3.0)
         assert found is not None
         rates.append(fastest_growth(problem, 4, found, 1.0, 3.0))
     assert rates[0].pattern == rates[1].pattern
     assert rates[0].rate == pytest.approx(rates[1].rate, rel=0.05)
-    problem = dimensionless(system(BESIDE_THIN, scale=0.5, **late), 3)
+    problem = dimensionless(pairs(BESIDE_THIN, scale=0.5, **late), 3)
     s = np.array([rates[0].rate + 1j * rates[0].frequency])
     modes = Modes.up_to(4, 3.0)
     along = along_alone(problem, modes)
     here, near = (np.abs(determinants(along, along.open_loop, modes, x)[rates[0].pattern, 0]) for x in (s, s * (1 + 1e-4)))
     assert here < 1e-5 * near
     with pytest.raises(cx.InputError, match=r"control\.matrix: .* makes the closed loop unstable.* of all shells together grows"):
-        cx.simulate(system(BOTH, matrix=[[0.0, 1.0], [1.0, 0.0]]), stations=[0.0], **SMALL)
+        cx.simulate(pairs(BOTH, matrix=[[0.0, 1.0], [1.0, 0.0]]), stations=[0.0], **SMALL)

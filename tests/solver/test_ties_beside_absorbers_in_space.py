@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from electrode_pairs import BOTH, pairs
 
 import coaxshell as cx
 from coaxshell.numerics.laplace_grid import LaplaceGrid
@@ -20,12 +21,11 @@ from coaxshell.solver.interface.absorbers import point_law
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.solid_spectra import band
 
-PAIRS = cx.presets.load("electrodes")
 PLANE = cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4)
 SMALL: dict[str, Any] = {"duration": 0.4, "time_step": 4e-2, "modes": 3, "dimensions": 3, "axial_modes": 1.0, "axial_period": 12.0}
 MIXED = [[1.0, 0.5], [0.3, 0.8]]
 CUT: dict[str, Any] = {"segments": 3, "segment_gap": 0.02, "dead": [1]}
-THIN, BESIDE_THIN, BOTH = ("thin", "thin"), ("thin", "elastic"), ("elastic", "elastic")
+THIN, BESIDE_THIN = ("thin", "thin"), ("thin", "elastic")
 ONE: dict[str, Any] = {"mass": 50.0, "damping": 1e5, "linear_stiffness": 1e9, "footprint": 0.2}
 LINES = [cx.Absorber(angle=angle, **ONE) for angle in (20.0, 160.0, 250.0)]
 POINTS = [cx.PointAbsorber(angle=angle, z=z, **ONE) for angle, z in ((20.0, 0.0), (-20.0, 0.0), (250.0, 0.3))]
@@ -33,15 +33,7 @@ POINTS = [cx.PointAbsorber(angle=angle, z=z, **ONE) for angle, z in ((20.0, 0.0)
 
 def system(theories: tuple[str, str], absorbers: Any, **law: Any) -> cx.System:
     """Return pairs of electrodes under a lead with absorbers, walls of two theories."""
-    shells = []
-    for shell, theory in zip(PAIRS.shells, theories, strict=True):
-        layers = []
-        for layer in shell.layers:
-            standard = {"permittivity_reduction": "standard"} if isinstance(layer.material, cx.Piezoelectric) else {}
-            layers.append(layer.replace(material=layer.material.replace(**standard)))
-        shells.append(shell.replace(layers=layers, theory=theory, **({"wetted": "faces"} if theory == "thin" else {})))
-    control = cx.Feedback(numerator=[2 * PAIRS.transit_time, 3], transducers="electrodes", **law)
-    return PAIRS.replace(shells=shells, control=control, absorbers=absorbers)
+    return pairs(theories, **law).replace(absorbers=absorbers)
 
 
 def solvable(described: cx.System) -> tuple[Any, LaplaceGrid, AxialSampling]:
