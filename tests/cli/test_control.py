@@ -21,6 +21,12 @@ def test_margins_are_printed_and_drawn(run):
     assert all(row["value"] is None for row in rows if row["margin"] == "gain_margin")
 
 
+def test_margins_of_electrodes_cut_along_the_axis_say_what_is_tied(run):
+    told = run("control", "electrodes", "--set", "control.segment_pitch=2", "--modes", "2", "--dimensions", "3").out.splitlines()
+    assert told[-1] == "Wavenumbers k with those that electrodes 2 m apart along the axis tie to them."
+    assert told[2].split()[-1] == "k"
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

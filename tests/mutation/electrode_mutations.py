@@ -215,4 +215,12 @@ ELECTRODES = (
         "the field is that of the voltages themselves, whose waves do not end",
         "solver/test_belts.py",
     ),
+    Mutation(
+        "belts-margins",
+        "solver/margins.py",
+        "answers = tied.response(passive, problem, nodes[block])",
+        "answers = Tied(tied.modes).response(passive, problem, nodes[block])",
+        "the loop of a class hears all its waves",
+        "solver/test_belts.py",
+    ),
 )

@@ -15,11 +15,12 @@ from coaxshell.model import presets
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.response import load_response
-from coaxshell.solver.axial.belt_ties import ties_of_belts
+from coaxshell.solver.axial.belt_ties import TiedClass, ties_of_belts
 from coaxshell.solver.axial.belts import FAR, classes_of, driven_sets
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.stability import Contour, highest_frequency
 from coaxshell.solver.tied_stability import fastest_growth_of, growing_of
 from coaxshell.solver.voltage_response import VoltageResponse
 from coaxshell.structure.axial import ENTRIES, U, V, W
@@ -38,7 +39,7 @@ def cut(**control: Any) -> cx.System:
 
 def late(**others: Any) -> cx.System:
     law = {"numerator": [1.4e-3, 0], "amplifier_corner": 5e3, "delay": "14 us", "transducers": "electrodes"}
-    return PAIRS.replace(control=cx.Feedback(**law, segment_pitch=0.6, **others))
+    return PAIRS.replace(control=cx.Feedback(**law | {"segment_pitch": 0.6} | others))
 
 
 @cache
@@ -233,6 +234,75 @@ def test_poles_are_those_of_classes_of_waves():
     assert growing_of(dimensionless(cut(segment_pitch=0.8, segments=4), 3), ties[0], 1.0)[1] == np.inf  # pairs take energy alone
 
 
+def turns_of_all(problem: Problem, ties: list[TiedClass], order: int, shell: int, factor: float, delay: float) -> Any:
+    """Return what gives the sign of the determinant of ten belts together at nodes, one wall's law times a factor and later.
+
+    Of all that is even about the middle of one: what is odd grows alike, and two zeros at once are easily passed over.
+    """
+    belts, count = problem.belts, 10
+    assert belts is not None
+    z = np.add.outer(belts.pitch * np.arange(count), belts.length * ((np.arange(2000) + 0.5) / 2000 - 0.5))
+    waves = [modes for tie in ties for modes in tie.waves if order < modes.count]
+    seen = [np.exp(1j * float(modes.wavenumber) * z).mean(axis=1) for modes in waves]
+    held = [np.real(np.multiply.outer(one, one.conj())) * belts.length / (count * belts.pitch) for one in seen]
+    even = (np.eye(count) + np.eye(count)[-np.arange(count)])[:, : count // 2 + 1]
+    even = even / np.linalg.norm(even, axis=0)
+    held = [even.T @ one @ even * (2.0 if float(modes.wavenumber) else 1.0) for one, modes in zip(held, waves, strict=True)]
+
+    def sign(s: np.ndarray) -> np.ndarray:
+        parts = [*zip(held, waves, strict=True), (np.eye(len(held[0])) - np.sum(held, axis=0), ties[0].modes)]
+        read = [VoltageResponse.at(problem.open_loop, problem, modes, s).read[:, :, order] for _, modes in parts]
+        law = np.stack([wall.gains.at(s, Modes(np.zeros(1))).ravel() for wall in problem.shells])
+        law[shell] *= factor * np.exp(-delay * s)
+        whole = sum(np.einsum("nm,is,ijs->snimj", one, law, each) for (one, _), each in zip(parts, read, strict=True))
+        size = 2 * len(held[0])
+        return np.linalg.slogdet(np.eye(size) - whole.reshape(s.size, size, size))[0]
+
+    return sign
+
+
+def grows(sign: Any, s: np.ndarray) -> bool:
+    """Return whether a determinant, 1 far away, turns on its way there as one with zeros beyond does; nodes are added until it tells."""
+    found = sign(s)
+    while (quick := np.abs(np.angle(found[1:] / found[:-1])) > 1.0).any():
+        between = 0.5 * (s[1:] + s[:-1])[quick]
+        place = np.flatnonzero(quick) + 1
+        s, found = np.insert(s, place, between), np.insert(found, place, sign(between))
+    turned = np.angle(found[1:] / found[:-1]).sum() + np.angle(1.0 / found[-1])
+    return bool(np.rint(-turned / np.pi) > 0)
+
+
+def test_margins_part_stable_belts_from_growing_ones():
+    system = late(numerator=[0.2 * TIME, 1.0], amplifier_corner="20 kHz", weights=1, delay="4 us")
+    margins = cx.stability_margins(system, duration=1.0, modes=2, axial_modes=8.0, dimensions=3)
+    assert margins["wavenumber"].values == pytest.approx(np.linspace(0.0, np.pi / 0.6, 6))
+    assert "cannot tell" in margins["wavenumber"].attrs["long_name"]
+    problem = dimensionless(system, 3)
+    ties = ties_of_belts(problem, AxialSampling(10 * 0.6 / A, 2, 8.0))
+    nodes = Contour.of(problem, ties[0].modes, 1.0)._replace(fades=10.0 * highest_frequency(problem, 2, 8.0 * FAR)).nodes
+    for name, shell, change in (
+        ("gain_margin", "inner", lambda by, told: (1.0 + by * (told - 1.0), 0.0)),
+        ("delay_margin", "outer", lambda by, told: (1.0, by * told / problem.scales.time)),
+    ):
+        each = margins[name].sel(shell=shell)
+        told, order = float(each.min()), int(each.values.min(axis=0).argmin())
+        assert np.isfinite(told)
+        place = ["inner", "outer"].index(shell)
+        found = [grows(turns_of_all(problem, ties, order, place, *change(by, told)), nodes) for by in (0.98, 1.02)]
+        assert found == [False, True], name
+
+
+def test_margins_of_belts_in_segments_are_told_by_pattern():
+    margins = cx.stability_margins(
+        late(segments=4, delay="1 us", numerator=[0.2 * TIME, 1.0]), duration=0.5, modes=4, axial_modes=6.0, dimensions=3
+    )
+    assert margins.attrs["segments"] == 4
+    assert margins["delay_margin"].shape == (2, 6, 3)
+    assert np.isfinite(margins["delay_margin"].min())
+    with pytest.raises(InputError, match=r"control\.segment_length: .*axial_modes=6 or more"):
+        cx.stability_margins(late(), duration=0.5, modes=3, dimensions=3)
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
@@ -263,5 +333,3 @@ def test_runs_that_know_no_belts_refuse_them():
     ):
         with pytest.raises(InputError, match=said):
             cx.simulate(system, **keywords)
-    with pytest.raises(InputError, match=r"control\.segment_pitch: .*no margins are known yet"):
-        cx.stability_margins(belts, duration=0.5, modes=4, dimensions=3)

@@ -17,7 +17,7 @@ from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.segmented_margins import segmented_loops
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.stability import unstable_poles
-from coaxshell.solver.tied_stability import growing
+from coaxshell.solver.tied_stability import Tied, growing
 
 BARE = cx.presets.load("bare")
 TIME = BARE.transit_time
@@ -97,7 +97,7 @@ def test_the_loops_themselves_tell_whether_they_are_stable():
     for matrix in (None, [[1.0, 0.5], [0.3, 0.8]]):
         for delay, stable in (("1 us", True), ("40 us", False)):
             problem = dimensionless(pairs(**law, delay=delay, matrix=matrix))
-            found = loops(problem, Modes.up_to(4), 0.25)
+            found = loops(problem, Tied(Modes.up_to(4)), 0.25)
             assert found.surely_stable == stable
             assert found.ratio.shape == (4, found.each[0].nodes.size)
             assert not found.each[0].values[4].any()
@@ -133,7 +133,7 @@ def test_delay_margins_of_segments_part_stable_from_unstable(cut):
     # Counted by the argument of the determinant of all tied orders, which knows of no loop.
     system = pairs(numerator=[2 * TIME, 3.0], amplifier_corner="50 kHz", **cut)
     problem, modes = dimensionless(system), Modes.up_to(8)
-    for shell, found in segmented_loops(problem, modes, 1.0).items():
+    for shell, found in segmented_loops(problem, Tied(modes), 1.0).items():
         least = found.margins.delay.min()
         assert growing(_later(problem, shell, 0.97 * least), 8, 1.0) is None
         grown = growing(_later(problem, shell, 1.03 * least), 8, 1.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple, Unpack
 
 import numpy as np
@@ -15,14 +16,15 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress, ShareDone
-from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.belt_ties import ties_of_belts
+from coaxshell.solver.axial.sampling import AxialSampling, require_seen
 from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.margins import Loop, LoopMargins, loops, margins_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.segmented_margins import CutLoop, segmented_loops
 from coaxshell.solver.settings import Settings, SettingsKeywords
 from coaxshell.solver.stability import require_stable
-from coaxshell.solver.tied_stability import require_stable_ties
+from coaxshell.solver.tied_stability import Tied, require_stable_ties
 
 _DEGREES, _HERTZ, _SECONDS, _FACTOR = "deg", "Hz", "s", "1"
 _STAGE, _FOLLOWED = "margins", 0.7
@@ -70,9 +72,10 @@ def stability_margins(system: SystemLike, *, progress: Progress | None = None, *
     -------
     Dataset, dims (shell, order), in three dimensions (shell, wavenumber, order)
         Infinite margins where no change of that kind makes an order grow, of the gain by about ten times or less. In three dimensions of
-        six axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not. Of
-        electrodes in N segments the order is q of a pattern, 0 to N/2, with the orders N - q, N + q, ... that are tied to it; all
-        segments of a wall change together. Dead ones tie all patterns: a loop is told by the one that its segments follow most.
+        six axial wavenumbers from 0 to ``axial_modes`` (that of the highest order unless given), NaN of waves that a run has not; of
+        electrodes cut along the axis from 0 to pi over their pitch, each with all that they cannot tell from it. Of electrodes in N
+        segments the order is q of a pattern, 0 to N/2, with the orders N - q, N + q, ... that are tied to it; all segments of a wall
+        change together. Dead ones tie all patterns: a loop is told by the one that its segments follow most.
 
     Raises
     ------
@@ -91,7 +94,7 @@ def worst_loops(system: System, settings: Settings, progress: Progress | None = 
     problem, modes = _problem(system, settings)
     if segments_of(system) is not None:
         return _worst_patterns(problem, modes, _least(settings), progress)
-    found = loops(problem, modes, _least(settings), _part(progress, 0.0, _FOLLOWED))
+    found = loops(problem, Tied(modes), _least(settings), _part(progress, 0.0, _FOLLOWED))
     if not found.surely_stable:
         (require_stable_ties if problem.tied else require_stable)(problem, modes.max_order, settings.duration)
     all_loops = found.each
@@ -105,7 +108,7 @@ def worst_loops(system: System, settings: Settings, progress: Progress | None = 
 
 def _worst_patterns(problem: Problem, modes: Modes, least: float, progress: Progress | None) -> tuple[xr.Dataset, list[LoopResponse]]:
     """Return the margins of segments by their patterns, and L of the loop of each wall that stands the least delay."""
-    found = segmented_loops(problem, modes, least, _part(progress, 0.0, 1.0))
+    found = segmented_loops(problem, Tied(modes), least, _part(progress, 0.0, 1.0))
     margins = {shell: cut.margins for shell, cut in found.items()}
     told = _of_patterns(labelled(problem, Modes(next(iter(margins.values())).orders), margins), problem)
     return told, [_worst_of_cut(problem, shell, cut) for shell, cut in found.items()]
@@ -165,13 +168,8 @@ def _part(progress: Progress | None, begin: float, end: float) -> ShareDone:
 def _worst_waves(system: System, settings: Settings, progress: Progress | None) -> tuple[xr.Dataset, list[LoopResponse]]:
     """Return the margins of the waves of a run in three dimensions, and L of the wave of each loop that stands the least delay."""
     problem, orders = _problem(system, settings)
-    if problem.belts is not None:
-        pitch = problem.belts.pitch * problem.scales.length
-        what = f"{pitch:g} m: electrodes are cut along the axis, of whose loops no margins are known yet"
-        remedy = "leave segment_pitch out for those of strips along the whole length; a run tells whether its loops are stable"
-        raise InputError("control.segment_pitch", what, remedy)
-    highest = settings.axial_modes or float(orders.max_order)
-    sampling = AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, orders.max_order, highest)
+    sampling = _sampling(problem, settings, orders.max_order)
+    ties, wavenumbers = _asked(problem, sampling)
     found: dict[str, dict[int, FloatArray]] = {}
     worst: dict[int, LoopResponse] = {}
     cut = segments_of(system)
@@ -179,38 +177,58 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
     if cut is not None:
         require_stable_waves(problem, sampling, settings.duration)
         orders = Modes.up_to(cut // 2)
-    count = len(sampling.modes)
-    for place, modes in enumerate(sampling.modes):
-        each, stable = _of_wave(problem, modes, _least(settings), _part(progress, place / count, (place + 1) / count))
+    count = len(ties)
+    for place, tied in enumerate(ties):
+        each, stable = _of_wave(problem, tied, _least(settings), _part(progress, place / count, (place + 1) / count))
         if not (stable or asked):
             require_stable_waves(problem, sampling, settings.duration)
             asked = True
         for shell, (margins, response) in each.items():
             for name in _VARIABLES:
                 known = found.setdefault(name, {}).setdefault(shell, np.full((count, orders.count), np.nan))
-                there = min(margins.orders.size, modes.count)  # patterns above the orders of a wave have none of them
+                there = min(margins.orders.size, tied.modes.count)  # patterns above the orders of a wave have none of them
                 known[place, :there] = _entry(margins, name, problem)[:there]
             known = found["delay_margin"][shell]
             if shell not in worst or margins.delay.min() * problem.scales.time <= np.nanmin(known):
-                worst[shell] = response._replace(wavenumber=float(modes.wavenumber) / problem.scales.length)
+                worst[shell] = response._replace(wavenumber=float(wavenumbers[place]) / problem.scales.length)
     values = {name: np.stack([each[shell] for shell in worst]) for name, each in found.items()}
-    told = {"units": "1/m", "long_name": "axial wavenumber k"}
-    axis = xr.Variable("wavenumber", sampling.wavenumbers / problem.scales.length, told)
+    tied = "" if problem.belts is None else ", with those that the electrodes cannot tell from it"
+    told = {"units": "1/m", "long_name": f"axial wavenumber k{tied}"}
+    axis = xr.Variable("wavenumber", wavenumbers / problem.scales.length, told)
     margins_told = _dataset(problem, list(worst), orders.orders, ("shell", "wavenumber", "order"), values, wavenumber=axis)
+    if problem.belts is not None:
+        margins_told.attrs["segment_pitch"] = problem.belts.pitch * problem.scales.length
     return margins_told if cut is None else _of_patterns(margins_told, problem), list(worst.values())
 
 
-def _of_wave(problem: Problem, modes: Modes, least: float, told: ShareDone) -> tuple[dict[int, tuple[LoopMargins, LoopResponse]], bool]:
+def _sampling(problem: Problem, settings: Settings, max_order: int) -> AxialSampling:
+    """Return the axial wavenumbers at which margins are asked, or whose classes are, where electrodes are cut along the axis."""
+    highest, belts = settings.axial_modes or float(max_order), problem.belts
+    if belts is None:
+        return AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, max_order, highest)
+    require_seen(problem, belts, highest)
+    return AxialSampling(2 * (_WAVES - 1) * belts.pitch, max_order, highest)
+
+
+def _asked(problem: Problem, sampling: AxialSampling) -> tuple[Sequence[Tied], FloatArray]:
+    """Return the waves, or the classes of waves, whose loops are asked, and the axial wavenumber (the lowest of a class) of each."""
+    if problem.belts is None:
+        return [Tied(modes) for modes in sampling.modes], sampling.wavenumbers
+    ties = ties_of_belts(problem, sampling)
+    return ties, sampling.wavenumbers[: len(ties)]
+
+
+def _of_wave(problem: Problem, tied: Tied, least: float, told: ShareDone) -> tuple[dict[int, tuple[LoopMargins, LoopResponse]], bool]:
     """Return the margins of each loop at one axial wavenumber with L of what stands the least delay, and whether the wave is stable.
 
     Of segments, whose poles are counted before, it is.
     """
     if segments_of(problem.system) is not None:
-        cuts = segmented_loops(problem, modes, least, told)
+        cuts = segmented_loops(problem, tied, least, told)
         return {shell: (cut.margins, _worst_of_cut(problem, shell, cut)) for shell, cut in cuts.items()}, True
-    whole, found = loops(problem, modes, least, told), {}
+    whole, found = loops(problem, tied, least, told), {}
     for shell, loop in whole.each.items():
-        margins = margins_of(modes.orders, *loop)
+        margins = margins_of(tied.modes.orders, *loop)
         found[shell] = margins, _of_order(problem, shell, int(margins.delay.argmin()), loop)
     return found, whole.surely_stable
 

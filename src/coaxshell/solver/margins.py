@@ -24,7 +24,8 @@ from coaxshell.solver.electrode_loops import ElectrodeLoops, determinant_of
 from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import SPACING, Contour, along_alone, fed_orders, few_of, opened
-from coaxshell.solver.voltage_response import VoltageResponse, controlled
+from coaxshell.solver.tied_stability import Tied
+from coaxshell.solver.voltage_response import controlled
 
 _BLOCK = 512
 FURTHER = 10.0
@@ -93,18 +94,22 @@ class Loops(NamedTuple):
         return bool(slow and (np.rint(-turns / np.pi) <= 0.0).all())
 
 
-def loops(problem: Problem, modes: Modes, least: float, told: ShareDone = lambda _: None) -> Loops:
+def loops(problem: Problem, tied: Tied, least: float, told: ShareDone = lambda _: None) -> Loops:
     """Return L of the loop of each shell that feeds anything back on Re s = *least* or a little more, 0 of orders that no law weighs.
 
-    *told* hears the share of the nodes that are done, and may end it by an exception.
+    Of one wave, or of all that electrodes tie to it along the axis. *told* hears the share of the nodes that are done, and may
+    end it by an exception.
     """
+    modes = tied.modes
     fed = fed_orders(problem, modes)
-    some = few_of(modes, fed if fed.size else modes.orders[:1])
+    some = few_of(modes, fed if fed.size else modes.orders[:1]) if tied.alone else modes
     contour, rows = Contour.of(problem, modes, least), np.searchsorted(modes.orders, some.orders)
     nodes = contour._replace(fades=FURTHER * contour.fades).nodes
     problem = along_alone(problem, some)
-    find = _tied if problem.tied else _alone
-    ratio, found = find(problem, some, nodes, told)
+    if problem.tied:
+        ratio, found = _tied(problem, Tied(some) if tied.alone else tied, nodes, told)
+    else:
+        ratio, found = _alone(problem, some, nodes, told)
     each = {}
     for shell, values in found.items():
         whole = np.zeros((modes.count, nodes.size), np.complex128)
@@ -129,20 +134,20 @@ def _alone(problem: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone)
     return ratio, dict(zip(shells, values, strict=True))
 
 
-def _matrices(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> Iterator[tuple[slice, ComplexArray]]:
+def _matrices(problem: Problem, passive: Problem, tied: Tied, nodes: ComplexArray) -> Iterator[tuple[slice, ComplexArray]]:
     """Yield 1 - H K C of blocks of nodes, (orders, nodes, walls, walls), where the actuators of walls answer other walls."""
     for start in range(0, nodes.size, _BLOCK):
         block = slice(start, start + _BLOCK)
-        answers = VoltageResponse.at(passive, problem, modes, nodes[block])
-        yield block, ElectrodeLoops.of(problem, answers, OrderPatterns(modes.orders, 1), nodes[block]).matrix
+        answers = tied.response(passive, problem, nodes[block])
+        yield block, ElectrodeLoops.of(problem, answers, OrderPatterns(tied.modes.orders, 1), nodes[block]).matrix
 
 
-def _tied(problem: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) -> tuple[ComplexArray, dict[int, ComplexArray]]:
+def _tied(problem: Problem, tied: Tied, nodes: ComplexArray, told: ShareDone) -> tuple[ComplexArray, dict[int, ComplexArray]]:
     """Return D/D0, and L of what the actuators of each wall answer, cut at their amplifier, (orders, nodes); none of walls without any."""
     shells = controlled(problem)
-    values = np.empty((len(shells), modes.count, nodes.size), dtype=np.complex128)
-    ratio = np.empty((modes.count, nodes.size), np.complex128)
-    for block, matrix in _matrices(problem, problem.open_loop, modes, nodes):
+    values = np.empty((len(shells), tied.modes.count, nodes.size), dtype=np.complex128)
+    ratio = np.empty((tied.modes.count, nodes.size), np.complex128)
+    for block, matrix in _matrices(problem, problem.open_loop, tied, nodes):
         ratio[:, block] = determinant_of(matrix)
         for wall, loop in enumerate(values):
             others = np.delete(np.delete(matrix, wall, axis=2), wall, axis=3)
@@ -153,7 +158,7 @@ def _tied(problem: Problem, modes: Modes, nodes: ComplexArray, told: ShareDone) 
 
 def loop_margins(problem: Problem, modes: Modes, least: float) -> dict[int, LoopMargins]:
     """Return the margins of the loop of each shell that feeds anything back, by its number, in a stable system."""
-    return {shell: margins_of(modes.orders, *loop) for shell, loop in loops(problem, modes, least).each.items()}
+    return {shell: margins_of(modes.orders, *loop) for shell, loop in loops(problem, Tied(modes), least).each.items()}
 
 
 def common_loop(problem: Problem, modes: Modes, least: float) -> list[Loop]:
@@ -165,7 +170,7 @@ def common_loop(problem: Problem, modes: Modes, least: float) -> list[Loop]:
     shells = [i for i, wall in enumerate(problem.shells) if wall.gains is not None and not wall.gains.zero]
     if problem.tied:
         nodes = Contour.of(problem, modes, least).nodes
-        found = [np.linalg.eigvals(np.eye(one.shape[-1]) - one) for _, one in _matrices(problem, problem.open_loop, modes, nodes)]
+        found = [np.linalg.eigvals(np.eye(one.shape[-1]) - one) for _, one in _matrices(problem, problem.open_loop, Tied(modes), nodes)]
         return [Loop(nodes, one) for one in followed(np.moveaxis(np.concatenate(found, axis=1), -1, 0))]
     places = np.array([(-1.0) ** j * (1.0 - (j // 2) / len(shells)) for j in range(len(shells))])
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)

@@ -22,7 +22,8 @@ from coaxshell.solver.electrode_patterns import Patterns, patterns_of, segments_
 from coaxshell.solver.margins import FURTHER, Loop, LoopMargins, followed, margins_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import Contour, along_alone
-from coaxshell.solver.voltage_response import VoltageResponse, controlled
+from coaxshell.solver.tied_stability import Tied
+from coaxshell.solver.voltage_response import controlled
 
 _BLOCK = 128
 _ROUNDING = 1e-9
@@ -47,25 +48,27 @@ class CutLoop(NamedTuple):
     margins: LoopMargins
 
 
-def segmented_loops(problem: Problem, modes: Modes, least: float, told: ShareDone = lambda _: None) -> dict[int, CutLoop]:
+def segmented_loops(problem: Problem, tied: Tied, least: float, told: ShareDone = lambda _: None) -> dict[int, CutLoop]:
     """Return the loops of each wall that feeds anything back, by its number, on Re s = *least* or a little more.
 
-    *told* hears the share of the nodes that are done, and may end it by an exception.
+    Of one wave, or of all that electrodes tie to it along the axis. *told* hears the share of the nodes that are done, and may
+    end it by an exception.
     """
+    modes = tied.modes
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     nodes = contour._replace(fades=FURTHER * contour.fades).nodes
     walls = controlled(problem)
     patterns = patterns_of(problem, walls, modes.orders, 1)
     shown = patterns.numbers.orders[: _count(patterns)]
     found = {}
-    values = _values(problem, modes, patterns, nodes, told)
+    values = _values(problem, tied, patterns, nodes, told)
     for place, shell in enumerate(walls):
         size = np.abs(values[place]).max(axis=1, keepdims=True)
         if not size.any():
             continue
         loop = Loop(nodes, np.where(size > _ROUNDING * size.max(), values[place], 0.0))
         each = margins_of(np.arange(float(len(loop.values))), *loop)
-        numbers = _resembled(problem, modes, patterns, place, loop, each) if patterns.dead else shown
+        numbers = _resembled(problem, tied, patterns, place, loop, each) if patterns.dead else shown
         found[shell] = CutLoop(loop, numbers, _by_pattern(each, numbers, shown))
     return found
 
@@ -83,7 +86,7 @@ def common_patterns(problem: Problem, max_order: int, numbers: FloatArray, least
     contour, problem = Contour.of(problem, modes, least), along_alone(problem, modes)
     found = []
     for start in range(0, contour.nodes.size, 4 * _BLOCK):
-        matrix = _at(problem, modes, patterns, contour.nodes[start : start + 4 * _BLOCK]).matrix[rows]
+        matrix = _at(problem, Tied(modes), patterns, contour.nodes[start : start + 4 * _BLOCK]).matrix[rows]
         found.append(np.linalg.eigvals(np.eye(len(walls)) - matrix))
     return [Loop(contour.nodes, one) for one in followed(np.moveaxis(np.concatenate(found, axis=1), -1, 0))]
 
@@ -93,12 +96,12 @@ def _count(patterns: Patterns) -> int:
     return int(np.argmax(patterns.numbers.orders)) + 1
 
 
-def _values(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexArray, told: ShareDone) -> list[ComplexArray]:
+def _values(problem: Problem, tied: Tied, patterns: Patterns, nodes: ComplexArray, told: ShareDone) -> list[ComplexArray]:
     """Return L of each wall under control, (loops, nodes) each."""
     found: list[list[ComplexArray]] = []
     step = _BLOCK if patterns.dead else 4 * _BLOCK
     for start in range(0, nodes.size, step):
-        loops = _at(problem, modes, patterns, nodes[start : start + step])
+        loops = _at(problem, tied, patterns, nodes[start : start + step])
         walls = range(len(loops.law))
         found.append([_eigenvalues(loops, i) if patterns.dead else _alone(loops, i) for i in walls])
         told(min(1.0, (start + step) / nodes.size))
@@ -106,8 +109,8 @@ def _values(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexAr
     return [followed(one[:, None])[:, 0] for one in whole] if patterns.dead else whole
 
 
-def _at(problem: Problem, modes: Modes, patterns: Patterns, nodes: ComplexArray) -> ElectrodeLoops:
-    return ElectrodeLoops.of(problem, VoltageResponse.at(problem.open_loop, problem, modes, nodes), patterns, nodes)
+def _at(problem: Problem, tied: Tied, patterns: Patterns, nodes: ComplexArray) -> ElectrodeLoops:
+    return ElectrodeLoops.of(problem, tied.response(problem.open_loop, problem, nodes), patterns, nodes)
 
 
 def _alone(loops: ElectrodeLoops, wall: int) -> ComplexArray:
@@ -136,13 +139,13 @@ def _live(loops: ElectrodeLoops, wall: int) -> ComplexArray:
     return np.asarray(own + whole[:, wall][:, :, others].reshape(-1, count, size) @ np.linalg.solve(between, back))
 
 
-def _resembled(problem: Problem, modes: Modes, patterns: Patterns, place: int, loop: Loop, margins: LoopMargins) -> FloatArray:
+def _resembled(problem: Problem, tied: Tied, patterns: Patterns, place: int, loop: Loop, margins: LoopMargins) -> FloatArray:
     """Return the pattern that the eigenvector of each loop has most of, where it stands the least delay, else where it is largest."""
     nearest = np.abs(loop.nodes.imag - np.nan_to_num(margins.delay_frequency)[:, None]).argmin(axis=1)
     nodes = np.where(np.isfinite(margins.delay), nearest, np.abs(loop.values).argmax(axis=1))
     live = [k for k in range(len(patterns.evaluate)) if k not in patterns.dead]
     asked, inverse = np.unique(nodes, return_inverse=True)
-    values, vectors = np.linalg.eig(_live(_at(problem, modes, patterns, loop.nodes[asked]), place))
+    values, vectors = np.linalg.eig(_live(_at(problem, tied, patterns, loop.nodes[asked]), place))
     found = []
     for row, (node, there) in enumerate(zip(nodes, inverse, strict=True)):
         own = vectors[there][:, np.abs(values[there] - loop.values[row, node]).argmin()]

@@ -12,6 +12,8 @@ from coaxshell.apps.cli.output import Outputs, echo, print_document, write_figur
 from coaxshell.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from coaxshell.model.system import System
     from coaxshell.numerics.late import xarray as xr
 
@@ -77,7 +79,7 @@ def control(
     if as_json:
         print_document({"system": system.name, "margins": rows})
     else:
-        _print(system.name, rows, margins.attrs.get("segments"))
+        _print(system.name, rows, margins.attrs)
     if target is not None:
         write_figure(figure_margins(margins, worst), target, "--output")
         echo(f"wrote {target}", aside=as_json)
@@ -134,7 +136,7 @@ def _rows(margins: xr.Dataset) -> list[dict[str, Any]]:
     return rows
 
 
-def _print(name: str, rows: list[dict[str, Any]], segments: int | None) -> None:
+def _print(name: str, rows: list[dict[str, Any]], told: Mapping[Any, Any]) -> None:
     from coaxshell.model.prefixes import engineering
     from coaxshell.response.summary_text import aligned
 
@@ -155,5 +157,7 @@ def _print(name: str, rows: list[dict[str, Any]], segments: int | None) -> None:
         table.append([row["shell"], kind, shown, str(row["order"]), at, *([f"{row['wavenumber']:.3g}/m"] if along else [])])
     for line in aligned(table):
         echo(line.rstrip())
-    if segments is not None:
-        echo(f"\nOrders with those that {segments} segments tie to them; all segments of a shell change together.")
+    if "segments" in told:
+        echo(f"\nOrders with those that {told['segments']} segments tie to them; all segments of a shell change together.")
+    if "segment_pitch" in told:
+        echo(f"\nWavenumbers k with those that electrodes {told['segment_pitch']:g} m apart along the axis tie to them.")

@@ -184,19 +184,25 @@ def _of_belts(problem: Problem, settings: Settings, belts: Belts, needed: float,
     InputError
         If wavenumbers end before they see an electrode, or the period given has no whole number of belts.
     """
-    highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
-    if highest * belts.length < math.pi * (1.0 - 1e-12):
-        found = (
-            f"{belts.length * length:g} m are less than half of the shortest wave along the axis, {2.0 * math.pi / highest * length:.3g} m"
-        )
-        least = math.ceil(math.pi / belts.length - 1e-9)
-        raise InputError("control.segment_length", found, f"use axial_modes={least} or more, or longer electrodes")
+    length = problem.scales.length
+    require_seen(problem, belts, settings.axial_modes or float(settings.modes))
     if settings.axial_period is not None:
         count = settings.axial_period / length / belts.pitch
         if abs(count - round(count)) > 1e-6:
             found = f"{settings.axial_period:g} m is no whole number of electrodes {belts.pitch * length:g} m apart"
             raise InputError("axial_period", found, f"give {math.ceil(count) * belts.pitch * length:.10g} m, or leave it out")
     return _whole_belts(belts, needed + 0.5 * felt_length(settings.duration, fronts, speed))
+
+
+def require_seen(problem: Problem, belts: Belts, highest: float) -> None:
+    """Raise InputError if axial wavenumbers (in 1/a) end before they see one of the electrodes that are cut along the axis."""
+    length = problem.scales.length
+    if highest * belts.length < math.pi * (1.0 - 1e-12):
+        found = (
+            f"{belts.length * length:g} m are less than half of the shortest wave along the axis, {2.0 * math.pi / highest * length:.3g} m"
+        )
+        least = math.ceil(math.pi / belts.length - 1e-9)
+        raise InputError("control.segment_length", found, f"use axial_modes={least} or more, or longer electrodes")
 
 
 def fastest_wave(problem: Problem, highest: float) -> float:
