@@ -192,8 +192,8 @@ def _worst_waves(system: System, settings: Settings, progress: Progress | None) 
             if shell not in worst or margins.delay.min() * problem.scales.time <= np.nanmin(known):
                 worst[shell] = response._replace(wavenumber=float(wavenumbers[place]) / problem.scales.length)
     values = {name: np.stack([each[shell] for shell in worst]) for name, each in found.items()}
-    tied = "" if problem.belts is None else ", with those that the electrodes cannot tell from it"
-    told = {"units": "1/m", "long_name": f"axial wavenumber k{tied}"}
+    others = "" if problem.belts is None else ", with those that the electrodes cannot tell from it"
+    told = {"units": "1/m", "long_name": f"axial wavenumber k{others}"}
     axis = xr.Variable("wavenumber", wavenumbers / problem.scales.length, told)
     margins_told = _dataset(problem, list(worst), orders.orders, ("shell", "wavenumber", "order"), values, wavenumber=axis)
     if problem.belts is not None:
