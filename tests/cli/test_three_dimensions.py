@@ -126,7 +126,10 @@ def test_a_sphere_is_compared_with_a_slice(run, saved):
         (["run", "bare", "--dimensions", "3", "--axial-period", "1e7 m"], "--axial-period: an axial period of 1e+07 m asks for"),
         (["run", "bare", "--dimensions", "3", "--stations", "1000 km"], "--stations: an axial period of"),
         (["run", "bare", "--dimensions", "3", "--set", "source.distance=0.5", "--set", "source.z=3"], "source.distance"),
-        (["run", "hybrid", "--dimensions", "3", "--set", "control.saturation=true"], "control.saturation: voltages are cut at their limit"),
+        (
+            ["run", "hybrid", "--dimensions", "3", "--set", "control.saturation=true"],
+            "control.saturation: beside absorbers ",
+        ),
         (
             ["run", "iakovlev-evacuated", "--dimensions", "3", "--set", "source.inclination=5", "--energy", "e.png"],
             "source.inclination: 5 degrees: an inclined wave carries energy along the shells",

@@ -130,11 +130,11 @@ def test_voltages_above_the_limit_are_told() -> None:
     (told,) = run.warnings
     asked = float(told.partition("asks for ")[2].partition(" kV")[0])
     assert asked == pytest.approx(float(abs(run.actuator_voltage("outer", [0.0], segment=None)).max()) / 1e3, rel=1e-3)
-    assert "lower the gains; control.saturation = true shows in two dimensions" in told
+    assert "set control.saturation = true to see what it can really do" in told
 
 
-def test_saturation_is_refused() -> None:
-    with pytest.raises(InputError, match=r"control\.saturation: voltages are cut .* a warning tells"):
+def test_saturation_beside_absorbers_is_refused() -> None:
+    with pytest.raises(InputError, match=r"control\.saturation: beside absorbers .* which warns"):
         cx.simulate(cx.presets.load("hybrid").replace_path("control.saturation", True), duration=1.0, time_step=2e-2, modes=8, dimensions=3)
 
 

@@ -142,7 +142,7 @@ def test_what_points_do_not_have_is_refused(fitted, metric, told):
 
 
 def test_systems_that_three_dimensions_do_not_know_are_refused():
-    saturating = cx.presets.load("active")
+    saturating = cx.presets.load("hybrid")
     saturating = saturating.replace(control=saturating.control.replace(saturation=True))
     with pytest.raises(cx.InputError, match=r"saturation: .*are cut at their limit in two dimensions alone"):
         cx.sweep(saturating, OVER, METRICS[:1], workers=1, **QUICK)

@@ -21,7 +21,7 @@ from coaxshell.response.energy.electrodes import on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
 from coaxshell.response.modal import amplitudes, orders
-from coaxshell.response.voltages import cut_voltage, demanded_voltage, time_derivative
+from coaxshell.response.voltages import cut_voltage, given_voltage, time_derivative
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
@@ -126,7 +126,7 @@ def _electrical(motion: WallMotion, shell: int) -> Electrical:
 
 def _at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> Electrical:
     """Return what actuators hold and take at a station along the axis, from the fields there; the current by differences."""
-    voltage = demanded_voltage(solution, shell)
+    voltage = given_voltage(solution, shell)
     strained, capacitance = _held_at_station(solution, shell, wall)
     return Electrical(voltage, *_charged(solution, strained + capacitance * voltage))
 

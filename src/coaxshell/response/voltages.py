@@ -17,7 +17,7 @@ from coaxshell.response.modal import amplitudes, elastic_wall, orders, scaled, v
 from coaxshell.response.peaks import Amplitudes, Peak, folded, made_once, peak_anywhere
 from coaxshell.response.synthesis import angle_basis, at_angles
 from coaxshell.solver.electrodes import lower_half, segment_mean
-from coaxshell.solver.interface.saturation import voltage_limit
+from coaxshell.solver.interface.saturation import circle, voltage_limit
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.control_law import ControlGains, ControlLaw
 from coaxshell.structure.segments import Segments
@@ -107,6 +107,16 @@ def demanded_voltage(solution: ModalSolution, shell: int) -> FloatArray:
     if gains.derivative:
         voltage += gains.derivative * sensor_rate(solution, shell)
     return voltage
+
+
+def given_voltage(solution: ModalSolution, shell: int) -> FloatArray:
+    """Return the modal voltage on the actuator, V, shape (parities, M + 1, T): the orders of what is asked for, cut at every point."""
+    modal, limit = demanded_voltage(solution, shell), actuator_limit(solution, shell)
+    if not limit.saturates or np.abs(modal).sum(axis=(0, 1)).max() <= limit.volts:
+        return modal
+    evaluate, project = circle(modal.shape[1], modal.shape[0])
+    flat = modal.reshape(-1, modal.shape[-1])
+    return np.asarray((project @ applied(evaluate @ flat, limit)).reshape(modal.shape))
 
 
 def applied(voltage: FloatArray, limit: ActuatorLimit) -> FloatArray:

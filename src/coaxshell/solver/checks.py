@@ -13,7 +13,7 @@ from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.bubble import first_pulse
 from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, saturates, segments_of, ties_shells, wired
+from coaxshell.model.gains import law_of, limits_currents, saturates, segments_of, ties_shells, wired
 from coaxshell.model.parts import laws_of
 from coaxshell.model.places import region_phrase, shell_phrase
 from coaxshell.model.plausibility import remarks
@@ -193,8 +193,6 @@ def actuators(*motions: ModalSolution) -> list[str]:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
             paper = control.transducers == "paper" and isinstance(control, PDControl)  # what saturates
             remedy = "set control.saturation = true to see what it can really do, or lower the gains" if paper else "lower the gains"
-            if paper and motions[0].along is not None:
-                remedy = "lower the gains; control.saturation = true shows in two dimensions what it can really do"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
 
@@ -275,7 +273,8 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     if error.value <= SLICE_LIMIT:
         return []
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
-    changed = " without saturation" if saturates(problem.system) else ""
+    beside = problem.two_faced or bool(problem.system.absorber_list) or limits_currents(problem.system)
+    changed = " without saturation" if saturates(problem.system) and beside else ""
     if problem.system.absorber_list and (segments_of(problem.system) is not None or ties_shells(problem.system)):
         changed = " without absorbers"  # beside which segments and matrices are refused there
     return [

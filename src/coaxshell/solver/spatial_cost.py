@@ -13,6 +13,7 @@ from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.solver.axial.blocks import BLOCK_NODES
 from coaxshell.solver.axial.faced import READ
+from coaxshell.solver.axial.limited_wave import axial_parities, even_about
 from coaxshell.solver.axial.line_march import block_steps
 from coaxshell.solver.axial.lines import LineLayout, line_layout
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling
@@ -46,6 +47,8 @@ _PER_FORCE = 0.35e-6
 """Seconds that a force at one point takes at an order and node, where electrodes are cut."""
 _BELTS = 1.6
 """How much longer it takes than that where electrodes are cut along the axis."""
+_TURN = 5e-5
+"""Seconds of a turn between waves and points of a wall, besides its products."""
 _STEP = 2e-3
 """Seconds of a step of the march of a single absorber along the axis, by Newton's method."""
 
@@ -74,19 +77,35 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     waves = turns * pairs * 0.3e-6 * size.shells * (_TIED if problem.tied else 1.0) * (_BELTS if problem.belts else 1.0)
     forces = 2 * (len(system.absorber_list) + len(system.point_absorbers)) if problem.cut else 0
     waves += turns * pairs * _PER_FORCE * forces
+    limits = _limits_cost(problem, sampling, size, pairs) if size.controlled else Cost(0.0)
+    if limits.memory:
+        waves *= 4.2 if problem.tied else 4.2 * _TIED
     again = _passes(problem, size) if lines.seconds or points else 0.0  # for what absorbers feel and do
     return Cost(
         lines.memory
         + solids.memory
+        + limits.memory
         + kept
         + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
         lines.seconds
+        + limits.seconds
         + solids.seconds * (1.0 + again)
         + 0.1
         + _WAVE * len(sampling.modes)
         + waves * (1.0 + (again + 1.0 if points else 0.0))
         + turns * pairs * 2e-9 * fields * stations * amplitudes,
     )
+
+
+def _limits_cost(problem: Problem, sampling: AxialSampling, size: Size, pairs: float) -> Cost:
+    """Return what voltages add that stop at a limit: loops and past of every order and wavenumber, and transforms at every step."""
+    around, along = motion_parities(problem), axial_parities(problem, even_about(problem))
+    channels, walls = around * pairs / size.nodes, float(size.controlled)
+    memory = channels * REAL * size.instants * (4.0 * walls**2 + 5.0 * walls * along)
+    points = max(4.0 * size.orders, 180.0) * around * 2.0 * along * len(sampling.modes)
+    step = 80.0 * walls * (_TURN + points * size.orders * around * 0.3 * _NANOSECONDS)
+    past = 25.0 * walls**2 * along * channels * math.log2(size.instants + 2) * _NANOSECONDS
+    return Cost(memory, size.instants * (step + past))
 
 
 def _passes(problem: Problem, size: Size) -> float:

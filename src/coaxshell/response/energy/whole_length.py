@@ -16,6 +16,7 @@ import numpy as np
 
 from coaxshell.acoustics.sources import PlaneGeometry, SphericalFrontGeometry
 from coaxshell.errors import InputError
+from coaxshell.model.gains import saturates
 from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.late import xarray as xr
@@ -27,6 +28,8 @@ from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.parts import Entry, absorber_entries, parts_of
 from coaxshell.solver.axial.blocks import on_threads
 from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.lack import VoltageLack
+from coaxshell.solver.axial.limited import solve_limited_waves
 from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
 from coaxshell.solver.axial.lines import line_layout
 from coaxshell.solver.axial.motion import wave_motions
@@ -118,6 +121,8 @@ class AlongTheLength:
         What line absorbers do.
     held : HeldPoints or None
         What point absorbers hold.
+    lack : VoltageLack or None
+        What amplifiers at their limit lack.
     """
 
     uniform: bool
@@ -125,6 +130,7 @@ class AlongTheLength:
     sampling: AxialSampling
     linked: LineSolution | None
     held: HeldPoints | None
+    lack: VoltageLack | None = None
 
     @property
     def count(self) -> int:
@@ -133,8 +139,10 @@ class AlongTheLength:
 
     @property
     def forces(self) -> WallForces | None:
-        """Forces of the absorbers at the wavenumbers, None without any."""
-        return self.held.forces if self.held is not None else None if self.linked is None else self.linked.forces
+        """Forces of the absorbers at the wavenumbers, or what amplifiers lack; None without any."""
+        if self.held is not None:
+            return self.held.forces
+        return self.lack if self.linked is None else self.linked.forces
 
 
 def along_the_length(solution: SpatialSolution, progress: Progress | None = None) -> AlongTheLength:
@@ -155,7 +163,9 @@ def along_the_length(solution: SpatialSolution, progress: Progress | None = None
     )
     linked = _lines(solution, sampling, grid, progress)
     held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
-    return AlongTheLength(not isinstance(problem.sources[0], SphericalFrontGeometry), grid, sampling, linked, held)
+    limited = solve_limited_waves(problem, grid, sampling, on_threads, progress) if saturates(problem.system) else None
+    lack = None if limited is None else limited.forces
+    return AlongTheLength(not isinstance(problem.sources[0], SphericalFrontGeometry), grid, sampling, linked, held, lack)
 
 
 def whole_length_cost(solution: SpatialSolution) -> Cost:

@@ -29,6 +29,7 @@ from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.faced_motion import faces_of
 from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.lack import lacks
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import forces_of
@@ -203,8 +204,11 @@ def cut_waves(
         return None, felt
     ends = sorted({float(z[felt].min()) * problem.scales.length, float(z[felt].max()) * problem.scales.length})
     sampling = axial_sampling(problem, replace(settings, stations=tuple(ends), duration=until, axial_period=None))
+    forces = forces_of(spatial)
+    if lacks(forces) and spatial.sampling.period >= sampling.period:
+        sampling = spatial.sampling  # at whose wavenumbers it is known what amplifiers lack
     make_shapes(problem, sampling.modes)
-    return SpatialWaves(problem, sampling, grid, z[felt], asked.part, asked.filter, forces_of(spatial)), felt
+    return SpatialWaves(problem, sampling, grid, z[felt], asked.part, asked.filter, forces), felt
 
 
 def each_block(waves: SpatialWaves, radii: int, work: Callable[[slice], Found], tell: Tell) -> Iterator[Found]:

@@ -20,7 +20,7 @@ Line sources and plane waves across the axis are uniform along it: k = 0, e = 1,
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -33,6 +33,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.lack import lacks
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.excitation import SourceGroup, source_groups, superposed
@@ -123,12 +124,15 @@ class WaveSet:
         Where the added masses of the fluids at these waves are found, or left for the next run.
     belts : Driver or None
         What the voltages of belts do, where electrodes are cut along the axis.
+    limited : bool
+        Whether amplifiers stop at a limit: what they lack is a family too, and all are solved by the loops.
     """
 
     modes: list[Modes]
     families: list[Family]
     fluids: SharedParts | None = None
     belts: Driver | None = None
+    limited: bool = False
 
     @property
     def order(self) -> list[int]:
@@ -189,7 +193,9 @@ def wave_sets(
     families = [Family(groups, *sampling.shares(stations - z0), sampling.mean, parities, origin=z0) for z0, groups in spherical.items()]
     if forces is not None:
         families += _force_families(sampling, stations, forces)
-    return [*sets, WaveSet(sampling.modes, families, sampling.fluids)] if families else sets
+    if families:
+        sets.append(WaveSet(sampling.modes, families, sampling.fluids))
+    return [replace(one, limited=True) for one in sets] if lacks(forces) else sets
 
 
 def _force_families(sampling: AxialSampling, stations: FloatArray, forces: WallForces) -> list[Family]:

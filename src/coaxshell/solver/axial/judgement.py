@@ -10,7 +10,9 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cache import held_bytes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import checks
+from coaxshell.solver.axial.lack import without_lack
 from coaxshell.solver.axial.left_out import estimated_errors
+from coaxshell.solver.axial.limited import LimitedSolution
 from coaxshell.solver.axial.line_softness import softened_lines
 from coaxshell.solver.axial.line_solve import LineSolution
 from coaxshell.solver.axial.linked import PointSolution
@@ -30,8 +32,8 @@ class JudgedFrom(NamedTuple):
         Mean squares along the axis of all that was added up, all nodes together, under sources and under forces.
     motion : StationSpectra
         Transforms at the stations.
-    linked : PointSolution or LineSolution, or None
-        What the absorbers did.
+    linked : PointSolution, LineSolution, LimitedSolution or None
+        What the absorbers, or amplifiers at their limit, did.
     notes : sequence of str
         Warnings of the choice of orders.
     """
@@ -39,7 +41,7 @@ class JudgedFrom(NamedTuple):
     grid: LaplaceGrid
     squares: FloatArray
     motion: StationSpectra
-    linked: PointSolution | LineSolution | None
+    linked: PointSolution | LineSolution | LimitedSolution | None
     notes: Sequence[str]
 
 
@@ -54,7 +56,7 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
     """Return estimates and warnings of a run, whose times are added to the run's."""
     problem, settings, linked = solution.problem, solution.settings, given.linked
     stopwatch = Stopwatch(solution.timings)
-    forces, force_error = (None, 0.0) if linked is None else (linked.forces, linked.error)
+    forces, force_error = (None, 0.0) if linked is None else (without_lack(linked.forces), linked.error)
     moved, soft = (solution.fields["w"], solution.fields["v"]), _softened(solution, given)
     estimates = estimated_errors(
         problem, given.grid, solution.sampling, given.squares, given.motion, moved, soft, forces, force_error=force_error
@@ -73,4 +75,4 @@ def _softened(solution: SpatialSolution, given: JudgedFrom) -> Softened | None:
     problem, linked = solution.problem, given.linked
     if isinstance(linked, PointSolution):
         return softened(problem, given.grid, solution.sampling, linked)
-    return None if linked is None else softened_lines(problem, given.grid, linked)
+    return softened_lines(problem, given.grid, linked) if isinstance(linked, LineSolution) else None

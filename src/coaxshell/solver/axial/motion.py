@@ -29,6 +29,7 @@ from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.faced_motion import motions_and_faces
 from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.limited_wave import lacking
 from coaxshell.solver.axial.point_forces import WallPoints
 from coaxshell.solver.axial.sampling import AxialSampling, spherical_fronts
 from coaxshell.solver.axial.sums import amplitudes_of, given_voltages
@@ -57,7 +58,8 @@ class WaveMotion:
     solid : FacedMotion or None
         What the faces do, where they move differently.
     voltage : ndarray or None
-        Transforms of the actuators' voltages, (shells, parities, orders, nodes), where feedback ties walls or orders to each other.
+        Transforms of the actuators' voltages, (shells, parities, orders, nodes), where feedback ties walls or orders to each other, or
+        amplifiers stop at a limit.
     charged : ndarray, shape (orders,), or None
         By how much more they charge layers, where electrodes are cut along the axis (:func:`coaxshell.solver.axial.belts.charged`).
     """
@@ -129,7 +131,7 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         _one_set(driven_sets(problem, sampling, origin, grid, block, None if forces is None else forces.at(block))) for block in blocks
     ]
     waves = _one_set(driven_sets(problem, sampling, origin, grid, slice(None), forces))
-    spherical = bool(spherical_fronts(problem))
+    spherical, looped = bool(spherical_fronts(problem)), problem.tied or waves.limited
     for j, modes in enumerate(waves.modes):
         shares = np.array([[family.even[0, j], family.odd[0, j]] for family in waves.families])
         if not shares[:, 1].any():
@@ -138,10 +140,12 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         def work(which: int, j: int = j, shares: FloatArray = shares) -> ComplexArray:
             solve = motions_and_faces if problem.two_faced else amplitudes_of
             found = solve(problem, per_block[which], j, grid, blocks[which])
-            if problem.tied and not problem.two_faced:
+            if looped and not problem.two_faced:
                 modes, s = per_block[which].modes[j], grid.nodes[blocks[which]]
-                found = [np.concatenate([one[:3], given_voltages(problem, modes, s, one)[None]]) for one in found]
-            rows = (7 if problem.two_faced else 3) + int(problem.tied)
+                for place, family in enumerate(per_block[which].families):
+                    volts = given_voltages(problem, modes, s, found[place]) + lacking(problem, family, modes)
+                    found[place] = np.concatenate([found[place][:3], volts[None]])
+            rows = (7 if problem.two_faced else 3) + int(looped)
             return _superposed(shares, [amplitude[:rows] for amplitude in found], around)
 
         make_shapes(problem, [modes])
@@ -151,7 +155,7 @@ def wave_motions(problem: Problem, sampling: AxialSampling, grid: LaplaceGrid, f
         if forces is not None and np.abs(motion[:, :, around:]).max(initial=0.0) <= _NOTHING * np.abs(motion).max():
             motion, shares = motion[:, :, :around], shares[:, :1]  # forces in pairs about z = 0 make nothing odd
         solid = FacedMotion(motion[3:5], motion[5:7]) if problem.two_faced else None
-        voltage = motion[-1] if problem.tied else None
+        voltage = motion[-1] if looped else None
         known = waves.families, shares, around, problem, grid, solid, voltage, charged(problem, sampling, j), j
         yield WaveMotion(modes, length, motion[0], motion[1], motion[2], *known)
 

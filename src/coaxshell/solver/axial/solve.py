@@ -19,6 +19,7 @@ from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_t
 from coaxshell.solver.axial.faced import READ, make_shapes
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.judgement import JudgedFrom, judge_when_read
+from coaxshell.solver.axial.limited import LimitedSolution, solve_limited_waves
 from coaxshell.solver.axial.line_solve import LineSolution, solve_lines
 from coaxshell.solver.axial.lines import line_layout, require_lines_alone
 from coaxshell.solver.axial.linked import PointSolution, point_structure, solve_points
@@ -191,8 +192,10 @@ def _with_fluids(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, f
 
 def _linked(
     problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, progress: Progress | None, on: BlockMap
-) -> PointSolution | LineSolution | None:
-    """Return what the absorbers do, None if there are none."""
+) -> PointSolution | LineSolution | LimitedSolution | None:
+    """Return what absorbers, or amplifiers at their limit, do; None if there are none."""
+    if saturates(problem.system):
+        return solve_limited_waves(problem, grid, sampling, on, progress)
     if problem.system.absorber_list:
         return solve_lines(line_layout(problem, sampling), grid, on, progress)
     if not problem.system.point_absorbers:
@@ -232,10 +235,7 @@ def require_known(problem: Problem, settings: Settings) -> None:
         told = "use current_saturation = false: two dimensions tell how much the limit matters"
         raise InputError("control.current_saturation", "currents stop at their limit in two dimensions alone", told)
     if saturates(system):
-        told = (
-            "use saturation = false: a warning tells if a voltage at a station exceeds its limit, and two dimensions how much that matters"
-        )
-        raise InputError("control.saturation", "voltages are cut at their limit in two dimensions alone", told)
+        _require_limits(problem)
     for source, geometry in zip(problem.emitters, problem.sources, strict=True):
         if not isinstance(geometry, PlaneGeometry):
             continue
@@ -245,3 +245,17 @@ def require_known(problem: Problem, settings: Settings) -> None:
                 where = f"{z:g} m is passed by the inclined wave {early:.3g} transits before t = 0, when it reaches the head at z = 0"
                 needed = early * problem.scales.time + source.delay
                 raise InputError("stations", where, f"give the source a delay of {needed:.3g} s or more, or use stations behind z = 0")
+
+
+def _require_limits(problem: Problem) -> None:
+    """Refuse what cannot be beside voltages that stop at their limit in three dimensions."""
+    where, told = "control.saturation", "use saturation = false, which warns where a voltage exceeds its limit"
+    if problem.system.absorber_list or problem.system.point_absorbers:
+        raise InputError(where, "beside absorbers voltages are cut at their limit in two dimensions alone", f"{told}, or no absorbers")
+    if problem.belts is not None:
+        found = "electrodes that are cut along the axis are not known to stop at a limit"
+        raise InputError(where, found, f"{told}, or leave segment_pitch out")
+    if any(isinstance(geometry, PlaneGeometry) and geometry.inclination for geometry in problem.sources):
+        raise InputError(where, "is not solved under a wave that runs along the axis", f"{told}, or inclination = 0")
+    if problem.two_faced:
+        raise InputError(where, "voltages on exact walls are cut at their limit in two dimensions alone", f'{told}, or theory = "thin"')

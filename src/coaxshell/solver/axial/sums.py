@@ -19,6 +19,7 @@ from coaxshell.solver.axial.faced import READ
 from coaxshell.solver.axial.faced_motion import faced_amplitudes
 from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
+from coaxshell.solver.axial.limited_wave import limited_motions
 from coaxshell.solver.axial.normals import motions_of, normals_of, piezoelectric_layers, potentials_of
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
@@ -98,6 +99,8 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
         return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
     if waves.belts is not None:
         return waves.belts.amplitudes(j)
+    if waves.limited:
+        return limited_motions(problem, waves, j, grid, block)
     if problem.tied:
         tied = TiedWave(problem, grid.nodes[block], waves.modes[j], max(family.parities for family in waves.families))
         return [_tied_motions(problem, tied, family, grid, block) for family in waves.families]

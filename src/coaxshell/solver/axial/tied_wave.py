@@ -104,15 +104,19 @@ class TiedWave(OpenWave):
         All orders from 0 to the highest where electrodes are cut.
     parities : int, optional
         How many the motion has around the circle; as many as under the sources unless given.
+
+    Attributes
+    ----------
+    loops : ElectrodeLoops
     """
 
     def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, parities: int = 1) -> None:
         super().__init__(problem, s, modes)
         patterns = patterns_of(problem, self.response.shells, modes.orders, max(parities, motion_parities(problem)))
-        self._loops = ElectrodeLoops.of(problem, self.response, patterns, s)
+        self.loops = ElectrodeLoops.of(problem, self.response, patterns, s)
 
     def driven(self, normal: ComplexArray) -> Driven:
         """Return what walls do with feedback that do W, (shells, parities, orders, nodes), without it."""
-        loops = self._loops
+        loops = self.loops
         voltage = loops.patterns.in_orders(loops.voltages(loops.patterns.readings(self.readings(normal))))
         return self.moved(voltage[:, : normal.shape[1]], normal)
