@@ -205,9 +205,3 @@ def test_margins_of_the_loops_are_those_of_thin_walls(kind: str) -> None:
 def test_an_unstable_loop_is_refused() -> None:
     with pytest.raises(cx.InputError, match="makes the closed loop unstable"):
         cx.simulate(system("paper", control=cx.PDControl(proportional=2e4, derivative=150)), duration=1.0, time_step=2e-2, modes=6)
-
-
-def test_what_is_not_known_is_refused() -> None:
-    limited = system("paper", control=GAINS["paper"].replace(saturation=True))
-    with pytest.raises(cx.InputError, match=r"control\.saturation: .*in two dimensions alone"):
-        cx.simulate(limited, duration=0.5, time_step=2e-2, modes=4, dimensions=3)

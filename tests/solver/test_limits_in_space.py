@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from electrode_pairs import pairs
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
@@ -14,10 +15,12 @@ from coaxshell.solver.axial.limited import _march
 from coaxshell.solver.axial.limited_surface import SurfaceStep, WallSurface
 from coaxshell.solver.axial.limited_wave import axial_parities, even_about
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.solve import forces_of, station_spectra
+from coaxshell.solver.axial.solve import forces_of, histories_within, station_spectra
+from coaxshell.solver.axial.through import stresses_through
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.limited_voltages import limits_of
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.structure.elastic_wall import Asked
 
 PAIRS = presets.load("electrodes")
 PLANE = PAIRS.replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4))
@@ -45,6 +48,9 @@ def test_uniform_sources_are_cut_as_in_two_dimensions(cut):
         given = found.actuator_voltage("outer", [0, 45, 90], station=z).to_numpy()
         assert_allclose(given, flat.actuator_voltage("outer", [0, 45, 90]).to_numpy(), atol=1e-9)
         assert_allclose(np.abs(given).max(), 30.0, rtol=1e-12)
+    there = {"radius": [0.7, 1.3], "angle": [0.0, 60.0], "time": [0.3, 0.5], "time_resolution": 0.1}
+    field = flat.pressure(**there).to_numpy()
+    assert_allclose(found.pressure(**there, z=0.2).to_numpy(), field, rtol=0, atol=1e-9 * np.abs(field).max())
 
 
 def test_what_reaches_no_limit_is_the_linear_answer():
@@ -121,11 +127,44 @@ def test_the_papers_law_stops_too_and_is_kept(tmp_path):
     system = limited(presets.load("active"), field_limit=1e5)
     run = cx.simulate(system, **RUN)
     assert_allclose(np.abs(run.actuator_voltage("outer", 0.0, station=0.0)).max(), 300.0, rtol=1e-9)
-    assert np.abs(run.energy().closure_relative).max() < 1e-5
     kept = cx.load_response(run.save(tmp_path / "run.nc"))
     assert_allclose(forces_of(kept.spatial).lack, forces_of(run.spatial).lack, rtol=1e-9, atol=1e-12)
     again, before = (station_spectra(one.spatial).normal for one in (kept, run))
     assert_allclose(again, before, rtol=0, atol=1e-12 * np.abs(before).max())
+
+
+EXACT = {
+    "whole": pairs(("elastic", "thin"), saturation=True, field_limit=LIMIT),
+    "cut": pairs(loss_factor=0.02, saturation=True, field_limit=LIMIT, segments=3, dead=[2]),
+    "paper": limited(presets.load("active"), field_limit=1e4).with_overrides({f"shells[{i}].theory": "elastic" for i in (0, 1)}),
+}
+
+
+@pytest.mark.slow_except("whole")
+@pytest.mark.parametrize("system", EXACT.values(), ids=EXACT.keys())
+def test_exact_walls_are_cut_as_in_two_dimensions(system):
+    system, free = (one.replace(source=PLANE.source) for one in (system, system.with_overrides({"control.saturation": False})))
+    few = {**RUN, "modes": 4}
+    flat = cx.simulate(system, duration=0.6, time_step=0.02, modes=4)
+    motion, linear = (cx.simulate(one, **few).spatial.fields["w"] for one in (system, free))
+    size = np.abs(linear).max()
+    assert np.abs(motion - linear).max() > 1e-4 * size
+    assert_allclose(motion[1], flat.solution.normal, rtol=0, atol=1e-12 * size)
+
+
+def test_exact_walls_under_spherical_fronts():
+    few = {**RUN, "modes": 3}
+    others = ({"control.field_limit": 1e8}, {"control.saturation": False})
+    wide, free = (cx.simulate(EXACT["whole"].with_overrides(one), **few) for one in others)
+    assert_allclose(wide.spatial.fields["w"], free.spatial.fields["w"], rtol=0, atol=0)
+    run = cx.simulate(EXACT["whole"], **few)
+    assert_allclose(np.abs(run.actuator_voltage("outer", [0.0, 40.0], station=0.0)).max(), 30.0, rtol=1e-9)
+    assert np.abs(run.energy().closure_relative).max() < 5e-5
+    wall = run.spatial.problem.shells[0]
+    depth = wall.layers[0].inner - wall.radius + 1e-3
+    through = stresses_through(run.spatial, 0, [Asked("hoop", depth)], [0])[0, 0]
+    within = histories_within(run.spatial, 0, depth)["hoop"][0] * run.spatial.problem.scales.pressure
+    assert_allclose(through, within, rtol=0, atol=1e-9 * np.abs(within).max())
 
 
 def test_a_limited_run_costs_more(whole):

@@ -89,7 +89,7 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
         + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
         lines.seconds
         + limits.seconds
-        + solids.seconds * (1.0 + again)
+        + solids.seconds * (1.0 + again + (2.5 if limits.memory else 0.0))
         + 0.1
         + _WAVE * len(sampling.modes)
         + waves * (1.0 + (again + 1.0 if points else 0.0))

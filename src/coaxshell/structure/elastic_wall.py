@@ -295,17 +295,19 @@ class ElasticWall(LayeredWall):
         W, V and U of the middle, the six stresses at the design depth (:data:`coaxshell.structure.elastic_depth.STRESSES`) and the
         potentials; at :attr:`depth_read` all but the potentials, if there is one. Under control what the law reads and gives come last.
         """
-        receptance, per_load, _ = self._at_stations(modes, s, reads)
+        receptance, per_load, _ = self._at_stations(modes, s, reads, fed_back=not self.closed_by_solver)
         return receptance, per_load
 
     def driven_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray, DrivenPort]:
         """Return the same of a wall whose loop the solver closes, and how its transducers answer, signs as of what stations read."""
-        receptance, per_load, driven = self._at_stations(modes, s, reads)
+        receptance, per_load, driven = self._at_stations(modes, s, reads, fed_back=False)
         assert driven is not None
         return receptance, per_load, driven
 
-    def _at_stations(self, modes: Modes, s: ComplexArray, reads: bool) -> tuple[FaceReceptance, ComplexArray, DrivenPort | None]:
-        """Return what :meth:`station_port` does, and where the solver closes its loop how its transducers answer."""
+    def _at_stations(
+        self, modes: Modes, s: ComplexArray, reads: bool, *, fed_back: bool
+    ) -> tuple[FaceReceptance, ComplexArray, DrivenPort | None]:
+        """Return what :meth:`station_port` does, and where it is not fed back how its transducers answer."""
         if np.ndim(modes.wavenumber):
             receptance, per_load = self._inclined(modes, s, self.asked_of_stations if reads else [])
             per_load[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
@@ -322,14 +324,14 @@ class ElasticWall(LayeredWall):
         volts = [port.volts for port in ports if port.volts is not None]
         if not volts:
             return FaceReceptance(*found[:3]), per_load, None
-        law = self._law(modes, s)
+        law = self._law(modes, s) if fed_back else 0.0
         loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], s, law)
         each = np.zeros((0, len(loop.volts), *found.shape[1:]), np.complex128)
         if reads:
             sums = [modal_sums(one.rows, port.squares, s) for one, port in zip(volts, ports, strict=True)]
             each = per_volt(sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1), [one.resting for one in volts])
             per_load = np.concatenate([per_load + under_volts(each, loop.volts), loop.sensed[None], law * loop.sensed[None]])
-        driven = DrivenPort.of(loop, each) if self.closed_by_solver else None
+        driven = None if fed_back else DrivenPort.of(loop, each)
         return self._under_loop(FaceReceptance(*found[:3]), loop), per_load, driven
 
     @kept_with_modes

@@ -118,7 +118,8 @@ class LossySolidWall(ElasticWall):
 
     def driven_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray, DrivenPort]:
         """Return the same of a wall whose loop the solver closes, and how its transducers answer."""
-        receptance, shown, loop, each = self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)
+        known = self.asked_of_stations if reads else [], modes, s
+        receptance, shown, loop, each = self._port_under_loop(*known, tells=reads, fed_back=False)
         return receptance, shown, DrivenPort.of(loop, each)
 
     def prepare_stations(self, modes: Modes) -> None:
@@ -142,18 +143,19 @@ class LossySolidWall(ElasticWall):
     # Control
 
     def _port_under_loop(
-        self, asked: Sequence[Asked], modes: Modes, s: ComplexArray, *, tells: bool = True
+        self, asked: Sequence[Asked], modes: Modes, s: ComplexArray, *, tells: bool = True, fed_back: bool = True
     ) -> tuple[FaceReceptance, ComplexArray, Loop, ComplexArray]:
         """Return how its faces answer and what it shows per load on them, last what the law reads and gives if it *tells* that.
 
         And the loop, with what a volt of each circuit shows, (quantities, circuits, orders, nodes).
         """
         found, signs = self._driven(asked).at(modes, s), self.signs_of(asked)
-        loop = self._closed_by(found, self._law(modes, s))
+        law = self._law(modes, s) if fed_back else 0.0
+        loop = self._closed_by(found, law)
         by_volts = signs * (found.by_volts + self._fields(modes, asked))
         shown = signs * self._per_load(found.shown) + under_volts(by_volts, loop.volts)
         if tells:
-            shown = np.concatenate([shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]])
+            shown = np.concatenate([shown, loop.sensed[None], law * loop.sensed[None]])
         return self._under_loop(found.receptance, loop), shown, loop, by_volts
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:

@@ -35,6 +35,7 @@ from coaxshell.solver.axial.lines import line_layout
 from coaxshell.solver.axial.motion import wave_motions
 from coaxshell.solver.axial.sampling import AxialSampling, whole_length_sampling
 from coaxshell.solver.axial.solution import SpatialSolution
+from coaxshell.solver.axial.solve import with_shapes
 from coaxshell.solver.cost import run_cost
 from coaxshell.solver.scaling import Problem
 
@@ -163,8 +164,10 @@ def along_the_length(solution: SpatialSolution, progress: Progress | None = None
     )
     linked = _lines(solution, sampling, grid, progress)
     held = HeldPoints(problem, grid, sampling) if problem.system.point_absorbers else None
-    limited = solve_limited_waves(problem, grid, sampling, on_threads, progress) if saturates(problem.system) else None
-    lack = None if limited is None else limited.forces
+    waves = with_shapes(problem, sampling, on_threads) if saturates(problem.system) else sampling
+    limited = solve_limited_waves(problem, grid, waves, on_threads, progress) if saturates(problem.system) else None
+    lack = None if limited is None else limited.with_waves(sampling).forces
+    del waves
     return AlongTheLength(not isinstance(problem.sources[0], SphericalFrontGeometry), grid, sampling, linked, held, lack)
 
 

@@ -41,22 +41,24 @@ class FacedWave:
         Of a real wavenumber.
     reads : bool
         Whether elastic walls are read, or their faces alone.
+    opened : bool
+        Whether all walls are without feedback, and the solver closes the loop of each.
     """
 
-    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, *, reads: bool = True) -> None:
+    def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, *, reads: bool = True, opened: bool = False) -> None:
         self.problem, self.modes, self.s = problem, modes, s
         self._readings: list[ComplexArray | WallOperator] = []
         self._driven: dict[int, DrivenPort] = {}
         receptances = []
         for i, wall in enumerate(problem.shells):
             if isinstance(wall, ElasticWall):
-                if wall.closed_by_solver:
+                if wall.closed_by_solver or (opened and wall.gains is not None):
                     receptance, reading, self._driven[i] = wall.driven_port(modes, s, reads=reads)
                 else:
                     receptance, reading = wall.station_port(modes, s, reads=reads)
                 self._readings.append(reading)
             else:
-                operator = wall.operator(modes, s)
+                operator = wall.passive(modes, s) if opened else wall.operator(modes, s)
                 self._readings.append(operator)
                 receptance = _alike(wall, operator) if wall.moves else wall.receptance(modes, s)
             receptances.append(receptance)

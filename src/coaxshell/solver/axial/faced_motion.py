@@ -8,14 +8,18 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver.axial.faced import FacedWave
+from coaxshell.solver.axial.faced import READ, FacedWave
 from coaxshell.solver.axial.families import WaveSet
+from coaxshell.solver.axial.limited_wave import limited_faces
 from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
 from coaxshell.solver.scaling import Problem
 
 
 def closed_motions(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: slice) -> Iterator[Closed]:
     """Yield what the faces of all walls do under each family's loads; voltages where the solver closes loops, else none (0 rows)."""
+    if waves.limited:
+        yield from (closed for closed, _ in limited_faces(wave, waves, grid, block))
+        return
     none = np.zeros((0, 0, wave.modes.count, wave.s.size), np.complex128)
     loops = TiedFaces(wave, max(family.parities for family in waves.families)) if wave.problem.tied else None
     for family in waves.families:
@@ -25,11 +29,22 @@ def closed_motions(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: sl
 
 def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
     """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes)."""
-    wave = FacedWave(problem, grid.nodes[block], waves.modes[j])
+    wave = FacedWave(problem, grid.nodes[block], waves.modes[j], opened=waves.limited)
+    if waves.limited:
+        return [_limited(wave, closed, lack, layers) for closed, lack in limited_faces(wave, waves, grid, block)]
     found = []
     for faces, voltage in closed_motions(wave, waves, grid, block):
         given = [voltage[:, parity] if voltage.size else None for parity in range(len(faces))]
         found.append(np.stack([wave.read(one, layers, volts) for one, volts in zip(faces, given, strict=True)], axis=2))
+    return found
+
+
+def _limited(wave: FacedWave, closed: Closed, lack: ComplexArray | float, layers: int) -> ComplexArray:
+    """Return the same of one family whose amplifiers stop at a limit: in the place of what walls give stands what their law asks for."""
+    found = np.stack([wave.read(one, layers, closed.voltage[:, parity]) for parity, one in enumerate(closed.faces)], axis=2)
+    for i, wall in enumerate(wave.problem.shells):
+        if not isinstance(lack, float) and wall.gains is not None and wall.shows_control:
+            found[len(READ) + wall.shown_potentials - 1, i] -= lack[i]
     return found
 
 
@@ -38,7 +53,7 @@ def motions_and_faces(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGri
 
     (7 or 8, shells, parities, orders, nodes) each.
     """
-    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j]), []
+    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j], opened=waves.limited), []
     for faces, voltage in closed_motions(wave, waves, grid, block):
         each = []
         for parity, one in enumerate(faces):

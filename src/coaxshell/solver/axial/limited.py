@@ -12,7 +12,7 @@ the sources are, and stay as far away.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
 
@@ -56,6 +56,11 @@ class LimitedSolution:
     lack: FloatArray
     iterations: int
     laws: None = None
+
+    def with_waves(self, sampling: AxialSampling) -> LimitedSolution:
+        """Return the same with other objects for the waves of the run, which keep no shapes of elastic walls."""
+        forces = replace(self.forces, channels=replace(self.forces.channels, sampling=sampling))
+        return replace(self, forces=forces)
 
     @cached_property
     def error(self) -> float:

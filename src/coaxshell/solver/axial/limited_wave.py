@@ -2,40 +2,61 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.blocks import Found
+from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lack import Channels, VoltageLack, wave_patterns
 from coaxshell.solver.axial.normals import normals_of, piezoelectric_layers, potentials_of
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
 from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
-from coaxshell.solver.electrode_loops import times
+from coaxshell.solver.electrode_loops import ElectrodeLoops, times
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.voltage_response import controlled
 
 
 def limited_motions(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
-    """Return what walls are read for in wave j under each family, (3 + layers, shells, parities, orders, nodes).
+    """Return what thin walls are read for in wave j under each family, (3 + layers, shells, parities, orders, nodes).
 
     Walls that show what they give show what their law asks for.
     """
     wave = TiedWave(problem, grid.nodes[block], waves.modes[j], motion_parities(problem))
     patterns, found = wave.loops.patterns, []
     for family in waves.families:
-        normal, asked, lack = _asked(problem, wave, family, grid, block)
-        moved = wave.moved(patterns.in_orders(asked + lack), None if normal is None else _widened(normal, motion_parities(problem)))
-        shown = patterns.in_orders(asked)
+        normal = read = None
+        if not isinstance(family.forces, VoltageLack):
+            normal = np.stack([np.stack(each) for each in normals_of(problem, wave.bare, family, grid, block)], axis=1)
+            read, normal = patterns.readings(wave.readings(normal)), _widened(normal, motion_parities(problem))
+        asked, given = limited_voltages(wave.loops, family, waves.modes[j], read)
+        moved = wave.moved(patterns.in_orders(given), normal)
         motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
         potentials = np.array(potentials_of(problem, wave.bare, piezoelectric_layers(problem), *motion))
-        for volts, i in zip(shown, wave.response.shells, strict=True):
+        for volts, i in zip(patterns.in_orders(asked), wave.response.shells, strict=True):
             if problem.shells[i].shows_control:
                 potentials[problem.shells[i].shown_potentials - 1, i] = volts
-        found.append(np.concatenate([np.stack(moved[:3]), potentials]) if len(potentials) else np.stack(moved[:3]))
+        found.append(np.concatenate([np.stack(moved[:3]), potentials]))
     return found
+
+
+def limited_faces(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: slice) -> Iterator[tuple[Closed, ComplexArray | float]]:
+    """Yield what the faces of all walls do under each family, with what is lacking of what their laws ask for, (shells, ...), 0 if nothing.
+
+    ``wave`` is without feedback, where some walls have two faces.
+    """
+    tied = TiedFaces(wave, motion_parities(wave.problem))
+    patterns = tied.loops.patterns
+    for family in waves.families:
+        free = None if isinstance(family.forces, VoltageLack) else wave.faces(family, grid, block)
+        read = None if free is None else patterns.readings(tied.readings(free))
+        _, given = limited_voltages(tied.loops, family, wave.modes, read)
+        yield tied.moved(patterns.in_orders(given), free), lacking(wave.problem, family, wave.modes)
 
 
 def lacking(problem: Problem, family: Family, modes: Modes) -> ComplexArray | float:
@@ -54,15 +75,31 @@ def _widened(normal: ComplexArray, parities: int) -> ComplexArray:
     return np.concatenate([normal, np.zeros((len(normal), missing, *normal.shape[2:]))], axis=1) if missing else normal
 
 
-def _asked(
-    problem: Problem, wave: TiedWave, family: Family, grid: LaplaceGrid, block: slice
-) -> tuple[ComplexArray | None, ComplexArray, ComplexArray | float]:
-    """Return W of a family without voltages, what the loops ask for and what is lacking, (walls, patterns, nodes) each."""
-    if isinstance(family.forces, VoltageLack):
-        lack = family.forces.of(wave.bare.modes, odd=family.odd_forces)
-        return None, times(wave.loops.inverse, lack) - lack, lack
+def _loops(problem: Problem, s: ComplexArray, modes: Modes) -> TiedWave | TiedFaces:
+    """Return the loops of a wave, which nothing but them feeds back."""
+    parities = motion_parities(problem)
+    if problem.two_faced:
+        return TiedFaces(FacedWave(problem, s, modes, reads=False, opened=True), parities)
+    return TiedWave(problem, s, modes, parities)
+
+
+def _readings(problem: Problem, wave: TiedWave | TiedFaces, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
+    """Return what patterns read of a family of sources without voltages, (walls, patterns, nodes)."""
+    if isinstance(wave, TiedFaces):
+        return wave.loops.patterns.readings(wave.readings(wave.wave.faces(family, grid, block)))
     normal = np.stack([np.stack(each) for each in normals_of(problem, wave.bare, family, grid, block)], axis=1)
-    return normal, wave.loops.asked(wave.loops.patterns.readings(wave.readings(normal))), 0.0
+    return wave.loops.patterns.readings(wave.readings(normal))
+
+
+def limited_voltages(loops: ElectrodeLoops, family: Family, modes: Modes, read: ComplexArray | None) -> tuple[ComplexArray, ComplexArray]:
+    """Return what loops ask for and give in a wave, (walls, patterns, nodes), by what patterns *read* of sources or by what is lacking."""
+    if isinstance(family.forces, VoltageLack):
+        lack = family.forces.of(modes, odd=family.odd_forces)
+        given = times(loops.inverse, lack)
+        return given - lack, given
+    assert read is not None
+    asked = loops.asked(read)
+    return asked, asked
 
 
 def voltages_asked(
@@ -79,12 +116,12 @@ def voltages_asked(
     found: Found = {}
     for waves in sets:
         for j, modes in enumerate(waves.modes):
-            wave = TiedWave(problem, s, modes, motion_parities(problem))
+            wave = _loops(problem, s, modes)
             for family in waves.families:
-                normal, asked, _ = _asked(problem, wave, family, grid, block)
-                each = {"asked": asked}
-                if wave.loops.patterns.dead and normal is not None:
-                    each["linear"] = wave.loops.voltages(wave.loops.patterns.readings(wave.readings(normal)))
+                read = None if isinstance(family.forces, VoltageLack) else _readings(problem, wave, family, grid, block)
+                each = {"asked": limited_voltages(wave.loops, family, modes, read)[0]}
+                if wave.loops.patterns.dead and read is not None:
+                    each["linear"] = wave.loops.voltages(read)
                 for name, values in each.items():
                     shape = (len(values), along, channels.count, s.size)
                     total = found.setdefault(name, np.zeros(shape, np.complex128))
@@ -103,7 +140,7 @@ def loop_kernel(problem: Problem, sampling: AxialSampling, s: ComplexArray, chan
     nodes: ComplexArray = s[block]
     found = None
     for j, modes in enumerate(sampling.modes):
-        inverse = np.moveaxis(TiedWave(problem, nodes, modes, motion_parities(problem)).loops.inverse, (2, 3), (0, 1))
+        inverse = np.moveaxis(_loops(problem, nodes, modes).loops.inverse, (2, 3), (0, 1))
         if found is None:
             found = np.empty((*inverse.shape[:2], channels.count, nodes.size), np.complex128)
         found[:, :, channels.of_wave(j)] = inverse

@@ -85,7 +85,7 @@ def solve_spatial(
         forces = None if linked is None else linked.forces
         spectra, squares = _summed(problem, grid, waves, settings, forces, progress, on)
         del waves, forces
-    if isinstance(linked, LineSolution):
+    if isinstance(linked, LineSolution | LimitedSolution):
         linked = linked.with_waves(sampling)  # which keep neither shapes nor fluids
     stopwatch.lap("axial wavenumbers at all Laplace nodes")
     keep = slice(None, None, settings.refinement)
@@ -161,7 +161,7 @@ def forces_of(solution: SpatialSolution) -> WallForces | None:
         linked = _linked(solution.problem, laplace_grid(solution.settings), waves, None, on_threads)
         if linked is None:
             return None
-        linked = linked.with_waves(solution.sampling) if isinstance(linked, LineSolution) else linked
+        linked = linked.with_waves(solution.sampling) if isinstance(linked, LineSolution | LimitedSolution) else linked
         solution.forces.append(linked.forces)
     return solution.forces[0]
 
@@ -257,5 +257,3 @@ def _require_limits(problem: Problem) -> None:
         raise InputError(where, found, f"{told}, or leave segment_pitch out")
     if any(isinstance(geometry, PlaneGeometry) and geometry.inclination for geometry in problem.sources):
         raise InputError(where, "is not solved under a wave that runs along the axis", f"{told}, or inclination = 0")
-    if problem.two_faced:
-        raise InputError(where, "voltages on exact walls are cut at their limit in two dimensions alone", f'{told}, or theory = "thin"')

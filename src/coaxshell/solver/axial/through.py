@@ -108,9 +108,10 @@ class _Pass:
         shape = (len(self.asked), len(some), found.shape[2], found.shape[3], nodes.size)
         amplitudes = [np.zeros(shape, np.complex128) for _ in waves.families]
         for place, one in enumerate(modes):
-            wave = FacedWave(self.problem, nodes, one, reads=False)
-            per_load, per_volt = wall.transfer(one, nodes, self.asked), None
-            if wall.closed_by_solver:
+            wave = FacedWave(self.problem, nodes, one, reads=False, opened=waves.limited)
+            opened = wall.gains is not None and (waves.limited or wall.closed_by_solver)
+            per_load, per_volt = wall.transfer(one, nodes, self.asked, fed_back=not opened), None
+            if opened:
                 per_volt = wall.under_voltage(one, nodes, self.asked).shown
             for (all_faces, voltage), amplitude in zip(closed_motions(wave, waves, self.grid, block), amplitudes, strict=True):
                 for parity, faces in enumerate(all_faces):

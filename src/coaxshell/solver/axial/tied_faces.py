@@ -39,10 +39,15 @@ class TiedFaces:
         All walls and fluids without feedback; all orders from 0 to the highest where electrodes are cut.
     parities : int
         How many the motion has around the circle.
+
+    Attributes
+    ----------
+    wave : FacedWave
+    loops : ElectrodeLoops
     """
 
     def __init__(self, wave: FacedWave, parities: int) -> None:
-        self._wave, problem = wave, wave.problem
+        self.wave, problem = wave, wave.problem
         shells = controlled(problem)
         self._per_volt = [wave.under_voltage(shell) for shell in shells]
         read = np.empty((len(shells), len(shells), wave.modes.count, wave.s.size), np.complex128)
@@ -51,15 +56,29 @@ class TiedFaces:
                 read[a, b] = wave.sensed(shell, moved[shell], float(a == b))
         self._response = VoltageResponse.of_faces(shells, read)
         patterns = patterns_of(problem, shells, wave.modes.orders, parities)
-        self._loops = ElectrodeLoops.of(problem, self._response, patterns, wave.s)
+        self.loops = ElectrodeLoops.of(problem, self._response, patterns, wave.s)
 
     def closed(self, free: list[list[FaceMotion]]) -> Closed:
         """Return the motion with feedback of faces that do *free* without it, for each parity around."""
-        wave, patterns = self._wave, self._loops.patterns
-        read = np.stack([np.stack([wave.sensed(shell, faces[shell]) for faces in free]) for shell in self._response.shells])
-        voltage = patterns.in_orders(self._loops.voltages(patterns.readings(read)))[:, : len(free)]
-        faces = [self._together(alone, voltage[:, parity]) for parity, alone in enumerate(free)]
-        return Closed(faces, of_all(wave.problem, self._response, voltage))
+        patterns = self.loops.patterns
+        return self.moved(patterns.in_orders(self.loops.voltages(patterns.readings(self.readings(free))))[:, : len(free)], free)
+
+    def readings(self, free: list[list[FaceMotion]]) -> ComplexArray:
+        """Return what the sensors of walls under control read of faces that do *free*, (walls, parities, orders, nodes)."""
+        wave = self.wave
+        return np.stack([np.stack([wave.sensed(shell, faces[shell]) for faces in free]) for shell in self._response.shells])
+
+    def moved(self, voltage: ComplexArray, free: list[list[FaceMotion]] | None = None) -> Closed:
+        """Return the motion under voltages, (walls, parities, orders, nodes), besides what faces do without them."""
+        alone: list[list[FaceMotion]] = [self._nothing] * voltage.shape[1] if free is None else [*free]
+        alone += [self._nothing] * (voltage.shape[1] - len(alone))
+        faces = [self._together(each, voltage[:, parity]) for parity, each in enumerate(alone)]
+        return Closed(faces, of_all(self.wave.problem, self._response, voltage))
+
+    @property
+    def _nothing(self) -> list[FaceMotion]:
+        zero = np.zeros((self.wave.modes.count, self.wave.s.size), np.complex128)
+        return [FaceMotion(zero, zero, zero, zero)] * len(self.wave.problem.shells)
 
     def _together(self, alone: list[FaceMotion], volts: ComplexArray) -> list[FaceMotion]:
         """Return motion without voltages and by voltages, (controlled, orders, nodes), together."""
