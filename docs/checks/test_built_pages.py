@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import inspect
 import re
+import sys
 import zlib
 from pathlib import Path
 
@@ -13,6 +14,9 @@ import pytest
 import coaxshell as cx
 from coaxshell import export, plotting
 from coaxshell.apps import verification
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "extensions"))
+from mathml import convert
 
 BUILT = Path(__file__).parents[1] / "built"
 OUTSIDE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
@@ -119,6 +123,23 @@ def test_no_formula_was_left_as_text(pages):
             continue
         text = re.sub(r"<(pre|code|script).*?</\1>", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
         assert re.findall(r"\\[a-zA-Z]+", text) == [], path
+
+
+def test_no_backslash_was_read_as_an_escape():
+    """A tab with "ilde" behind it is drawn as the product of four letters."""
+    sources = [path for path in BUILT.parent.rglob("*.md") if not {"built", "generated", "tutorials"} & set(path.parts)]
+    assert len(sources) > 50
+    assert [path.name for path in sources if re.search(r"[\a\b\t\v\f\x1b]", path.read_text(encoding="utf-8"))] == []
+
+
+def test_formulas_are_spaced_as_in_print():
+    """Functions stand off from what they are of, strokes and bars stand close, and so do signs."""
+    found = convert(r"W\cos m\theta + \ln(a/R) = -|z|")
+    assert '<mi>W</mi><mo form="prefix" lspace="0.17em" rspace="0.17em">cos</mo><mi>m</mi>' in found
+    assert '<mo form="prefix" lspace="0em" rspace="0em">ln</mo>' in found
+    tight = re.findall(r'<mo(?: \w+="\w+")* lspace="0em" rspace="0em">(&#x\w+;)</mo>', found)
+    assert tight == ["&#x0002F;", "&#x02212;", "&#x0007C;", "&#x0007C;"]
+    assert "lspace" not in convert("a - b")
 
 
 def test_what_is_typed_stands_as_it_is_typed(pages):

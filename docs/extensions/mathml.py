@@ -16,6 +16,11 @@ from sphinx.writers.html5 import HTML5Translator
 ALPHABETS = {"bold": "MATHEMATICAL BOLD", "script": "MATHEMATICAL SCRIPT", "double-struck": "MATHEMATICAL DOUBLE-STRUCK"}
 LETTERLIKE = {"MATHEMATICAL SCRIPT CAPITAL R": "\N{SCRIPT CAPITAL R}", "MATHEMATICAL SCRIPT CAPITAL L": "\N{SCRIPT CAPITAL L}"}
 STYLED = re.compile(r'<mi mathvariant="(bold|script|double-struck)">([A-Za-z]+)</mi>')
+# What TeX knows of spaces: a function stands off from its neighbours, though not from a bracket; strokes and bars stand close, and so
+# does the sign of a number, which browsers take for a difference wherever it is not the first in a row.
+FUNCTION = re.compile(r"(?P<before></(?:mi|mn|ms\w+|mfrac)>|&#x00029;</mo>)?<mi>(?P<name>[a-z]{2,})</mi>(?P<open>(?=<mo[^>]*>&#x00028;))?")
+TIGHT = re.compile(r'<mo(?: stretchy="false")?>(&#x0002F;|&#x0007C;)</mo>')
+SIGN = re.compile(r"(<mo[^>]*>(?!&#x0(?:0029|005D|007C|007D|0021);)[^<]*</mo>|<mspace[^>]*/>|<mtd[^>]*>)<mo>&#x02212;</mo>")
 
 
 def convert(text: str, display: str = "inline") -> str:
@@ -23,7 +28,15 @@ def convert(text: str, display: str = "inline") -> str:
     found = to_mathml(text, display=display)
     if "<mi>&</mi>" in found or "<mi>&amp;</mi>" in found:
         raise ExtensionError(f"no MathML for {text!r}: use cases, array or pmatrix")
+    found = SIGN.sub(r'\1<mo form="prefix" lspace="0em" rspace="0em">&#x02212;</mo>', found)
+    found = TIGHT.sub(r'<mo stretchy="false" lspace="0em" rspace="0em">\1</mo>', found)
+    found = FUNCTION.sub(_function, found)
     return STYLED.sub(lambda one: f"<mi>{''.join(_letter(one[1], each) for each in one[2])}</mi>", found)
+
+
+def _function(found: re.Match[str]) -> str:
+    before, after = "0.17em" if found["before"] else "0em", "0em" if found["open"] is not None else "0.17em"
+    return f'{found["before"] or ""}<mo form="prefix" lspace="{before}" rspace="{after}">{found["name"]}</mo>'
 
 
 def _letter(alphabet: str, letter: str) -> str:

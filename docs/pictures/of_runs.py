@@ -95,7 +95,7 @@ def snapshots(target: Path) -> None:
 
 def film(target: Path) -> None:
     """Both cuts as a film."""
-    plotting.save_film(spatial(), path=target, frames=36, fps=12.0, view=FieldView(2.5, pixels=180))
+    plotting.save_film(spatial(), path=target, frames=30, fps=10.0, view=FieldView(2.5, pixels=240))  # smaller ones have no axes
 
 
 def wall_film(target: Path) -> None:

@@ -7,7 +7,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from PIL import Image, ImageOps
+from PIL import Image
 
 
 def save(figure: Any, target: Path, *, dpi: float = 200.0, width: int | None = None, shades: int = 8) -> None:
@@ -25,7 +25,7 @@ def save(figure: Any, target: Path, *, dpi: float = 200.0, width: int | None = N
         Bits of each colour: fewer make smaller files of smooth fields.
     """
     image = _drawn(figure, width / figure.get_size_inches()[0] if width else dpi)
-    (ImageOps.posterize(image, shades) if shades < 8 else image).save(target, optimize=True)
+    (_fewer_shades(image, shades) if shades < 8 else image).save(target, optimize=True)
 
 
 def save_beside(figures: Sequence[Any], target: Path, width: int) -> None:
@@ -43,3 +43,9 @@ def _drawn(figure: Any, dpi: float) -> Image.Image:
     drawn = BytesIO()
     figure.savefig(drawn, format="png", dpi=dpi)
     return Image.open(drawn).convert("RGB")
+
+
+def _fewer_shades(image: Image.Image, bits: int) -> Image.Image:
+    """Keep so many bits of each colour; white stays white, and black black."""
+    steps = 2**bits - 1
+    return image.point([round(round(value * steps / 255) * 255 / steps) for value in range(256)] * 3)

@@ -36,6 +36,10 @@ def test_directivity_goes_around():
     assert axes.get_ylim()[1] >= found.values[1].max()
     figure = plotting.figure_directivity(found)
     assert len(figure.axes[0].lines) == 2
+    figure.draw_without_rendering()
+    title = figure.get_suptitle()
+    assert title == "target strength (dB re 1 m)"
+    assert figure.get_tightbbox().y1 < figure.get_size_inches()[1]  # nothing is cut off at the top
 
 
 def test_what_cannot_be_drawn_is_refused():

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 
+_MINUS = re.compile(r"(?<![\w.)])-(?=\d)")
+_EXPONENT = re.compile(r"(?<=\d)e(?:\+0*|(-)0*)(?=\d)")
+_POWERS = {f"^{power}": raised for power, raised in zip("234", "²³⁴", strict=True)}
 _TURNING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 """What turns the direction of writing, and so can make a name look like another."""
 
@@ -11,6 +15,13 @@ _TURNING = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 def rounded(value: float, digits: int) -> str:
     """Return a number with so many digits, as 0.12, 8.4 or 110: up to a million without an exponent."""
     return f"{float(f'{value:.{digits}g}'):g}"
+
+
+def typeset(text: str) -> str:
+    """Return a text as it is printed: minus signs for hyphens before numbers, 1e8 for 1e+08, N/m³ for N/m^3."""
+    for plain, raised in _POWERS.items():
+        text = text.replace(plain, raised)
+    return _EXPONENT.sub(lambda found: f"e{found[1] or ''}", _MINUS.sub("−", text))
 
 
 def visible(text: str, keep: str = "") -> str:

@@ -152,6 +152,8 @@ def figure_directivity(found: xr.DataArray, frequency: Sequence[float] | float |
         figure = new_figure(4.6, 4.9)
         ax = figure.add_subplot(projection="polar")
         plot_directivity(found, frequency, ax)  # type: ignore[arg-type]
+        figure.suptitle(ax.get_title(), fontsize=ax.title.get_fontsize())  # a title over the 90 degrees has no room of its own
+        ax.set_title("")
         figure.legend(loc="outside lower center", ncols=3)
     return figure
 

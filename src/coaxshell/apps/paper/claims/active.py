@@ -52,7 +52,7 @@ def voltage_is_within_the_limit(runs: Runs) -> Finding:
 @claim(
     _PLACE,
     "The proportional gain matters most for the reduction of the stress.",
-    "peaks at the four points; holds: k_p = -2e4 alone lowers each by more than k_d = -150 alone; in part: on average",
+    "peaks at the four points; holds: k_p = −2e4 alone lowers each by more than k_d = −150 alone; in part: on average",
 )
 def proportional_gain_matters_most(runs: Runs) -> Finding:
     """Compare the two gains alone."""
@@ -65,7 +65,7 @@ def proportional_gain_matters_most(runs: Runs) -> Finding:
 
 @claim(
     _PLACE,
-    "k_p = -2e4 alone lowers the stress of the inner shell noticeably.",
+    "k_p = −2e4 alone lowers the stress of the inner shell noticeably.",
     "holds: the peak falls by at least 5 % at the inner head and tail; in part: at one of them",
 )
 def proportional_gain_lowers_the_inner_stress(runs: Runs) -> Finding:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from coaxshell.apps.paper.known_runs import CORRECTED, NoFieldsError
 from coaxshell.errors import InputError
+from coaxshell.numerics.texts import typeset
 
 if TYPE_CHECKING:
     from coaxshell.apps.paper.known_runs import Runs
@@ -33,6 +34,10 @@ class Finding:
     measured: Mapping[str, float]
     verdict: Verdict
     why: str
+
+    def __post_init__(self) -> None:
+        """Print the sentence's numbers as a reader expects them."""
+        object.__setattr__(self, "why", typeset(self.why))
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def _peaks(run: Observed) -> dict[str, float]:
 
 @claim(
     _PLACE,
-    "Up to k_nl = 1e19 N/m^3 the response is nearly that of a linear absorber.",
+    "Up to k_nl = 1e19 N/m³ the response is nearly that of a linear absorber.",
     "holds: at most 1 % relative L2 change of the inner stress at head and tail; in part: at most 5 %",
 )
 def weak_cubic_spring_is_linear(runs: Runs) -> Finding:
@@ -37,7 +37,7 @@ def weak_cubic_spring_is_linear(runs: Runs) -> Finding:
 
 @claim(
     _PLACE,
-    "At k_nl = 1e20 N/m^3 the absorber works better than a linear one.",
+    "At k_nl = 1e20 N/m³ the absorber works better than a linear one.",
     "holds: lower peak of the inner stress at head and tail than with the linear absorber; in part: at one of them",
 )
 def adopted_cubic_spring_works_better(runs: Runs) -> Finding:
@@ -52,7 +52,7 @@ def adopted_cubic_spring_works_better(runs: Runs) -> Finding:
 
 @claim(
     _PLACE,
-    "At k_nl = 1e20 N/m^3 the linear and the cubic part of the spring contribute comparable forces.",
+    "At k_nl = 1e20 N/m³ the linear and the cubic part of the spring contribute comparable forces.",
     "largest cubic over largest linear force of the links, k_nl x^2/k_l at the largest stretch x; holds: 1/3 to 3; in part: 1/10 to 10",
 )
 def adopted_cubic_force_is_comparable(runs: Runs) -> Finding:
@@ -67,7 +67,7 @@ def adopted_cubic_force_is_comparable(runs: Runs) -> Finding:
 
 @claim(
     _PLACE,
-    "From k_nl = 1e21 N/m^3 on the absorber nears a rigid link.",
+    "From k_nl = 1e21 N/m³ on the absorber nears a rigid link.",
     "distance of the inner stress from that with a rigid link, relative to the whole effect of the rigid link (L2), the worse of head and "
     "tail; holds: falls from 1e20 to 1e21 and to 1e22, and is at most 50 % at 1e21; in part: falls",
 )
@@ -87,7 +87,7 @@ def strong_cubic_spring_nears_a_rigid_link(runs: Runs) -> Finding:
 @claim(
     _PLACE,
     "Nearing the rigid link spoils the mitigation.",
-    "holds: with 1e22 N/m^3 the peak of the inner stress is higher than with 1e20 at head and tail; in part: at one of them",
+    "holds: with 1e22 N/m³ the peak of the inner stress is higher than with 1e20 at head and tail; in part: at one of them",
 )
 def rigid_link_spoils_the_mitigation(runs: Runs) -> Finding:
     """Compare peaks with the strongest cubic spring and with the adopted one."""
