@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 import coaxshell as cx
-from coaxshell.solver.interface.saturation import LimitedVoltages, circle, voltage_limit
+from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
+from coaxshell.solver.interface import march as marching
+from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.saturation import CircleTransform, LimitedVoltages, circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
+from coaxshell.solver.structure_spectra import StructureSpectra
 
 MODES = 7
 
@@ -24,6 +29,36 @@ def test_to_the_circle_and_back(parities: int) -> None:
     evaluate, project = circle(MODES, parities)
     given = amplitudes(parities).ravel()
     np.testing.assert_allclose(project @ (evaluate @ given), given, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("parities", [1, 2])
+def test_fast_transforms_do_the_same(parities: int) -> None:
+    (evaluate, project), fast = circle(MODES, parities), CircleTransform(MODES, parities)
+    given = np.stack([amplitudes(parities), -2.0 * amplitudes(parities)])
+    values = given.reshape(2, -1) @ evaluate.T
+    np.testing.assert_allclose(fast.at_points(given), values, rtol=0, atol=1e-13)
+    cut = np.clip(values, -1.0, 1.0)
+    np.testing.assert_allclose(fast.amplitudes(cut.copy()).reshape(2, -1), cut @ project.T, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("angle", "limit", "gains"), [(0.0, 1e5, 1.0), (30.0, 1e4, 1.0), (0.0, 1e5, 300.0)])
+def test_actuators_alone_are_marched_as_with_newton_s_method(
+    angle: float, limit: float, gains: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By transforms and a fixed point, or, where feedback is too strong within a step, by Newton's method itself."""
+    control = cx.PDControl(proportional=-2e4 * gains, derivative=-150 * gains, saturation=True, field_limit=limit)
+    shock = cx.SphericalShock(distance=5.0, peak_pressure=2.5e5, decay_time=1.314e-4, angle=angle)
+    problem = dimensionless(cx.presets.load("active").replace(control=control, source=shock))
+    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 130), Modes.up_to(12))
+    none = absorber_set(problem, (), 1 if angle == 0.0 else 2)
+    found = marching.march(structure, none, saturate=True)
+    done = []
+    monkeypatch.setattr(marching, "march_actuators", lambda *_: done.append(True))
+    expected = marching.march(structure, none, saturate=True)
+    assert done
+    assert found.saturated
+    assert (found.iterations != expected.iterations) == (gains == 1.0)
+    np.testing.assert_allclose(found.modal_pressure, expected.modal_pressure, rtol=0, atol=1e-8 * abs(expected.modal_pressure).max())
 
 
 @pytest.mark.parametrize("parities", [1, 2])

@@ -28,8 +28,9 @@ from coaxshell.errors import InputError
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.actuator_march import march_actuators
 from coaxshell.solver.interface.newton import ConvergenceError, NewtonState
-from coaxshell.solver.interface.plan import MarchPlan, MotionWithout, march_plan, motion_without
+from coaxshell.solver.interface.plan import MarchPlan, MotionWithout, actuators_of, march_plan, motion_without
 from coaxshell.solver.interface.ring_march import RingPlan, TooStiffError, march_ring
 from coaxshell.solver.interface.state import LinkState, MarchState
 from coaxshell.solver.links.histories import LawHistories
@@ -102,8 +103,9 @@ def march(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate: bool
     InputError
         If a step does not converge.
     """
-    if not saturate and (ring := _as_ring(structure, absorbers, progress)) is not None:
-        return ring
+    without_newton = _actuators_alone if saturate and not absorbers.count else None if saturate else _as_ring
+    if without_newton is not None and (found_so := without_newton(structure, absorbers, progress)) is not None:
+        return found_so
     plan = march_plan(structure, absorbers, saturate=saturate)
     motion = motion_without(structure, absorbers, plan)
     steps, n = motion.steps, plan.count
@@ -132,6 +134,17 @@ def _as_ring(structure: StructureSpectra, absorbers: AbsorberSet, progress: Prog
     except TooStiffError:
         return None
     return MarchResult(found.force, found.mass_displacement, points.project(found.force), None, False, found.iterations)
+
+
+def _actuators_alone(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None) -> MarchResult | None:
+    """Return the march of saturating actuators without absorbers, None if they return too much within a step for it."""
+    found = march_actuators(structure, absorbers, progress)
+    if found is None:
+        return None
+    steps = structure.grid.time.size
+    actuators = actuators_of(structure, structure.points(absorbers), structure.controlled)
+    pressure, none = actuators.pressure(found.given.reshape(-1, steps)), np.zeros((0, steps))
+    return MarchResult(none, none, pressure, pressure, found.saturated, found.iterations)
 
 
 def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tuple[MarchState, BlockOutput]:

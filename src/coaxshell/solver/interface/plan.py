@@ -152,7 +152,7 @@ def march_plan(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate:
     """Return the constants of a march of some absorbers, and of the structure's actuators if they *saturate*."""
     points = structure.points(absorbers)
     table = structure.kernels_with_voltage if saturate else structure.kernels
-    actuators = _actuators(structure, points, structure.controlled if saturate else [])
+    actuators = actuators_of(structure, points, structure.controlled if saturate else [])
     length = _block_length(2 * absorbers.count + actuators.amplitudes)
     kernels = table.kernels[: points.surfaces, ..., :length]
     length = kernels.shape[-1]
@@ -191,13 +191,18 @@ def motion_without(structure: StructureSpectra, absorbers: AbsorberSet, plan: Ma
     actuators, points = plan.actuators, plan.points
     moved = structure.open_loop if actuators.controlled else structure
     steps = structure.grid.time.size
-    demanded = np.zeros((len(actuators.controlled), points.parities, points.modes, steps))
+    displacement, velocity = (np.ascontiguousarray(x.T).reshape(steps, 2, absorbers.count) for x in moved.motion_at(points))
+    demanded = demanded_voltage(structure, actuators)
+    return MotionWithout(displacement, velocity, np.ascontiguousarray(demanded.reshape(-1, steps).T))
+
+
+def demanded_voltage(structure: StructureSpectra, actuators: Actuators) -> FloatArray:
+    """Return what is asked for without absorbers or actuators, in units of the limits, shape (controlled, parities, M + 1, T)."""
+    demanded = np.zeros((len(actuators.controlled), actuators.parities, actuators.modes, structure.grid.time.size))
     if actuators.controlled:
         volts = structure.voltage_without_actuators
         demanded[:, : volts.shape[1]] = actuators.of_limits(volts)
-
-    displacement, velocity = (np.ascontiguousarray(x.T).reshape(steps, 2, absorbers.count) for x in moved.motion_at(points))
-    return MotionWithout(displacement, velocity, np.ascontiguousarray(demanded.reshape(-1, steps).T))
+    return demanded
 
 
 def _block_length(unknowns: int) -> int:
@@ -207,7 +212,8 @@ def _block_length(unknowns: int) -> int:
     return length
 
 
-def _actuators(structure: StructureSpectra, points: InterfacePoints | PointsAlone, controlled: list[int]) -> Actuators:
+def actuators_of(structure: StructureSpectra, points: InterfacePoints | PointsAlone, controlled: list[int]) -> Actuators:
+    """Return the limited actuators of the controlled shells of a structure."""
     limits = np.array([voltage_limit(structure.problem, i) for i in controlled])
     full = np.array([structure.problem.shells[i].actuator_pressure for i in controlled]) * limits
     return Actuators(points.surfaces, controlled, points.parities, points.modes, limits, full)

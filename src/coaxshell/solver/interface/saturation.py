@@ -14,6 +14,7 @@ system (1 + B) delta = clip - u_known, whose set is corrected until it reproduce
 from __future__ import annotations
 
 import numpy as np
+from scipy import fft
 
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.model.gains import law_of
@@ -27,19 +28,58 @@ _OVERSAMPLING = 4
 _FEWEST_POINTS = 180
 
 
+def points_around(modes: int, parities: int) -> int:
+    """Return how many points a circle has (:data:`_OVERSAMPLING`), a number that transforms fast; cosines alone need half of it."""
+    return parities * int(fft.next_fast_len(max(_OVERSAMPLING * modes, _FEWEST_POINTS), real=True))
+
+
 def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
     """Return the matrices from modal amplitudes (parities * modes) to the points of a circle, and back.
 
     Cosines alone have their points on half the circle: they are even.
     """
     orders = all_orders(modes - 1)
-    points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * parities
+    points = points_around(modes, parities)
     span = np.pi if parities == 1 else 2.0 * np.pi
     theta = span * (np.arange(points) + 0.5) / points
     angles = theta[:, None] * orders
     evaluate = np.concatenate([np.cos(angles), np.sin(angles)][:parities], axis=1)
     beta = np.tile(np.where(orders == 0, 2.0, 1.0), parities)
     return evaluate, np.ascontiguousarray(evaluate.T * (2.0 / (beta * points))[:, None])
+
+
+class CircleTransform:
+    """What :func:`circle` does, by fast transforms: of many instants at once, where points are many.
+
+    Parameters
+    ----------
+    modes, parities : int
+    """
+
+    def __init__(self, modes: int, parities: int) -> None:
+        self._modes, self._parities, self._points = modes, parities, points_around(modes, parities)
+        self._turn = np.exp(1j * np.pi / self._points * np.arange(modes))  # points lie half a step beside theta = 0
+
+    def at_points(self, amplitudes: FloatArray) -> FloatArray:
+        """Return values at the points, shape (..., points), of amplitudes (..., parities, M + 1)."""
+        if self._parities == 1:
+            padded = np.zeros((*amplitudes.shape[:-2], self._points))
+            padded[..., : self._modes] = 0.5 * amplitudes[..., 0, :]
+            padded[..., 0] *= 2.0
+            return np.asarray(fft.dct(padded, 3, axis=-1, overwrite_x=True))
+        spectrum = 0.5 * self._points * (amplitudes[..., 0, :] - 1j * amplitudes[..., 1, :]) * self._turn
+        spectrum[..., 0] = self._points * amplitudes[..., 0, 0]
+        return np.asarray(fft.irfft(spectrum, self._points, axis=-1))
+
+    def amplitudes(self, values: FloatArray) -> FloatArray:
+        """Return the amplitudes (..., parities, M + 1) of values at the points; they are overwritten."""
+        if self._parities == 1:
+            found = fft.dct(values, 2, axis=-1, overwrite_x=True)[..., None, : self._modes] / self._points
+        else:
+            spectrum = fft.rfft(values, axis=-1)[..., : self._modes] * (2.0 / self._points) / self._turn
+            found = np.stack([spectrum.real, -spectrum.imag], axis=-2)
+        found[..., 0] *= 0.5
+        return np.asarray(found)
 
 
 class LimitedVoltages:
