@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from benchmarks import absorbers, bare, engines, gradient, march, retuned, scaling, spatial, spatial_growth, spectra, studio, sweep
+from benchmarks import absorbers, bare, engines, gradient, limits, march, retuned, scaling, spatial, spatial_growth, spectra, studio, sweep
 
 
 def main() -> None:
     """Run them one after another."""
-    for benchmark in (bare, scaling, spatial, spatial_growth, absorbers, march, retuned, sweep, gradient, spectra, engines, studio):
+    for benchmark in (bare, scaling, spatial, spatial_growth, absorbers, march, limits, retuned, sweep, gradient, spectra, engines, studio):
         benchmark.main()
 
 
