@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import law_of, limits_currents, pitch_of, segments_of, ties_shells
+from coaxshell.model.gains import limits_currents, pitch_of, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -36,20 +36,6 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     _require_ties(system, dimensions)
     _require_free_currents(system)
     _require_belts(system, dimensions)
-    inclined = next((i for i, source in enumerate(system.sources) if getattr(source, "inclination", 0.0)), None)
-    if dimensions == 3 and inclined is not None:
-        where = f"source[{inclined}]" if isinstance(system.source, tuple) else "source"
-        _require_free_solids(system, f"{where}.inclination")
-
-
-def _require_free_solids(system: System, where: str) -> None:
-    """Raise InputError if an elastic wall that an inclined wave meets is under control."""
-    for i, shell in enumerate(system.shells):
-        if not isinstance(shell, Shell) or shell.theory != "elastic":
-            continue
-        if law_of(system, i) is not None:
-            problem = f"a wave that runs along shells[{i}], an elastic wall under control, is not solved"
-            raise InputError(where, problem, f'use inclination = 0, or shells[{i}].theory = "thin"')
 
 
 def _require_free_currents(system: System) -> None:

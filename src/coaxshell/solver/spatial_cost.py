@@ -39,6 +39,8 @@ _PER_SHAPE, _PER_TERM = 40e-9, 10e-9
 """Seconds of the shapes of a wave, per their number to the power 2.5, and of what each adds at a node."""
 _INCLINED = 2e-4
 """Seconds of the equations of a wall of 48 displacements at one order and node of an inclined wave, without shapes."""
+_INCLINED_DRIVEN = 2.8
+"""How much longer it takes where the wall is under control."""
 _WAVE = 5e-3
 """Seconds that a wavenumber takes at a few orders and nodes, each time that it is solved."""
 _TIED = 1.6
@@ -124,7 +126,8 @@ def _solids_cost(problem: Problem, sampling: AxialSampling, size: Size) -> Cost:
         shapes, rows = wall.shape_count(size.orders - 1.0, 0.0), 3.0 + len(READ) + len(wall.piezoelectric)
         if any(getattr(source, "inclination", 0.0) for source in problem.system.sources):
             unknowns = 3.0 + 3.0 * sum(wall.degree_of(layer, size.orders - 1.0) for layer in wall.layers)
-            seconds += (size.orders * size.nodes) * _INCLINED * (unknowns / 48.0) ** 2
+            driven = _INCLINED_DRIVEN if wall.closes_a_loop else 1.0
+            seconds += (size.orders * size.nodes) * _INCLINED * (unknowns / 48.0) ** 2 * driven
         memory += REAL * waves * shapes * rows + WORKERS * 4.0 * rows * size.plane * min(0.5, BLOCK_NODES / size.nodes)
         seconds += waves * (_PER_SHAPE * shapes**2.5 + size.nodes * shapes * _PER_TERM)
     return Cost(memory, seconds)

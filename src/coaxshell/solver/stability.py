@@ -303,6 +303,11 @@ def _ratio(problem: Problem, shared: SharedParts | None, passive: Problem, nodes
     return open_loop.closed(problem, nodes, modes)
 
 
+def determinant_ratio(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
+    """Return D_m/D0_m of some modes at any nodes, shape (orders, nodes); ``passive`` is the problem without feedback."""
+    return _ratio(problem, None, passive, nodes, modes)
+
+
 class Growth(NamedTuple):
     """The fastest growing motion: e^{(rate + i frequency) t} of an order, t in transits."""
 

@@ -23,6 +23,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis
 from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, several_by_shapes, shown_by_shapes
+from coaxshell.structure.inclined_drive import inclined_under_volts
 from coaxshell.structure.layered_wall import LayeredWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.shape_sums import modal_sums
@@ -34,7 +35,9 @@ from coaxshell.structure.solid_transducers import (
     Driven,
     Loop,
     LoopPart,
+    OpenCircuits,
     Transducers,
+    Unanswered,
     along_wall,
     at_rest,
     by_circuits,
@@ -121,7 +124,7 @@ class ElasticWall(LayeredWall):
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
         if np.ndim(modes.wavenumber):
-            return self._inclined(modes, s, [])[0]
+            return self.inclined_port(modes, s, [])[0]
         found = self._summed(modes, s, [of_faces(part) for part in self.basis(modes)])
         loop = self.loop(modes, s)
         return FaceReceptance(*found) if loop is None else self._under_loop(FaceReceptance(*found), loop)
@@ -151,19 +154,52 @@ class ElasticWall(LayeredWall):
         Without being ``fed_back`` its actuators are given no voltage.
         """
         if np.ndim(modes.wavenumber):
-            return self._inclined(modes, s, asked)[1]
+            return self.inclined_port(modes, s, asked, fed_back=fed_back)[1]
         found = self._summed(modes, s, self._weights(modes, asked))
         shown, loop = found.reshape(-1, 2, *found.shape[1:]), self.loop(modes, s, fed_back=fed_back)
         return shown if loop is None else shown + self._by_volts(modes, s, asked, loop)
 
-    def _inclined(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> tuple[FaceReceptance, ComplexArray]:
-        """Return the receptances of its faces and quantities per inward load on either of them in a wave that runs along the axis."""
+    def inclined_port(
+        self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True, tells: bool = False
+    ) -> tuple[FaceReceptance, ComplexArray, DrivenPort | None]:
+        """Return how its faces answer and what it shows per inward load on them in a wave that runs along the axis.
+
+        Last what the law reads and gives if it *tells* that; and how its transducers answer where nothing is *fed_back*.
+        """
         places = [InclinedPlace(one.what, self.radius + one.depth, self.layer_at(one.depth)) for one in asked]
-        faces, found = inclined_port(self.layers, modes, s, self.frequency, places)
-        return FaceReceptance(*faces), found * np.array(self.wetted)[:, None, None]
+        pressed = -np.array(self.wetted)[:, None, None]
+        if self.transducers is None or not self.closes_a_loop:
+            free, found = inclined_port(self.layers, modes, s, self.frequency, places)
+            return FaceReceptance(*free), -pressed * found, None
+        each = inclined_under_volts(self.layers, modes, s, self.frequency, places, self.transducers, self.driven_layers)
+        circuits = None
+        if self.transducers.circuits.any_open:
+            circuits = OpenCircuits(pressed * each.charged, each.all_of_volts, each.at_once)
+        wall = Unanswered(each.moved, pressed * each.heard, each.of_volts, circuits)
+        law = self._law(modes, s) if fed_back else 0.0
+        loop = closed_loop(wall, self.transducers.circuits, law)
+        shown = pressed * each.shown + under_volts(each.by_volts, loop.volts)
+        if tells:
+            shown = np.concatenate([shown, loop.sensed[None], law * loop.sensed[None]])
+        faces = -each.faces
+        receptance = self._under_loop(FaceReceptance(faces[0, 0], faces[0, 1], faces[1, 1]), loop)
+        return receptance, shown, None if fed_back else DrivenPort.of(loop, each.by_volts)
+
+    def inclined_under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
+        """Return what a volt on all its actuators does in a wave that runs along the axis."""
+        driven = self.inclined_port(modes, s, asked, fed_back=False)[2]
+        assert driven is not None
+        return driven.given
+
+    @property
+    def driven_layers(self) -> tuple[range, ...]:
+        """Numbers of the layers that voltages drive together, without what lies beside them: all."""
+        return (range(len(self.layers)),)
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
+        if np.ndim(modes.wavenumber):
+            return self.inclined_under_voltage(modes, s, asked)
         loop = self._loop(modes, s, 0.0)
         each, given = np.concatenate([loop.moved, self._shown_per_volt(modes, s, asked)]), loop.given[:, None]
         found = under_volts(each, given)[:, 0]
@@ -309,9 +345,7 @@ class ElasticWall(LayeredWall):
     ) -> tuple[FaceReceptance, ComplexArray, DrivenPort | None]:
         """Return what :meth:`station_port` does, and where it is not fed back how its transducers answer."""
         if np.ndim(modes.wavenumber):
-            receptance, per_load = self._inclined(modes, s, self.asked_of_stations if reads else [])
-            per_load[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
-            return receptance, per_load, None
+            return self._inclined_stations(modes, s, reads, fed_back=fed_back)
         parts, ports = [], self.ports(modes)
         for port in ports:
             pressed, weights = -port.faces * np.array(self.wetted)[:, None], products(port.faces)
@@ -333,6 +367,17 @@ class ElasticWall(LayeredWall):
             per_load = np.concatenate([per_load + under_volts(each, loop.volts), loop.sensed[None], law * loop.sensed[None]])
         driven = None if fed_back else DrivenPort.of(loop, each)
         return self._under_loop(FaceReceptance(*found[:3]), loop), per_load, driven
+
+    def _inclined_stations(
+        self, modes: Modes, s: ComplexArray, reads: bool, *, fed_back: bool
+    ) -> tuple[FaceReceptance, ComplexArray, DrivenPort | None]:
+        asked = self.asked_of_stations if reads else []
+        receptance, per_load, driven = self.inclined_port(modes, s, asked, fed_back=fed_back, tells=reads)
+        signs = self.signs_of(asked)
+        per_load[: len(asked)] *= signs
+        if driven is not None:
+            driven.given.shown[:] *= signs[:, 0]
+        return receptance, per_load, driven
 
     @kept_with_modes
     def ports(self, modes: Modes) -> tuple[Port, ...]:
@@ -359,7 +404,8 @@ class ElasticWall(LayeredWall):
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make what all blocks of nodes share in three dimensions, before all threads ask for it."""
-        self.ports(modes)
+        if np.ndim(modes.wavenumber) == 0:  # inclined waves have no shapes
+            self.ports(modes)
 
     @property
     def asked_of_port(self) -> list[Asked]:

@@ -62,6 +62,14 @@ class LossySolidWall(ElasticWall):
         """The transducers on its pieces; None where it is not under control."""
         return None if self.transducers is None else WallDrive(self.pieces, self.transducers, self.silent < math.inf)
 
+    @property
+    def driven_layers(self) -> tuple[range, ...]:
+        """Numbers of the layers that voltages drive together: those of pieces with shapes that lie side by side."""
+        if self.driven_pieces is None:
+            return ()
+        ends = ((self.pieces[each[0]], self.pieces[each[-1]]) for each in self.driven_pieces.stacks)
+        return tuple(range(first.first, last.first + len(last.layers)) for first, last in ends)
+
     @cached_property
     def stiffest(self) -> ElasticWall:
         """The wall without losses, every layer as stiff as it ever is within the run."""
@@ -91,7 +99,7 @@ class LossySolidWall(ElasticWall):
     def receptance(self, modes: Modes, s: ComplexArray) -> FaceReceptance:
         """Return how its faces answer loads on them."""
         if np.ndim(modes.wavenumber):
-            return self._inclined(modes, s, [])[0]
+            return self.inclined_port(modes, s, [])[0]
         if not self.closes_a_loop:
             return _receptance(self._faces.at(modes, s)[0])
         found = self.answered(modes, s)
@@ -118,12 +126,16 @@ class LossySolidWall(ElasticWall):
 
     def driven_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray, DrivenPort]:
         """Return the same of a wall whose loop the solver closes, and how its transducers answer."""
+        if np.ndim(modes.wavenumber):
+            return super().driven_port(modes, s, reads=reads)
         known = self.asked_of_stations if reads else [], modes, s
         receptance, shown, loop, each = self._port_under_loop(*known, tells=reads, fed_back=False)
         return receptance, shown, DrivenPort.of(loop, each)
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make the shapes of its pieces."""
+        if np.ndim(modes.wavenumber):
+            return
         self._stations.prepare(modes)
         self._faces.prepare(modes)
         if self.closes_a_loop:
@@ -133,7 +145,7 @@ class LossySolidWall(ElasticWall):
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes)."""
         if np.ndim(modes.wavenumber):
-            return self._inclined(modes, s, asked)[1]
+            return self.inclined_port(modes, s, asked, fed_back=fed_back)[1]
         if not self.closes_a_loop:
             return self._per_load(self._reading(asked).at(modes, s)[1])
         found = self._driven(asked).at(modes, s)
@@ -160,6 +172,8 @@ class LossySolidWall(ElasticWall):
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
+        if np.ndim(modes.wavenumber):
+            return self.inclined_under_voltage(modes, s, asked)
         found = self._driven(asked).at(modes, s)
         loop = self._closed_by(found, 0.0)
         shown = found.by_volts + self._fields(modes, asked)

@@ -20,7 +20,7 @@ Fronts that lead everything, sin(alpha) less than c_e over the fastest speed of 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -89,8 +89,8 @@ class InclinedMesh:
             self.powers[:, own, own] -= one.permittivity
             start = own.stop
 
-        self._joints, self._layers = self._parts()
-        self._between = self.powers[np.ix_(range(6), self._joints, self._joints)]
+        self.joints, self.layers = self._parts()
+        self._between = self.powers[np.ix_(range(6), self.joints, self.joints)]
 
     def _add_layers(self) -> None:
         """Add up the stiffness of all layers that no factor weighs, and put down what one does."""
@@ -165,40 +165,141 @@ class InclinedMesh:
         layers : sequence of int
             The layer of each quantity.
         """
-        size, outer = self.inertia.size, self.mesh.radius.size - 1
-        forces = np.zeros((size, 2))
-        forces[[0, outer], [0, 1]] = 1.0 / self._root[[0, outer]]
         found = np.empty((len(rows), 2, s.size), np.complex128)
-        step, flat = max(1, _BYTES // (16 * size * size)), rows[:, 0].reshape(-1, size)
-        under = [i for i in range(len(rows)) if rows[i, 1].any()]
-        for start in range(0, s.size, step):
+        for start in range(0, s.size, step := self.nodes_together):
             some = slice(start, start + step)
-            k, square = wavenumber[some], s[some] ** 2
-            matrix, eliminated = _at(self._between, order, k), []
-            _add_inertia(matrix, square, self.inertia[self._joints])
-            for one in self._layers:
-                own, across = _at(one.own, order, k), _at(one.across, order, k)
-                if one.relaxing is not None:
-                    g = one.relaxing.factor.at(s[some])[:, None, None]
-                    own += g * _at(one.relaxing.own, order, k)
-                    across += g * _at(one.relaxing.across, order, k)
-                    matrix[:, np.array(one.ends)[:, None], one.ends] += g * _at(one.relaxing.between, order, k)
-                _add_inertia(own, square, one.inertia)
-                eliminated.append(np.linalg.solve(own, across))
-                matrix[:, np.array(one.ends)[:, None], one.ends] -= np.swapaxes(across, 1, 2) @ eliminated[-1]
-            joints = np.linalg.solve(matrix, np.broadcast_to(forces[self._joints], (k.size, len(self._joints), 2)))
-            answer = np.empty((k.size, size, 2), np.complex128)
-            answer[:, self._joints] = joints
-            for one, x in zip(self._layers, eliminated, strict=True):
-                answer[:, one.inner] = -(x @ joints[:, one.ends])
-            shown = np.moveaxis((flat @ answer).reshape(k.size, len(rows), 3, 2), 0, -1)
-            found[..., some] = shown[:, 0] + order * shown[:, 1] + k * shown[:, 2]
-            for i in under:
-                factor = self.mesh.layers[layers[i]].layer.factor
-                assert factor is not None
-                fixed, around, along = np.moveaxis(rows[i, 1] @ answer, 0, -1)
-                found[i, :, some] += factor.at(s[some]) * (fixed + order * around + k * along)
+            answer, _ = self.assembled(order, wavenumber[some], s[some]).moving().solve(self.forces_on_faces)
+            found[..., some] = self.shown(order, wavenumber[some], s[some], answer, rows, layers)
         return found
+
+    @property
+    def nodes_together(self) -> int:
+        """How many nodes are solved together."""
+        return int(max(1, _BYTES // (16 * self.inertia.size**2)))
+
+    @property
+    def forces_on_faces(self) -> FloatArray:
+        """A unit force along r on the inner and on the outer face, over the roots of the mass, shape (N, 2)."""
+        forces, places = np.zeros((self.inertia.size, 2)), [0, self.mesh.radius.size - 1]
+        forces[places, [0, 1]] = 1.0 / self._root[places]
+        return forces
+
+    @property
+    def root(self) -> FloatArray:
+        """The roots of the mass, by which displacements are divided, shape (displacements,)."""
+        return self._root
+
+    def columns(self, part: LayerMesh) -> list[int]:
+        """Return the places of the displacements at the points of a layer."""
+        return self._columns(part)
+
+    def of_potential(self, part: LayerMesh, at: FloatArray, order: float, k: ComplexArray) -> ComplexArray:
+        """Return a sum over the points of a ceramic of its potential under displacements alone, per unit of each, (nodes, 3 (p + 1))."""
+        rows = self.powers[:, self._place[part]]
+        electric, charge = (at_powers(one, order, k) for one in (rows[..., self._place[part]], rows[..., self._columns(part)]))
+        values = np.broadcast_to(self._ceramics[part].values(at)[:, None], (*electric.shape[:2], 1))
+        return np.asarray(-np.einsum("ni,nik->nk", np.linalg.solve(electric, values)[..., 0], charge))
+
+    def shown(
+        self, order: float, k: ComplexArray, s: ComplexArray, answer: ComplexArray, rows: FloatArray, layers: Sequence[int]
+    ) -> ComplexArray:
+        """Return quantities of answers (nodes, N, loads), shape (quantities, loads, nodes); *rows* and *layers* as of :meth:`solve`."""
+        flat = rows[:, 0].reshape(-1, self.inertia.size)
+        each = np.moveaxis((flat @ answer).reshape(k.size, len(rows), 3, answer.shape[-1]), 0, -1)
+        found = each[:, 0] + order * each[:, 1] + k * each[:, 2]
+        for i in (i for i in range(len(rows)) if rows[i, 1].any()):
+            factor = self.mesh.layers[layers[i]].layer.factor
+            assert factor is not None
+            fixed, around, along = np.moveaxis(rows[i, 1] @ answer, 0, -1)
+            found[i] += factor.at(s) * (fixed + order * around + k * along)
+        return np.asarray(found)
+
+    def assembled(self, order: float, k: ComplexArray, s: ComplexArray) -> Assembled:
+        """Return the equations of an order without inertia at some nodes: :attr:`nodes_together` at most."""
+        between, within = at_powers(self._between, order, k), []
+        for one in self.layers:
+            own, across = at_powers(one.own, order, k), at_powers(one.across, order, k)
+            if one.relaxing is not None:
+                g = one.relaxing.factor.at(s)[:, None, None]
+                own += g * at_powers(one.relaxing.own, order, k)
+                across += g * at_powers(one.relaxing.across, order, k)
+                between[:, np.array(one.ends)[:, None], one.ends] += g * at_powers(one.relaxing.between, order, k)
+            within.append((own, across))
+        return Assembled(self, between, within, s)
+
+
+class Assembled:
+    """The equations of a wall at an order and some nodes, what lies within layers apart from the joints.
+
+    Parameters
+    ----------
+    equations : InclinedMesh
+    between : ndarray, shape (nodes, joints, joints)
+    within : list of (ndarray, ndarray)
+        A_II and A_IB of each layer.
+    s : ndarray, shape (nodes,)
+    """
+
+    def __init__(
+        self, equations: InclinedMesh, between: ComplexArray, within: list[tuple[ComplexArray, ComplexArray]], s: ComplexArray
+    ) -> None:
+        self._equations, self._between, self._within, self._s = equations, between, within, s
+
+    def moving(self, *, again: bool = False) -> Assembled:
+        """Return them with inertia: in place, unless those without it are needed *again*."""
+        equations, square = self._equations, self._s**2
+        between = self._between.copy() if again else self._between
+        within = [(own.copy() if again else own, across) for own, across in self._within]
+        _add_inertia(between, square, equations.inertia[equations.joints])
+        for one, (own, _) in zip(equations.layers, within, strict=True):
+            _add_inertia(own, square, one.inertia)
+        return Assembled(equations, between, within, self._s)
+
+    def solve(
+        self, loads: FloatArray | ComplexArray, border: ComplexArray | None = None, corner: ComplexArray | None = None
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """Return x and y of [A, b; b', c] [x; y] = [f; 0], shapes (nodes, N, loads) and (nodes, borders, loads).
+
+        Parameters
+        ----------
+        loads : ndarray, shape (N, loads) or (nodes, N, loads)
+            f.
+        border, corner : ndarray, shape (nodes, N, borders) and (nodes, borders, borders), optional
+            b and c.
+        """
+        equations, count = self._equations, self._s.size
+        joints, ends = equations.joints, len(equations.joints)
+        borders = 0 if border is None else border.shape[-1]
+        given = np.broadcast_to(loads, (count, *loads.shape[-2:]))
+        right = given if border is None else np.concatenate([border, given], axis=-1)
+        matrix = np.zeros((count, ends + borders, ends + borders), np.complex128)
+        matrix[:, :ends, :ends] = self._between
+        held = np.zeros((count, ends + borders, given.shape[-1]), np.complex128)
+        held[:, :ends] = given[:, joints]
+        if border is not None and corner is not None:
+            matrix[:, :ends, ends:] = border[:, joints]
+            matrix[:, ends:, :ends] = np.swapaxes(border[:, joints], 1, 2)
+            matrix[:, ends:, ends:] = corner
+        solved = []
+        for one, (own, across) in zip(equations.layers, self._within, strict=True):
+            places = [*one.ends, *range(ends, ends + borders)]
+            inner = right[:, one.inner]
+            loaded = borders > 0 or bool(inner.any())
+            x = np.linalg.solve(own, np.concatenate([across, inner], axis=-1) if loaded else across)
+            tied = across if border is None else np.concatenate([across, inner[..., :borders]], axis=-1)
+            less = np.swapaxes(tied, 1, 2) @ x
+            matrix[:, np.array(places)[:, None], places] -= less[..., : len(places)]
+            if loaded:
+                held[:, places] -= less[..., len(places) :]
+            solved.append((one.inner, places, x))
+        joined: ComplexArray = np.linalg.solve(matrix, held).astype(np.complex128, copy=False)
+        answer: ComplexArray = np.empty((count, equations.inertia.size, given.shape[-1]), np.complex128)
+        answer[:, joints] = joined[:, :ends]
+        for places_within, places, x in solved:
+            answer[:, places_within] = -(x[..., : len(places)] @ joined[:, places])
+            if x.shape[-1] > len(places):
+                answer[:, places_within] += x[..., len(places) :]
+        return answer, joined[:, ends:]
 
 
 class _Relaxing(NamedTuple):
@@ -221,7 +322,7 @@ class _Within(NamedTuple):
     relaxing: _Relaxing | None
 
 
-def _at(powers: FloatArray, order: float, k: ComplexArray) -> ComplexArray:
+def at_powers(powers: FloatArray, order: float, k: ComplexArray) -> ComplexArray:
     """Return a matrix at an order and wavenumbers, shape (nodes, rows, columns), from its powers."""
     fixed = powers[0] + order * powers[1] + order**2 * powers[2]
     linear, along = powers[3] + order * powers[5], k[:, None, None]
@@ -254,15 +355,15 @@ class _Electric:
                 permittivity[m, k] = root @ root.T
         self._root = np.linalg.cholesky(permittivity[0.0, 0.0])
         self.size = len(self._root)
-        self.coupling = np.linalg.solve(self._root, _powers(coupling))
-        self.permittivity = np.linalg.solve(self._root, np.swapaxes(np.linalg.solve(self._root, _powers(permittivity)), 1, 2))
+        self.coupling = np.linalg.solve(self._root, powers_of(coupling))
+        self.permittivity = np.linalg.solve(self._root, np.swapaxes(np.linalg.solve(self._root, powers_of(permittivity)), 1, 2))
 
     def values(self, at: FloatArray) -> FloatArray:
         """Return a sum over the points of the layer of the potential there, per unit of each unknown, shape (p - 1,)."""
         return np.asarray(np.linalg.solve(self._root, at[1:-1]))
 
 
-def _powers(sampled: dict[tuple[float, float], FloatArray]) -> FloatArray:
+def powers_of(sampled: dict[tuple[float, float], FloatArray]) -> FloatArray:
     """Return the polynomial in m and k through its values at (m, k) of :data:`_SAMPLES`: of 1, m, m^2, k, k^2 and m k."""
     f = sampled
     fixed = f[0.0, 0.0]
@@ -272,7 +373,21 @@ def _powers(sampled: dict[tuple[float, float], FloatArray]) -> FloatArray:
     return np.stack([fixed, around, around2, along, along2, both])
 
 
-_made = lru_cache(maxsize=64)(InclinedMesh)
+meshed_equations = lru_cache(maxsize=64)(InclinedMesh)
+
+
+def inclined_meshes(layers: Sequence[SolidLayer], modes: Modes, s: ComplexArray, frequency: float) -> Iterator[tuple[slice, InclinedMesh]]:
+    """Yield the places of the orders that share a mesh, and its equations: parameters as of :func:`inclined_answers`."""
+    k = np.broadcast_to(np.asarray(modes.wavenumber, np.complex128), s.shape)
+    shortest = frequency * float(np.max(np.abs(k) / np.abs(s)))
+    for members, mesh in order_meshes(tuple(layers), modes.orders, shortest, frequency, most=_MOST_DEGREE):
+        yield members, meshed_equations(mesh)
+
+
+def wall_faces(mesh: WallMesh) -> list[InclinedPlace]:
+    """Return the inward displacements of both faces of a wall."""
+    first, last = mesh.layers[0].layer, mesh.layers[-1].layer
+    return [InclinedPlace("normal", first.inner, 0), InclinedPlace("normal", last.outer, len(mesh.layers) - 1)]
 
 
 def inclined_answers(
@@ -292,11 +407,9 @@ def inclined_answers(
     places : sequence of InclinedPlace
     """
     k = np.broadcast_to(np.asarray(modes.wavenumber, np.complex128), s.shape)
-    shortest = frequency * float(np.max(np.abs(k) / np.abs(s)))
     found = np.empty((len(places), 2, modes.count, s.size), np.complex128)
     with one_blas_thread():  # many small matrices
-        for members, mesh in order_meshes(tuple(layers), modes.orders, shortest, frequency, most=_MOST_DEGREE):
-            equations = _made(mesh)
+        for members, equations in inclined_meshes(layers, modes, s, frequency):
             rows = np.stack([equations.rows(place) for place in places])
             for order in range(members.start, members.stop):
                 found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows, [place.layer for place in places])

@@ -10,6 +10,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cache import held_bytes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import checks
+from coaxshell.solver.axial.feedback_ahead import moved_ahead
 from coaxshell.solver.axial.lack import without_lack
 from coaxshell.solver.axial.left_out import estimated_errors
 from coaxshell.solver.axial.limited import LimitedSolution
@@ -63,6 +64,7 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
     )
     stopwatch.lap("error estimates")
     warnings = [*given.notes, *checks.before(problem, given.grid, solution.sampling.max_order)]
+    warnings += moved_ahead(problem, given.grid)
     warnings += checks.after(problem, estimates, settings) + checks.ideal_loop(problem, settings)
     if linked is not None and linked.laws is not None:
         warnings += checks.swinging_on_laws(linked.laws.angle, given.grid.time_step, settings.refinement)

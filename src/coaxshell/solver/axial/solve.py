@@ -17,6 +17,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver.axial.blocks import BlockMap, Workplace, node_blocks, on_threads
 from coaxshell.solver.axial.faced import READ, make_shapes
+from coaxshell.solver.axial.feedback_ahead import require_fronts_before_feedback
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.judgement import JudgedFrom, judge_when_read
 from coaxshell.solver.axial.limited import LimitedSolution, solve_limited_waves
@@ -76,6 +77,7 @@ def solve_spatial(
     settings = replace(settings, modes=sampling.max_order, axial_modes=sampling.highest, axial_period=period)
     require_room(problem, settings)
     require_stable_waves(problem, sampling, settings.duration)
+    require_fronts_before_feedback(problem, grid)
     stopwatch.lap("stability of the feedback")
     run = {"scenario": system.canonical(), "resolution": settings.arguments()}
     with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:

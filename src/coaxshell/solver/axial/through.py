@@ -107,6 +107,8 @@ class _Pass:
         assert isinstance(wall, ElasticWall)
         shape = (len(self.asked), len(some), found.shape[2], found.shape[3], nodes.size)
         amplitudes = [np.zeros(shape, np.complex128) for _ in waves.families]
+        if np.ndim(modes[0].wavenumber):  # an inclined wave, of one k for each node of the block
+            modes = [waves.modes[j] for j in some]
         for place, one in enumerate(modes):
             wave = FacedWave(self.problem, nodes, one, reads=False, opened=waves.limited)
             opened = wall.gains is not None and (waves.limited or wall.closed_by_solver)
@@ -128,6 +130,8 @@ class _Pass:
         part = slice(some.start, some.stop)
         for row, (one, of) in enumerate(zip(self.asked, amplitude, strict=True)):
             share = (family.odd if of_odd(one.what) else family.even)[:, part]
-            if np.any(share):
+            if share.ndim == 3:
+                found[row, ..., block] += share[:, 0, None, None] * of[0]
+            elif np.any(share):
                 columns = of.reshape(len(some), -1).view(np.float64)
                 found[row, ..., block] += (share @ columns).view(np.complex128).reshape(found.shape[1], *of.shape[1:])
