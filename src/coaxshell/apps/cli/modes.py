@@ -101,5 +101,5 @@ def _cell(column: str, value: Any) -> str:
     if value is None:
         return ""
     if column.endswith("motion"):
-        return f"{value:.2f}"
+        return f"{round(value, 2) + 0.0:.2f}"  # no minus before nothing
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -12,7 +12,7 @@ SHOWN_DECAY, SHOWN_DURATION = 0.2, 4.0
 """Transits, at which errors are laid out over the distance: next to the paper's 0.18, and the duration of its figures but one."""
 
 ABOUT = (
-    "The paper takes a slice: in the plane, the pressure of a spherical front, S/R f(t - (R - S)), while walls and fluids answer alike "
+    "The paper takes a slice: in the plane, the pressure of a spherical front, S/R f(t − (R − S)), while walls and fluids answer alike "
     "along the axis. It calls that in strong agreement with the sphere at the mid-plane. Its own bare shells under a true spherical "
     "front, in three dimensions at z = 0, say otherwise; line source and plane wave, the exact waves of two dimensions with the same "
     "pressure at the head point, stand beside them."
@@ -22,7 +22,7 @@ WHY = (
     "fluids and in the walls: what comes back through the system is up to two and a half times as large."
 )
 MAP = (
-    "The slice's error by the source's distance from the axis and the decay of its pulse, ||slice - sphere||/||sphere|| over time and the "
+    "The slice's error by the source's distance from the axis and the decay of its pulse, ‖slice − sphere‖/‖sphere‖ over time and the "
     "four points together. A run in two dimensions reads its warning from this map."
 )
 USE = (

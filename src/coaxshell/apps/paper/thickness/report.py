@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ from coaxshell.apps.paper.thickness.judged import rows
 from coaxshell.apps.verification.markdown import table
 from coaxshell.model import PlaneShock
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.texts import typeset
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.thin_error import WALLS, WETTED, ThinMap, thin_map
 
@@ -43,9 +45,10 @@ class PowerLaw:
     within: float
 
     @property
-    def told(self) -> str:
-        """The law in words."""
-        return f"{self.scale:.2g} (h/R)^{self.thickness:.2f} decay^{self.decay:.2f} t^{self.duration:.2f}"
+    def told(self) -> tuple[str, ...]:
+        """The constant, the powers and the factor."""
+        powers = (typeset(f"{power:.2f}") for power in (self.thickness, self.decay, self.duration))
+        return f"{self.scale:.2g}", *powers, f"{self.within:.1f}"
 
 
 def power_law(known: ThinMap, wall: str, wetted: str) -> PowerLaw:
@@ -91,7 +94,7 @@ class Report:
     def fit_rows(self) -> list[tuple[str, ...]]:
         """The power law of each wall of the map."""
         laws = {(wall, wetted): power_law(self.known, wall, wetted) for wall in WALLS for wetted in WETTED}
-        return [(texts.WALL_NAMES[wall], texts.WETTED_NAMES[wetted], law.told, f"{law.within:.1f}") for (wall, wetted), law in laws.items()]
+        return [(texts.WALL_NAMES[wall], texts.WETTED_NAMES[wetted], *law.told) for (wall, wetted), law in laws.items()]
 
     @property
     def fit_caption(self) -> str:
@@ -127,7 +130,8 @@ class Report:
         errors, peaks, motion, fit = (f"{caption}\n\n{table(headings, rows)}" for caption, headings, rows in self.tables)
         use = "\n".join(f"- {line}" for line in texts.USE)
         pieces = [texts.ABOUT, errors, peaks, motion, self.told, texts.WHY, shown[0], "## The map", self.map_told, shown[1], fit]
-        return "\n\n".join([*pieces, *self._claims, "## What to use when", use]) + "\n"
+        written = "\n\n".join([*pieces, *self._claims, "## What to use when", use]) + "\n"
+        return re.sub(r'(\w+ = "\w+")', r"`\1`", written)  # options as they are typed
 
     @property
     def _claims(self) -> list[str]:

@@ -21,12 +21,15 @@ WHY = (
     "0.06 and 0.5 %. Peaks and displacements feel little of all this."
 )
 MAP = (
-    "The error of thin walls by thickness over radius and the decay of the pulse, ||thin - exact||/||exact|| of the hoop stress in the "
+    "The error of thin walls by thickness over radius and the decay of the pulse, ‖thin − exact‖/‖exact‖ of the hoop stress in the "
     "middle of the core over time, head and tail together, to t = {duration:g}; plane wave. The inner wall of the paper's pair is as thick "
     "as the outer at half the radius. A run in two dimensions reads its warning from this map, by whether a wall is dry inside, within "
     "others, or the outermost with fluid on both sides; other systems' errors were {low:.1f} to {high:.1f} times the map's."
 )
-FIT = "A power law holds the map from h/R = {thinnest:g} and up to decays of {decay:g} transits, within the factor in the last column:"
+FIT = (
+    "A product of powers of h/R, of the decay and of the time in transits, by a constant, holds the map from h/R = {thinnest:g} and up to "
+    "decays of {decay:g} transits, within the factor in the last column:"
+)
 USE = (
     "With wetted = \"faces\" the largest hoop stress of the paper's walls is within 5 % of exact walls' up to 48 mm, and "
     "displacements within 2 %: for these thin walls will do.",
@@ -46,7 +49,7 @@ CLAIMS = (
     "it, and absorbers hold thin walls along lines, exact ones over arcs as long as these are thick. Of {count} statements {turned}."
 )
 CLAIM_HEADINGS = ("no.", "statement", "thin", "exact", "found with thin walls", "found with exact walls")
-FIT_HEADINGS = ("wall", "wetted at", "error of the hoop stress", "within a factor")
+FIT_HEADINGS = ("wall", "wetted at", "constant", "power of h/R", "of the decay", "of the time", "within a factor")
 WALL_NAMES = {"dry": "dry inside", "inner": "the paper's inner", "outer": "the paper's outer"}
 WETTED_NAMES = {"mid-surface": "mid-surfaces", "faces": "faces"}
 CAPTIONS = {
