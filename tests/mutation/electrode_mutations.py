@@ -146,8 +146,8 @@ ELECTRODES = (
     Mutation(
         "tied-faces-by-volts",
         "solver/axial/tied_faces.py",
-        "float(a == b)",
-        "0.0",
+        "wave.sensed(shell, moved[shell], float(a == b))\n",
+        "wave.sensed(shell, moved[shell], 0.0)\n",
         "an elastic wall reads what its own voltages make it read beside the motion of its faces",
         "solver/test_exact_ties_in_space.py",
     ),
@@ -202,8 +202,8 @@ ELECTRODES = (
     Mutation(
         "belts-short-waves",
         "solver/axial/belts.py",
-        "read = self._far.response.read * self._left_over[number][:, None]",
-        "read = self._far.response.read * 0.0",
+        "read = self._far.read * self._left_over[number][:, None]",
+        "read = self._far.read * 0.0",
         "what a volt stretches does not fade with the wavenumber",
         "solver/test_belts.py",
     ),

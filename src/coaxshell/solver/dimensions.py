@@ -81,10 +81,6 @@ def _require_belts(system: System, dimensions: int) -> None:
         raise InputError(where, f"{told}and a plane run is alike all along it", remedy)
     if system.absorber_list or system.point_absorbers:
         raise InputError(where, f"{told}which beside absorbers is not solved", "leave the absorbers out, or segment_pitch")
-    solid = next((i for i, shell in enumerate(system.shells) if isinstance(shell, Shell) and shell.theory == "elastic"), None)
-    if solid is not None:
-        remedy = f'use shells[{solid}].theory = "thin", or leave segment_pitch out'
-        raise InputError(where, f"{told}which beside an elastic wall, shells[{solid}], is not solved", remedy)
     if any(getattr(source, "inclination", 0.0) for source in system.sources):
         remedy = "use inclination = 0, a spherical source far away, or leave segment_pitch out"
         raise InputError(where, f"{told}which under a wave that runs along it is not solved", remedy)

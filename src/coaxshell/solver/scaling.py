@@ -202,7 +202,7 @@ class Problem:
     @property
     def belts(self) -> Belts | None:
         """The belts into which electrodes are cut along the axis, alike on all walls under control; None where they are not."""
-        return next((wall.belts for wall in self.shells if isinstance(wall, TiedWall) and wall.gains is not None), None)
+        return next((wall.belts for wall in self.shells if isinstance(wall, TiedWall | ElasticWall) and wall.gains is not None), None)
 
     @property
     def cut(self) -> bool:
@@ -326,7 +326,8 @@ def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band)
     wall = (LossySolidWall if any(layer.factor is not None for layer in layers) else ElasticWall).of(layers, core)
     if gains is None:
         return wall
-    return replace(wall, gains=gains, transducers=_transducers(system, index, scales), segments=_segments(system, index))
+    cut, belts = _segments(system, index), _belts(system, index, scales.length)
+    return replace(wall, gains=gains, transducers=_transducers(system, index, scales), segments=cut, belts=belts)
 
 
 def _transducers(system: System, index: int, scales: Scales) -> Transducers:

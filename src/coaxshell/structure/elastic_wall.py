@@ -21,6 +21,7 @@ import numpy as np
 from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
+from coaxshell.structure.belts import Belts
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis
 from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, several_by_shapes, shown_by_shapes
 from coaxshell.structure.inclined_drive import inclined_under_volts
@@ -76,12 +77,15 @@ class ElasticWall(LayeredWall):
         Layers beside its own that decide on its mesh.
     segments : Segments or None
         Of its electrodes. Where they are cut its feedback, which ties orders to each other, is closed by the solver, not by the wall.
+    belts : Belts or None
+        Those into which its electrodes are cut along the axis; the solver closes such loops too.
     tied_as : TiedWall or None
         The thin wall of its layers where its actuators answer other walls too; the solver closes such a loop.
     """
 
     transducers: Transducers | None = None
     segments: Segments | None = None
+    belts: Belts | None = None
     tied_as: TiedWall | None = None
     depth_read: float | None = field(default=None, compare=False)
     keeps_shapes: bool = field(default=False, compare=False)
@@ -262,7 +266,7 @@ class ElasticWall(LayeredWall):
     @property
     def closed_by_solver(self) -> bool:
         """Whether its feedback ties orders or walls to each other, so that the solver closes the loop."""
-        return self.gains is not None and bool(self.segments or self.tied_as)
+        return self.gains is not None and bool(self.segments or self.belts or self.tied_as)
 
     def _law(self, modes: Modes, s: ComplexArray) -> ComplexArray | float:
         return 0.0 if self.gains is None or self.closed_by_solver else self.gains.at(s, modes)

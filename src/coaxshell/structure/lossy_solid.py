@@ -74,8 +74,8 @@ class LossySolidWall(ElasticWall):
     def stiffest(self) -> ElasticWall:
         """The wall without losses, every layer as stiff as it ever is within the run."""
         found = ElasticWall.of(tuple(layer.stiffest for layer in self.layers), self.core)
-        held = {"transducers": self.transducers, "gains": self.gains, "segments": self.segments, "tied_as": self.tied_as}
-        return replace(found, **held, frequency=self.frequency)  # type: ignore[arg-type]
+        held = {name: getattr(self, name) for name in ("transducers", "gains", "segments", "belts", "tied_as")}
+        return replace(found, **held, frequency=self.frequency)
 
     def degree_of(self, layer: SolidLayer, order: float, wavenumber: float = 0.0) -> int:
         """Return the degree for the waves of a layer that are worth a search: with losses they die within it as they become short."""

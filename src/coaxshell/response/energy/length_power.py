@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coaxshell.errors import InputError
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.response.energy.electrodes import DrivenWall, driven_at
@@ -100,18 +100,25 @@ def length_power(solution: SpatialSolution, progress: Progress | None = None) ->
 
 def _products(driven: DrivenWall, grid: LaplaceGrid, length: float) -> FloatArray:
     """Return the integrals of u i, u^2 and i^2 over a wall in one wave, (3, T)."""
-    held, weight = sum(capacitance for _, capacitance in driven.charges), length * driven.weight
     strained = sum((one for one, _ in driven.charges), np.zeros_like(driven.volts))
+    held = np.full((driven.weight.size, 1), sum(capacitance for _, capacitance in driven.charges))
+    return _over_circle(grid, length * driven.weight, driven.volts, strained, held, driven.charging)
+
+
+def _over_circle(
+    grid: LaplaceGrid, weight: FloatArray, volts: ComplexArray, strained: ComplexArray, held: FloatArray, charging: ComplexArray
+) -> FloatArray:
+    """Return the integrals of u i, u^2 and i^2, (3, T), of the charge of strain and of what *charging* brings to capacitances *held*."""
 
     def over(one: FloatArray, other: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("m,hmt,hmt->t", weight, one, other))
 
-    u, i = grid.invert(driven.volts), grid.invert((strained + held * driven.volts) * grid.nodes)
+    u, i = grid.invert(volts.copy()), grid.invert((strained + held * volts) * grid.nodes)
     found = np.stack([over(u, i), over(u, u), over(i, i)])
-    if driven.charging is driven.volts:
+    if charging is volts:
         return found
-    slow, fast = (grid.invert(held * one * grid.nodes) for one in (driven.volts, driven.charging))
-    field = grid.invert(driven.charging)
+    slow, fast = (grid.invert(held * one * grid.nodes) for one in (volts, charging))
+    field = grid.invert(charging.copy())
     return found + np.stack([over(field, fast) - over(u, slow), over(field, field) - over(u, u), over(fast, fast) - over(slow, slow)])
 
 
@@ -122,9 +129,9 @@ def _of_solids(motion: Motion, shell: int, wall: ElasticWall) -> FloatArray:
     assert every is not None
     acting = np.flatnonzero(every.acting)
     moved, capacitance = strokes(motion, shell, volts), capacitances(wall, motion)
-    charge = sum((moved[j] + capacitance[j][:, None] * volts[j] for j in acting), np.zeros_like(volts[0]))
-    u, i = grid.invert(volts[acting[0]].copy()), grid.invert(charge * grid.nodes)
-    return np.stack([np.einsum("m,hmt,hmt->t", motion.circle, a, b) for a, b in ((u, i), (u, u), (i, i))])
+    given, strained = volts[acting[0]], sum((moved[j] for j in acting), np.zeros_like(volts[0]))
+    charging = given if motion.charged is None else motion.charged[:, None] * given
+    return _over_circle(grid, motion.circle, given, strained, capacitance[acting].sum(axis=0)[:, None], charging)
 
 
 def _holds_charges(wall: ShellModel) -> bool:

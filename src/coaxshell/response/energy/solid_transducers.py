@@ -107,7 +107,8 @@ def open_fields(motion: Motion, shell: int, volts: ComplexArray) -> FloatArray:
 def solid_electrical(motion: Motion, shell: int) -> tuple[FloatArray, FloatArray] | None:
     """Return the energy from the amplifiers of a wall since the start and that in its actuators' fields, (T,); None without electrodes.
 
-    The charge of a driven layer is -d'x + C u per radian, in the sign in which u times its rate is the power of the amplifier.
+    The charge of a driven layer is -d'x + C u per radian, in the sign in which u times its rate is the power of the amplifier. Voltages
+    of belts charge C with waves that the run has left out too.
     """
     wall, grid = motion.problem.shells[shell], motion.grid
     assert isinstance(wall, ElasticWall)
@@ -118,8 +119,12 @@ def solid_electrical(motion: Motion, shell: int) -> tuple[FloatArray, FloatArray
     moved, held, supplied = strokes(motion, shell, volts), np.zeros(grid.time.size), np.zeros(grid.time.size)
     for j in np.flatnonzero(wall.transducers.acting):
         capacitance = capacitances(wall, motion)[j]
-        charge = moved[j] + capacitance[:, None] * volts[j]
-        supplied += SurfaceWork(grid, motion.circle, grid.nodes * charge)(volts[j])
-        history = grid.invert(volts[j].copy())
+        charging = volts[j] if motion.charged is None else motion.charged[:, None] * volts[j]
+        if motion.charged is None:
+            supplied += SurfaceWork(grid, motion.circle, grid.nodes * (moved[j] + capacitance[:, None] * volts[j]))(volts[j])
+        else:
+            supplied += SurfaceWork(grid, motion.circle, grid.nodes * moved[j])(volts[j])
+            supplied += SurfaceWork(grid, motion.circle, grid.nodes * (capacitance[:, None] * charging))(charging)
+        history = grid.invert(charging.copy())
         held += 0.5 * np.einsum("m,hmt,hmt->t", capacitance * motion.circle, history, history)
     return supplied, held

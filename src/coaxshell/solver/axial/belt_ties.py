@@ -8,7 +8,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.belts import FAR, classes_of, left_over
+from coaxshell.solver.axial.belts import classes_of, left_over
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.tied_stability import Tied
@@ -57,7 +57,7 @@ class TiedClass(Tied):
 def ties_of_belts(problem: Problem, sampling: AxialSampling) -> list[TiedClass]:
     """Return what each class of waves of a run ties, ascending from the belts that all do the same to neighbours that do the opposite."""
     assert problem.belts is not None
-    classes, far = classes_of(problem.belts, sampling), Modes.up_to(sampling.max_order, FAR * sampling.highest)
+    classes, far = classes_of(problem.belts, sampling), sampling.far
     missing, found = left_over(classes, sampling), []
     for number in range(classes.classes):
         waves = classes.waves_of(number)

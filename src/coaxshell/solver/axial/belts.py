@@ -12,27 +12,27 @@ exact for the parts of C that go with 1 and with 1/k^2.
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family, Named, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
-from coaxshell.solver.axial.normals import motions_of, piezoelectric_layers, potentials_of
+from coaxshell.solver.axial.open_waves import Answers, FacedAnswers, ThinAnswers
 from coaxshell.solver.axial.sampling import AxialSampling
-from coaxshell.solver.axial.tied_wave import OpenWave, motion_parities
+from coaxshell.solver.axial.tied_faces import Closed
+from coaxshell.solver.axial.tied_wave import motion_parities
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
 from coaxshell.structure.belts import BeltClasses, Belts
-
-FAR = math.sqrt(3.0)
-"""The wavenumber that stands for those left out, over the highest one kept."""
+from coaxshell.structure.tied_wall import TiedWall
 
 
 def driven_sets(
@@ -133,7 +133,8 @@ class BeltDriver:
         self._about_zero, self._under, self._places, self._grid, self._block = about_zero, under, places, grid, block
         self._shells = controlled(problem)
         self._voltages: dict[int, ComplexArray] = {}
-        self._solved: tuple[int, dict[int, tuple[OpenWave, list[ComplexArray]]]] = (-1, {})
+        self._answers = FacedAnswers if problem.two_faced else ThinAnswers
+        self._solved: tuple[int, dict[int, tuple[Answers[Any], list[Any]]]] = (-1, {})
 
     @property
     def order(self) -> list[int]:
@@ -141,27 +142,32 @@ class BeltDriver:
         return [wave for number in range(self._classes.classes) for wave in self._classes.waves_of(number)]
 
     def amplitudes(self, wave: int) -> list[ComplexArray]:
-        """Return what walls are read for in a wave, one array a family, (3 + layers, shells, parities, orders, nodes)."""
-        number = int(self._classes.of[wave])
-        voltage = self.voltages(number)
-        opened, free = self._open_waves(number)[wave]
+        """Return what walls are read for in a wave, one array a family, (3 or 9 + layers, shells, parities, orders, nodes)."""
+        opened, _ = self._open_wave(wave)
+        return [opened.shown(motion) for motion in self._motions(wave)]
+
+    def wave(self, wave: int) -> FacedWave:
+        """Return a wave of walls with two faces without feedback."""
+        opened, _ = self._open_wave(wave)
+        assert isinstance(opened, FacedAnswers)
+        return opened.wave
+
+    def closed(self, wave: int) -> list[Closed]:
+        """Return what the faces of all walls do in a wave, and the voltages that make it, one a family."""
+        return self._motions(wave)
+
+    def _motions(self, wave: int) -> list[Any]:
+        """Return the motion of each family."""
+        voltage = self.voltages(int(self._classes.of[wave]))
+        opened, free = self._open_wave(wave)
         found = []
         for place, family in enumerate(self._families):
             if family.of_voltages is None:
                 found.append(free[place])
                 continue
-            given = voltage[family.of_voltages][:, :, : opened.bare.modes.count]
-            found.append(self._moved(opened, self._classes.push[family.of_voltages, wave] * given))
+            given = voltage[family.of_voltages][:, :, : opened.modes.count]
+            found.append(opened.under(self._classes.push[family.of_voltages, wave] * given))
         return found
-
-    def _moved(self, opened: OpenWave, voltage: ComplexArray) -> ComplexArray:
-        """Return what walls are read for under voltages, (walls, parities, orders, nodes), alone."""
-        moved = opened.moved(voltage)
-        motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
-        potentials = np.array(potentials_of(self._problem, opened.bare, piezoelectric_layers(self._problem), *motion))
-        for i in self._shells:
-            potentials[self._problem.shells[i].shown_potentials - 1, i] = moved.voltage[i]
-        return np.concatenate([np.stack(moved[:3]), potentials])
 
     def voltages(self, number: int) -> ComplexArray:
         """Return U_c and U'_c of a class in orders, (1 or 2, walls, parities, M + 1, nodes), made once."""
@@ -173,13 +179,13 @@ class BeltDriver:
         s, walls = self._grid.nodes[self._block], len(self._shells)
         orders = np.arange(self._sampling.max_order + 1.0)
         patterns = self._patterns(orders)
-        read = self._far.response.read * self._left_over[number][:, None]
+        read = self._far.read * self._left_over[number][:, None]
         phi = np.zeros((self._along, walls, motion_parities(self._problem), orders.size, s.size), np.complex128)
         for wave, (opened, free) in self._open_waves(number).items():
-            count = opened.bare.modes.count
-            read[:, :, :count] += self._classes.loop_shares[wave] * opened.response.read
+            count = opened.modes.count
+            read[:, :, :count] += self._classes.loop_shares[wave] * opened.read
             for place, motion in enumerate(free):
-                seen = opened.readings(motion[0])
+                seen = opened.readings(motion)
                 for parity in range(self._along):
                     share = self._classes.read[parity, wave] * self._about_zero[place, parity, wave]
                     phi[parity, :, : seen.shape[1], :count] += share * seen
@@ -194,29 +200,29 @@ class BeltDriver:
     def _patterns(self, orders: FloatArray) -> Patterns:
         return patterns_of(self._problem, self._shells, orders, motion_parities(self._problem))
 
-    def _open_waves(self, number: int) -> dict[int, tuple[OpenWave, list[ComplexArray]]]:
-        """Return the waves of a class without feedback and what sources move in them, by family; the last class asked for is kept."""
-        if self._solved[0] != number:
+    def _open_waves(self, number: int) -> dict[int, tuple[Answers[Any], list[Any]]]:
+        """Return the waves of a class without feedback and what sources move in them, by family; those opened last are kept."""
+        if set(self._solved[1]) != set(self._classes.waves_of(number)):
             self._solved = number, {wave: self._opened(wave) for wave in self._classes.waves_of(number)}
         return self._solved[1]
 
-    def _opened(self, wave: int) -> tuple[OpenWave, list[ComplexArray]]:
-        opened = OpenWave(self._problem, self._grid.nodes[self._block], self._sampling.modes[wave])
-        names = 3 + piezoelectric_layers(self._problem)
-        free = []
-        for family in self._families:
-            if family.of_voltages is None and family.acts_in(wave):
-                free.append(motions_of(self._problem, opened.bare, family, self._grid, self._block))
-            elif family.of_voltages is None:
-                shape = (names, len(self._problem.shells), family.parities, opened.bare.modes.count, opened.bare.s.size)
-                free.append(np.zeros(shape, np.complex128))
-        return opened, free
+    def _open_wave(self, wave: int) -> tuple[Answers[Any], list[Any]]:
+        """Return a wave of a class whose voltages are known: alone, if the others are no longer kept."""
+        if wave not in self._solved[1]:
+            self.voltages(int(self._classes.of[wave]))
+        if wave not in self._solved[1]:
+            self._solved = -1, {wave: self._opened(wave)}
+        return self._solved[1][wave]
+
+    def _opened(self, wave: int) -> tuple[Answers[Any], list[Any]]:
+        opened = self._answers(self._problem, self._grid.nodes[self._block], self._sampling.modes[wave])
+        sources = (family for family in self._families if family.of_voltages is None)
+        return opened, [opened.free(family, self._grid, self._block, acts=family.acts_in(wave)) for family in sources]
 
     @cached_property
-    def _far(self) -> OpenWave:
+    def _far(self) -> Answers[Any]:
         """The wave that stands for those left out."""
-        modes = Modes.up_to(self._sampling.max_order, FAR * self._sampling.highest)
-        return OpenWave(self._problem, self._grid.nodes[self._block], modes)
+        return self._answers(self._problem, self._grid.nodes[self._block], self._sampling.far)
 
     @cached_property
     def _left_over(self) -> FloatArray:
@@ -247,7 +253,8 @@ class BeltDriver:
         known = modes.orders <= self._sampling.max_order
         given = np.zeros((*volts.shape[:2], modes.count, volts.shape[-1]), np.complex128)
         given[:, :, known] = volts[:, :, modes.orders[known].astype(int)]
-        w, v, u, _ = OpenWave(self._problem, self._grid.nodes[self._block], modes).moved(given)
+        opened: Answers[Any] = self._answers(self._problem, self._grid.nodes[self._block], modes)
+        w, v, u = opened.shown(opened.under(given))[:3]
         strain = np.abs(modes.column * v - w) ** 2 + np.abs(k * u) ** 2
         return np.stack([(np.abs(w) ** 2).sum(axis=(1, 3)), strain.sum(axis=(1, 3))], axis=1)
 
@@ -271,22 +278,27 @@ class BeltDriver:
         share = self._under[number][:, some]
         for i in self._shells:
             last = self._problem.shells[i].shown_potentials - 1
-            for name in (f"potential {last - 2}", f"potential {last - 1}"):
-                total = fields.setdefault(name, np.zeros(shape, np.complex128))
-                total[:, i] += np.tensordot(share, of[name][:, i], 1)
-                of[name][:, i] = 0.0
+            for back in self._read_back(i):
+                total = fields.setdefault(f"potential {last - back}", np.zeros(shape, np.complex128))
+                total[:, i] += np.tensordot(share, of[f"potential {last - back}"][:, i], 1)
+                of[f"potential {last - back}"][:, i] = 0.0
             of[f"potential {last}"][:, i] = 0.0
+
+    def _read_back(self, shell: int) -> tuple[int, ...]:
+        """Return how far before its voltage stations show what a wall reads, and charges where any are kept."""
+        return (1, 2) if isinstance(self._problem.shells[shell], TiedWall) else (1,)
 
     def add_given(self, fields: dict[str, ComplexArray], shape: tuple[int, ...]) -> None:
         """Add to the fields at stations what belts over them give, and what they read of it in the waves left out."""
         belt, over = self._places
         patterns = self._classes.patterns(belt) * over[:, None]
-        far = {1: self._far.response.read, 2: self._far.charges_per_volt()}
+        far = {1: self._far.read, 2: self._far.charges_per_volt()}
         for number in range(self._classes.classes):
             volts = np.tensordot(np.moveaxis(patterns[..., number], 0, 1)[:, : len(self.voltages(number))], self.voltages(number), 1)
             for place, i in enumerate(self._shells):
                 last = self._problem.shells[i].shown_potentials - 1
-                for back, values in [(0, volts[:, place]), *((one, self._left(number, per[place], volts)) for one, per in far.items())]:
+                left = [(one, self._left(number, far[one][place], volts)) for one in self._read_back(i)]
+                for back, values in [(0, volts[:, place]), *left]:
                     fields.setdefault(f"potential {last - back}", np.zeros(shape, np.complex128))[:, i] += values
 
     def _left(self, number: int, per: ComplexArray, volts: ComplexArray) -> ComplexArray:

@@ -23,7 +23,7 @@ from coaxshell.solver.cascade import CascadeSystem, FaceMotion
 from coaxshell.solver.scaling import Problem
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import slid_of
-from coaxshell.structure.shell_model import SOLID_STRESSES, FaceReceptance, ShellModel, WallOperator
+from coaxshell.structure.shell_model import SOLID_STRESSES, FaceReceptance, Gain, ShellModel, WallOperator
 from coaxshell.structure.solid_ports import DrivenPort
 
 READ = ("w", "v", "u", *SOLID_STRESSES)
@@ -88,14 +88,14 @@ class FacedWave:
         load = self.problem.shells[shell].drive(self.modes).columns.recovered(operator.tangential, operator.axial)
         return self.cascade.solve(shell, load)
 
-    def sensed(self, shell: int, moving: FaceMotion, volts: float = 0.0) -> ComplexArray:
-        """Return what the law of a wall reads of its motion, V, under a voltage of its own."""
+    def sensed(self, shell: int, moving: FaceMotion, volts: float = 0.0, reading: Gain | None = None) -> ComplexArray:
+        """Return what the law of a wall reads of its motion, V, under a voltage of its own, or of a thin one another *reading*."""
         if shell in self._driven:
             driven = self._driven[shell]
             by_loads = driven.sensed[0] * moving.load_inner + driven.sensed[1] * moving.load_outer
             return np.asarray(by_loads + driven.given.heard * volts)
         wall, operator = self.problem.shells[shell], self._operator(shell)
-        gain, (v, u) = wall.sensor_gain(self.modes).columns, slid_of(wall, self.modes, self.s)
+        gain, (v, u) = (wall.sensor_gain(self.modes) if reading is None else reading).columns, slid_of(wall, self.modes, self.s)
         slid = gain.v * v + (0.0 if gain.u is None or u is None else gain.u * u)
         return np.asarray(gain.recovered(operator.tangential, operator.axial) * moving.outer + slid * volts)
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.faced import READ, FacedWave
 from coaxshell.solver.axial.families import WaveSet
 from coaxshell.solver.axial.limited_wave import limited_faces
@@ -15,8 +17,33 @@ from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
 from coaxshell.solver.scaling import Problem
 
 
-def closed_motions(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: slice) -> Iterator[Closed]:
+@runtime_checkable
+class FacedDriver(Protocol):
+    """What the voltages of belts do to walls with two faces, at a block of nodes."""
+
+    def wave(self, wave: int) -> FacedWave:
+        """Return a wave without feedback."""
+        ...
+
+    def closed(self, wave: int) -> list[Closed]:
+        """Return what the faces of all walls do in a wave, and the voltages that make it, one a family."""
+        ...
+
+
+def wave_at(
+    problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, *, reads: bool = True, modes: Modes | None = None
+) -> FacedWave:
+    """Return wave j without feedback; that which belts have made, or one of *modes* of its own that keep no shapes."""
+    if isinstance(waves.belts, FacedDriver):
+        return waves.belts.wave(j)
+    return FacedWave(problem, grid.nodes[block], waves.modes[j] if modes is None else modes, reads=reads, opened=waves.limited)
+
+
+def closed_motions(wave: FacedWave, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> Iterator[Closed]:
     """Yield what the faces of all walls do under each family's loads; voltages where the solver closes loops, else none (0 rows)."""
+    if isinstance(waves.belts, FacedDriver):
+        yield from waves.belts.closed(j)
+        return
     if waves.limited:
         yield from (closed for closed, _ in limited_faces(wave, waves, grid, block))
         return
@@ -29,11 +56,11 @@ def closed_motions(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: sl
 
 def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
     """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes)."""
-    wave = FacedWave(problem, grid.nodes[block], waves.modes[j], opened=waves.limited)
+    wave = wave_at(problem, waves, j, grid, block)
     if waves.limited:
         return [_limited(wave, closed, lack, layers) for closed, lack in limited_faces(wave, waves, grid, block)]
     found = []
-    for faces, voltage in closed_motions(wave, waves, grid, block):
+    for faces, voltage in closed_motions(wave, waves, j, grid, block):
         given = [voltage[:, parity] if voltage.size else None for parity in range(len(faces))]
         found.append(np.stack([wave.read(one, layers, volts) for one, volts in zip(faces, given, strict=True)], axis=2))
     return found
@@ -53,8 +80,8 @@ def motions_and_faces(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGri
 
     (7 or 8, shells, parities, orders, nodes) each.
     """
-    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j], opened=waves.limited), []
-    for faces, voltage in closed_motions(wave, waves, grid, block):
+    wave, found = wave_at(problem, waves, j, grid, block), []
+    for faces, voltage in closed_motions(wave, waves, j, grid, block):
         each = []
         for parity, one in enumerate(faces):
             volts = voltage[:, parity] if voltage.size else None
@@ -69,8 +96,8 @@ def faces_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block:
 
     Displacements of the inner and of the outer faces and the loads on them, all positive inward; nothing within elastic walls is read.
     """
-    wave, found = FacedWave(problem, grid.nodes[block], waves.modes[j], reads=False), []
-    for faces, _ in closed_motions(wave, waves, grid, block):
+    wave, found = wave_at(problem, waves, j, grid, block, reads=False), []
+    for faces, _ in closed_motions(wave, waves, j, grid, block):
         each = [np.stack([np.stack(moving) for moving in one], axis=1) for one in faces]
         found.append(np.stack(each, axis=2))
     return found

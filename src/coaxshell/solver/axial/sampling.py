@@ -32,6 +32,8 @@ from coaxshell.structure.laminate import require_axial_constants
 
 _BELTS = 1.5
 """Stretches on which sources are felt, in a period for integrals along the whole axis where electrodes are cut along it."""
+FAR = math.sqrt(3.0)
+"""The wavenumber that stands for those left out, over the highest one kept."""
 MOST_WAVES = 100_000
 """The most axial wavenumbers of a run."""
 
@@ -77,6 +79,11 @@ class AxialSampling:
     def modes(self) -> list[Modes]:
         """Orders with (m/M)^2 + (k/k_max)^2 <= 1 at every wavenumber."""
         return [Modes.up_to(int(top), float(k)) for top, k in zip(self.tops, self.wavenumbers, strict=True)]
+
+    @cached_property
+    def far(self) -> Modes:
+        """All orders at the wavenumber that stands for those left out where a voltage moves them (:mod:`coaxshell.solver.axial.belts`)."""
+        return Modes.up_to(self.max_order, FAR * self.highest)
 
     @cached_property
     def weights(self) -> FloatArray:

@@ -179,7 +179,7 @@ def with_shapes(problem: Problem, sampling: AxialSampling, on: BlockMap) -> Axia
         return sampling
     waves = replace(sampling)
     if on is on_threads:
-        make_shapes(problem, waves.modes)
+        make_shapes(problem, [*waves.modes, *([] if problem.belts is None else [waves.far])])
     return waves
 
 

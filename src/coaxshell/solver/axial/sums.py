@@ -95,10 +95,10 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
 
     One array a family, (names, shells, parities, orders, nodes).
     """
-    if problem.two_faced:
-        return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
     if waves.belts is not None:
         return waves.belts.amplitudes(j)
+    if problem.two_faced:
+        return faced_amplitudes(problem, waves, j, grid, block, piezoelectric_layers(problem))
     if waves.limited:
         return limited_motions(problem, waves, j, grid, block)
     if problem.tied:

@@ -16,10 +16,11 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.belts import driven_sets
 from coaxshell.solver.axial.blocks import node_blocks
-from coaxshell.solver.axial.faced import FacedWave, make_shapes
-from coaxshell.solver.axial.faced_motion import closed_motions
-from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
+from coaxshell.solver.axial.faced import make_shapes
+from coaxshell.solver.axial.faced_motion import closed_motions, wave_at
+from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import SpatialSolution
@@ -84,7 +85,7 @@ class _Pass:
         blocks, parities, forces = node_blocks(self.grid), motion_parities(self.problem), self.forces
         parities = parities if forces is None else max(parities, forces.parities)
         per_block = [
-            wave_sets(self.problem, self.sampling, stations, self.grid.nodes[block], None if forces is None else forces.at(block))
+            driven_sets(self.problem, self.sampling, stations, self.grid, block, None if forces is None else forces.at(block))
             for block in blocks
         ]
         shape = (len(self.asked), stations.size, parities, self.sampling.max_order + 1)
@@ -92,7 +93,7 @@ class _Pass:
         with one_blas_thread(), ThreadPoolExecutor(WORKERS) as pool:
             for number, waves in enumerate(per_block[0]):
                 for first in range(0, len(waves.modes), TOGETHER):
-                    some = range(first, min(first + TOGETHER, len(waves.modes)))
+                    some = waves.order[first : first + TOGETHER]
                     modes = [Modes(waves.modes[j].orders, waves.modes[j].wavenumber) for j in some]  # whose shapes end with them
                     make_shapes(self.problem, modes)
                     pairs = zip(per_block, blocks, strict=True)
@@ -101,7 +102,7 @@ class _Pass:
                         task.result()
         return found
 
-    def _add(self, found: ComplexArray, waves: WaveSet, some: range, modes: list[Modes], block: slice) -> None:
+    def _add(self, found: ComplexArray, waves: WaveSet, some: list[int], modes: list[Modes], block: slice) -> None:
         """Add some waves at a block of nodes."""
         wall, nodes = self.problem.shells[self.shell], self.grid.nodes[block]
         assert isinstance(wall, ElasticWall)
@@ -109,13 +110,13 @@ class _Pass:
         amplitudes = [np.zeros(shape, np.complex128) for _ in waves.families]
         if np.ndim(modes[0].wavenumber):  # an inclined wave, of one k for each node of the block
             modes = [waves.modes[j] for j in some]
-        for place, one in enumerate(modes):
-            wave = FacedWave(self.problem, nodes, one, reads=False, opened=waves.limited)
+        for place, (j, one) in enumerate(zip(some, modes, strict=True)):
+            wave = wave_at(self.problem, waves, j, self.grid, block, reads=False, modes=one)
             opened = wall.gains is not None and (waves.limited or wall.closed_by_solver)
             per_load, per_volt = wall.transfer(one, nodes, self.asked, fed_back=not opened), None
             if opened:
                 per_volt = wall.under_voltage(one, nodes, self.asked).shown
-            for (all_faces, voltage), amplitude in zip(closed_motions(wave, waves, self.grid, block), amplitudes, strict=True):
+            for (all_faces, voltage), amplitude in zip(closed_motions(wave, waves, j, self.grid, block), amplitudes, strict=True):
                 for parity, faces in enumerate(all_faces):
                     there = amplitude[:, place, parity, : one.count]
                     np.multiply(per_load[:, 0], faces[self.shell].load_inner, out=there)
@@ -125,11 +126,10 @@ class _Pass:
         for family, amplitude in zip(waves.families, amplitudes, strict=True):
             self._share(found, family, some, amplitude, block)
 
-    def _share(self, found: ComplexArray, family: Family, some: range, amplitude: ComplexArray, block: slice) -> None:
+    def _share(self, found: ComplexArray, family: Family, some: list[int], amplitude: ComplexArray, block: slice) -> None:
         """Add the amplitudes of some waves of a family at the stations."""
-        part = slice(some.start, some.stop)
         for row, (one, of) in enumerate(zip(self.asked, amplitude, strict=True)):
-            share = (family.odd if of_odd(one.what) else family.even)[:, part]
+            share = (family.odd if of_odd(one.what) else family.even)[:, some]
             if share.ndim == 3:
                 found[row, ..., block] += share[:, 0, None, None] * of[0]
             elif np.any(share):

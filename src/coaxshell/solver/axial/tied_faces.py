@@ -21,6 +21,7 @@ from coaxshell.solver.cascade import FaceMotion
 from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all
+from coaxshell.structure.tied_wall import TiedWall
 
 
 class Closed(NamedTuple):
@@ -30,50 +31,50 @@ class Closed(NamedTuple):
     voltage: ComplexArray
 
 
-class TiedFaces:
-    """The loops of one wave.
+class OpenFaces:
+    """What voltages do in one wave, and what is read of its motion, without feedback.
 
     Parameters
     ----------
     wave : FacedWave
         All walls and fluids without feedback; all orders from 0 to the highest where electrodes are cut.
-    parities : int
-        How many the motion has around the circle.
 
     Attributes
     ----------
     wave : FacedWave
-    loops : ElectrodeLoops
+    response : VoltageResponse
     """
 
-    def __init__(self, wave: FacedWave, parities: int) -> None:
-        self.wave, problem = wave, wave.problem
-        shells = controlled(problem)
+    def __init__(self, wave: FacedWave) -> None:
+        self.wave, shells = wave, controlled(wave.problem)
         self._per_volt = [wave.under_voltage(shell) for shell in shells]
         read = np.empty((len(shells), len(shells), wave.modes.count, wave.s.size), np.complex128)
         for b, moved in enumerate(self._per_volt):
             for a, shell in enumerate(shells):
                 read[a, b] = wave.sensed(shell, moved[shell], float(a == b))
-        self._response = VoltageResponse.of_faces(shells, read)
-        patterns = patterns_of(problem, shells, wave.modes.orders, parities)
-        self.loops = ElectrodeLoops.of(problem, self._response, patterns, wave.s)
-
-    def closed(self, free: list[list[FaceMotion]]) -> Closed:
-        """Return the motion with feedback of faces that do *free* without it, for each parity around."""
-        patterns = self.loops.patterns
-        return self.moved(patterns.in_orders(self.loops.voltages(patterns.readings(self.readings(free))))[:, : len(free)], free)
+        self.response = VoltageResponse.of_faces(shells, read)
 
     def readings(self, free: list[list[FaceMotion]]) -> ComplexArray:
         """Return what the sensors of walls under control read of faces that do *free*, (walls, parities, orders, nodes)."""
         wave = self.wave
-        return np.stack([np.stack([wave.sensed(shell, faces[shell]) for faces in free]) for shell in self._response.shells])
+        return np.stack([np.stack([wave.sensed(shell, faces[shell]) for faces in free]) for shell in self.response.shells])
+
+    def charges_per_volt(self) -> ComplexArray:
+        """Return what the charge of each thin wall under control is over its capacitance, V, per volt on each; 0 of elastic walls."""
+        found = np.zeros_like(self.response.read)
+        for b, moved in enumerate(self._per_volt):
+            for a, shell in enumerate(self.response.shells):
+                wall = self.wave.problem.shells[shell]
+                if isinstance(wall, TiedWall):
+                    found[a, b] = self.wave.sensed(shell, moved[shell], float(a == b), wall.charge_voltage(self.wave.modes))
+        return found
 
     def moved(self, voltage: ComplexArray, free: list[list[FaceMotion]] | None = None) -> Closed:
         """Return the motion under voltages, (walls, parities, orders, nodes), besides what faces do without them."""
         alone: list[list[FaceMotion]] = [self._nothing] * voltage.shape[1] if free is None else [*free]
         alone += [self._nothing] * (voltage.shape[1] - len(alone))
         faces = [self._together(each, voltage[:, parity]) for parity, each in enumerate(alone)]
-        return Closed(faces, of_all(self.wave.problem, self._response, voltage))
+        return Closed(faces, of_all(self.wave.problem, self.response, voltage))
 
     @property
     def _nothing(self) -> list[FaceMotion]:
@@ -88,3 +89,28 @@ class TiedFaces:
             parts = zip(moving, *by_volts, strict=True)
             found.append(FaceMotion(*(own + sum(u * one for u, one in zip(volts, per, strict=True)) for own, *per in parts)))
         return found
+
+
+class TiedFaces(OpenFaces):
+    """The loops of one wave.
+
+    Parameters
+    ----------
+    wave : FacedWave
+    parities : int
+        How many the motion has around the circle.
+
+    Attributes
+    ----------
+    loops : ElectrodeLoops
+    """
+
+    def __init__(self, wave: FacedWave, parities: int) -> None:
+        super().__init__(wave)
+        patterns = patterns_of(wave.problem, self.response.shells, wave.modes.orders, parities)
+        self.loops = ElectrodeLoops.of(wave.problem, self.response, patterns, wave.s)
+
+    def closed(self, free: list[list[FaceMotion]]) -> Closed:
+        """Return the motion with feedback of faces that do *free* without it, for each parity around."""
+        patterns = self.loops.patterns
+        return self.moved(patterns.in_orders(self.loops.voltages(patterns.readings(self.readings(free))))[:, : len(free)], free)
