@@ -98,9 +98,3 @@ def test_a_limit_judges_what_is_asked_for():
 def test_what_cannot_be(change, told):
     with pytest.raises(InputError, match=told):
         limited(**{"limit": change.pop("current_limit", "3 A/m^2"), "stops": change.pop("current_saturation", True), **change})
-
-
-def test_absorbers_beside_it_are_refused_by_its_own_name():
-    beside = limited().replace(absorbers=presets.load("electrodes-hybrid").absorbers)
-    with pytest.raises(InputError, match=r"control\.current_saturation: beside absorbers .* current_saturation = false"):
-        cx.simulate(beside, **RUN)

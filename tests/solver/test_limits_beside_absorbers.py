@@ -94,7 +94,34 @@ def test_a_limit_that_is_just_reached_leaves_almost_the_linear_answer() -> None:
     assert off(just, free) < 1e-4
 
 
-def test_limits_of_currents_are_refused_beside_absorbers() -> None:
-    law = {"segments": 4, "current_limit": "3 A/m^2", "current_saturation": True, "saturation": False}
-    with pytest.raises(cx.InputError, match=r"control\.current_saturation: beside absorbers"):
-        cx.simulate(system("thin", **law), **RUN)
+CUT = {"segments": 4, "saturation": False}
+
+
+@pytest.mark.slow_except("thin-linear", "elastic-cubic")
+@pytest.mark.parametrize("absorbers", [LINEAR, CUBIC], ids=["linear", "cubic"])
+@pytest.mark.parametrize("theory", ["thin", "elastic"])
+def test_currents_stop_beside_absorbers(theory: str, absorbers: Any, tmp_path: Any) -> None:
+    few = {**RUN, "modes": 4}
+    limit = {**CUT, "current_limit": "1 A/m^2"}
+    others = (CUT, {**CUT, "current_limit": 1e6, "current_saturation": True})
+    free, wide = (cx.simulate(system(theory, absorbers, **law), **few) for law in others)
+    np.testing.assert_array_equal(wide.solution.normal, free.solution.normal)
+    runs = [cx.simulate(system(theory, absorbers, **limit, current_saturation=True), **few, refinement=refined) for refined in (1, 2, 4)]
+    held, finer, finest = runs
+    assert off(held, free) > 3e-3
+    assert off(held, finest) > 3.0 * off(finer, finest)
+    assert free.control_effort()["outer"].current > 2.0
+    assert any("the current was held at 1.000 A/m^2" in told for told in held.warnings)
+    energy = held.energy()
+    assert float(np.abs(energy.closure_relative).max()) < 2e-4
+    electrical = energy.amplifier_work - (energy.actuator_field - energy.actuator_work)
+    assert float(np.abs(electrical).max()) < 1e-9 * float(np.abs(energy.actuator_work).max())
+    again = spectra_of(cx.load_response(held.save(tmp_path / "run.nc")).solution)
+    np.testing.assert_allclose(again.voltage, held.solution.spectra.voltage, rtol=0, atol=1e-9 * np.abs(again.voltage).max())
+
+
+def test_currents_beside_next_to_no_absorber_are_those_without() -> None:
+    law = {**CUT, "current_limit": "1 A/m^2", "current_saturation": True}
+    nothing = cx.Absorber(angle=0.0, mass=1e-9, damping=1e-6, linear_stiffness=1e-3)
+    beside, alone = (cx.simulate(system("thin", one, **law), **{**RUN, "modes": 4}) for one in ([nothing], None))
+    assert off(beside, alone) < 1e-9

@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import limits_currents, pitch_of, segments_of, ties_shells
+from coaxshell.model.gains import pitch_of, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -34,15 +34,7 @@ def require_two_dimensions(system: System, settings: Settings) -> None:
 def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if a system has electrodes or elastic walls under what is not known of them."""
     _require_ties(system, dimensions)
-    _require_free_currents(system)
     _require_belts(system, dimensions)
-
-
-def _require_free_currents(system: System) -> None:
-    """Raise InputError if currents of electrodes are to stop at a limit beside absorbers."""
-    if limits_currents(system) and system.absorber_list:
-        remedy = "leave the absorbers out, or use current_saturation = false and compare current and limit"
-        raise InputError("control.current_saturation", "beside absorbers no limit of the current is marched yet", remedy)
 
 
 def require_loops_alone(system: System, what: str, remedy: str) -> None:

@@ -1,4 +1,4 @@
-"""Absorbers beside voltages that stop at a limit: both nonlinearities together, each marched in its turn until they agree.
+"""Absorbers beside voltages or currents that stop at a limit: both nonlinearities together, each marched in turn until they agree.
 
 Under the forces f of the links the electrodes are marched as without them (:mod:`coaxshell.solver.limited_voltages`): the sensors read of
 the forces too, and what the limit cuts off moves the points that the links hold, w = w(f). The links then are solved with the receptance R
@@ -13,16 +13,19 @@ turns converge as those of a Volterra equation; the answer they end at does not 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from coaxshell.errors import InputError
+from coaxshell.model.gains import limits_currents
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.electrode_loops import times
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import forces_at
 from coaxshell.solver.interface.march import MarchResult
+from coaxshell.solver.limited_currents import ChargedLoops, charge_per_volt, charge_without
 from coaxshell.solver.limited_voltages import LimitedMarch, at_points, beyond, driven_alone, limits_of, require_fine, step_weights
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
@@ -48,17 +51,85 @@ class _Forces:
 
 @dataclass
 class _Cut:
-    """What voltages do under forces: those given and asked for, the lack and the motion."""
+    """What amplifiers do under forces: voltages given and asked for, the lack, by how much the march is off, the motion."""
 
     given: ComplexArray
     asked: ComplexArray
     lack: FloatArray
+    off: FloatArray
     moved: Moved
     iterations: int
 
 
+class _Voltages:
+    """Amplifiers whose voltage stops at its limit."""
+
+    def __init__(self, loops: TiedLoops) -> None:
+        self._loops, self._grid = loops, loops.structure.grid
+        self._limits = limits_of(loops.structure.problem, loops.patterns)
+
+    def reached(self, asked: ComplexArray, free: Moved) -> bool:
+        """Return whether a limit is exceeded where nothing stops at it."""
+        return bool(beyond(at_points(self._loops.patterns, self._grid.invert(asked)), self._limits).any())
+
+    @cached_property
+    def march(self) -> LimitedMarch:
+        """The march of what is lacking."""
+        march = LimitedMarch(self._loops.patterns, self._limits, step_weights(self._loops.structure, self._loops.patterns))
+        require_fine(self._grid, march.weights)
+        return march
+
+    def demanded(self, asked: ComplexArray, free: Moved) -> FloatArray:
+        """Return what is marched against the limits, (walls, patterns, T), where nothing is lacking."""
+        return self._grid.invert(asked)
+
+    def off(self, given: ComplexArray, lacking: ComplexArray, lack: FloatArray, free: Moved) -> FloatArray:
+        """Return by how much what is cut off an answer differs from what was marched."""
+        patterns, limits = self._loops.patterns, self._limits[..., None]
+        volts = at_points(patterns, self._grid.invert(given - lacking))
+        return np.asarray(np.einsum("qn,int->iqt", patterns.project, np.clip(volts, -limits, limits) - volts) - lack)
+
+    def shown(self, cut: _Cut) -> tuple[ComplexArray, FloatArray]:
+        """Return the voltages in patterns, and at points, that an answer shows: what is asked for, which is cut where it is read."""
+        volts = at_points(self._loops.patterns, self._grid.invert(cut.asked))
+        volts[:, list(self._loops.patterns.dead)] = 0.0
+        return cut.asked, volts
+
+
+class _Currents(_Voltages):
+    """Amplifiers whose current stops at its limit."""
+
+    def __init__(self, loops: TiedLoops) -> None:
+        self._loops, self._grid = loops, loops.structure.grid
+        self._charges = ChargedLoops(loops.structure, loops.patterns, loops.patterns.responses(charge_per_volt(loops.structure)))
+
+    def reached(self, asked: ComplexArray, free: Moved) -> bool:
+        """Return whether a limit is exceeded where nothing stops at it."""
+        return self._charges.reached(self.demanded(asked, free))
+
+    @cached_property
+    def march(self) -> LimitedMarch:
+        """The march of what is lacking."""
+        return self._charges.march()
+
+    def _held(self, free: Moved) -> ComplexArray:
+        return self._loops.patterns.readings(charge_without(self._loops.structure, free))
+
+    def demanded(self, asked: ComplexArray, free: Moved) -> FloatArray:
+        """Return the charge asked for over C."""
+        return self._grid.invert(self._charges.charged(asked, self._held(free)))
+
+    def off(self, given: ComplexArray, lacking: ComplexArray, lack: FloatArray, free: Moved) -> FloatArray:
+        """Return by how much what is cut off an answer differs from what was marched."""
+        return self._charges.off(self._grid.invert(self._charges.charged(given, self._held(free))), lack)
+
+    def shown(self, cut: _Cut) -> tuple[ComplexArray, FloatArray]:
+        """Return the voltages given, in patterns and at points."""
+        return cut.given, at_points(self._loops.patterns, self._grid.invert(cut.given))
+
+
 def solve_limited_beside(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
-    """Return the answer of a structure with absorbers whose electrodes' voltages stop at their limit; None where none reaches it.
+    """Return the answer of a structure with absorbers whose electrodes' voltages, or currents, stop at a limit; None where none does.
 
     Raises
     ------
@@ -66,25 +137,24 @@ def solve_limited_beside(structure: StructureSpectra, absorbers: AbsorberSet, pr
         If feedback is so strong within a step that its limit cannot be found, or links and limits do not come to agree.
     """
     loops, grid = TiedLoops.of(structure, absorbers.parities), structure.grid
-    points, limits = InterfacePoints(structure.open_loop.problem, absorbers, structure.modes), limits_of(structure.problem, loops.patterns)
+    points = InterfacePoints(structure.open_loop.problem, absorbers, structure.modes)
     receptance = whole_receptance(structure, points, loops.patterns)
     alone = loops.answer()[0]
     seen = StructureOfTies(structure, absorbers, alone, loops.patterns)
     found = _linked(absorbers, seen, receptance, points.evaluate(surfaces_moved(structure.problem, alone)), progress)
-    asked = loops.loops.voltages(loops.patterns.readings(read_of(structure, _free(structure, points, found))))
-    if not beyond(at_points(loops.patterns, grid.invert(asked)), limits).any():
+    free = _free(structure, points, found)
+    limits = _Currents(loops) if limits_currents(structure.problem.system) else _Voltages(loops)
+    if not limits.reached(loops.loops.voltages(loops.patterns.readings(read_of(structure, free))), free):
         return None
-    march = LimitedMarch(loops.patterns, limits, step_weights(structure, loops.patterns))
-    require_fine(grid, march.weights)
     for _ in range(_TURNS):
-        cut = _cut(loops, march, points, found, progress)
+        cut = _cut(loops, limits, points, found, progress)
         at = points.evaluate(surfaces_moved(structure.problem, cut.moved)) - np.einsum("pqk,qk->pk", receptance, found.spectrum)
         before, found = found, _linked(absorbers, seen, receptance, at, progress)
         change, most = (np.abs(grid.invert(x)).max() for x in (found.spectrum - before.spectrum, found.spectrum))
         if change <= _AGREED * most:
-            return _answer(loops, march, absorbers, found, _cut(loops, march, points, found, progress), seen)
+            return _answer(loops, limits, absorbers, found, _cut(loops, limits, points, found, progress), seen)
     raise InputError(
-        "time_step", "is too long for limits beside such absorbers: voltages and forces do not come to agree", "use a quarter of it"
+        "time_step", "is too long for limits beside such absorbers: amplifiers and forces do not come to agree", "use a quarter of it"
     )
 
 
@@ -93,16 +163,17 @@ def _free(structure: StructureSpectra, points: InterfacePoints, forces: _Forces)
     return structure.open_loop.forced_spectra(points.project(forces.spectrum))
 
 
-def _cut(loops: TiedLoops, march: LimitedMarch, points: InterfacePoints, forces: _Forces, progress: Progress | None) -> _Cut:
-    """Return what limited voltages do under sources and forces."""
+def _cut(loops: TiedLoops, limits: _Voltages, points: InterfacePoints, forces: _Forces, progress: Progress | None) -> _Cut:
+    """Return what limited amplifiers do under sources and forces."""
     structure, grid = loops.structure, loops.structure.grid
     pressure, free = points.project(forces.spectrum), _free(structure, points, forces)
     asked = loops.loops.asked(loops.patterns.readings(read_of(structure, free)))
-    lack, iterations = march.lack(grid.invert(asked), progress)
+    lack, iterations = limits.march.lack(limits.demanded(asked, free), progress)
     lacking = grid.transform_linear(lack)
     given = asked + times(loops.loops.inverse, lacking)
     voltage = of_all(structure.problem, loops.response, loops.patterns.in_orders(given))
-    return _Cut(given, given - lacking, lack, loops.moved(free, voltage, pressure), iterations)
+    off = limits.off(given, lacking, lack, free)
+    return _Cut(given, given - lacking, lack, off, loops.moved(free, voltage, pressure), iterations)
 
 
 def _linked(
@@ -119,13 +190,11 @@ def _linked(
 
 
 def _answer(
-    loops: TiedLoops, march: LimitedMarch, absorbers: AbsorberSet, forces: _Forces, cut: _Cut, seen: StructureOfTies
+    loops: TiedLoops, limits: _Voltages, absorbers: AbsorberSet, forces: _Forces, cut: _Cut, seen: StructureOfTies
 ) -> SolvedSpectra:
     """Return all of the answer."""
-    structure, grid, patterns, limits = loops.structure, loops.structure.grid, loops.patterns, march.limits
-    volts = at_points(patterns, grid.invert(cut.asked))
-    off = np.einsum("qn,int->iqt", patterns.project, np.clip(volts, -limits[..., None], limits[..., None]) - volts) - cut.lack
-    volts[:, list(patterns.dead)] = 0.0
+    structure, grid, patterns = loops.structure, loops.structure.grid, loops.patterns
+    shown, volts = limits.shown(cut)
     marched = forces.marched
     if marched is None:
         assert forces.masses is not None
@@ -141,8 +210,8 @@ def _answer(
         exact=None if forces.masses is None else (forces.spectrum, forces.masses),
         laws=None if marched is None else marched.laws,
         voltage=of_all(structure.problem, loops.response, patterns.in_orders(cut.given)),
-        asked=of_all(structure.problem, loops.response, patterns.in_orders(cut.asked)),
+        asked=of_all(structure.problem, loops.response, patterns.in_orders(shown)),
         segments=of_all(structure.problem, loops.response, volts) if patterns.cut else None,
-        defect=driven_alone(structure, loops.response, patterns, times(loops.loops.inverse, grid.transform_linear(off))),
+        defect=driven_alone(structure, loops.response, patterns, times(loops.loops.inverse, grid.transform_linear(cut.off))),
     )
     return found if marched is None else replace(found, seen=seen)

@@ -17,7 +17,8 @@ orders differ in and what holds the thickness.
 
 from __future__ import annotations
 
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -39,7 +40,7 @@ from coaxshell.solver.limited_voltages import LimitedMarch, at_points, driven_al
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
-from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_without, response_of
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_of, read_without, response_of
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid_charges import free_capacity
@@ -147,6 +148,67 @@ def _kernel(structure: StructureSpectra, patterns: Patterns, s: ComplexArray) ->
     return np.asarray(np.moveaxis(inverse - np.eye(inverse.shape[-1]) + strained @ inverse, (2, 3), (0, 1)))
 
 
+@dataclass(frozen=True, eq=False)
+class ChargedLoops:
+    """What amplifiers whose currents are limited are asked for, and what they give, in patterns.
+
+    Attributes
+    ----------
+    structure : StructureSpectra
+    patterns : Patterns
+    strained : ndarray, shape (walls, walls, patterns, nodes)
+        Q.
+    """
+
+    structure: StructureSpectra
+    patterns: Patterns
+    strained: ComplexArray
+
+    @cached_property
+    def limits(self) -> FloatArray:
+        """I dt/C at each point, V, (walls, points)."""
+        return largest_steps(self.structure.problem, self.structure.grid.time_step)[:, None] * np.ones(len(self.patterns.evaluate))
+
+    def charged(self, voltage: ComplexArray, moved: ComplexArray | float = 0.0) -> ComplexArray:
+        """Return u + m/C under voltages, and under sources where their charge is given, (walls, patterns, nodes)."""
+        held = capacities(self.structure.problem)[:, None, None]
+        return np.asarray(voltage + (moved + np.einsum("ijqk,jqk->iqk", self.strained, voltage)) / held)
+
+    def reached(self, alpha: FloatArray) -> bool:
+        """Return whether any step of what is asked for, (walls, patterns, T), is longer than its limit."""
+        steps = np.abs(np.diff(at_points(self.patterns, alpha), axis=-1, prepend=0.0))
+        return bool((steps > self.limits[..., None] * (1.0 + 1e-9)).any())
+
+    def march(self) -> LimitedMarch:
+        """Return the march of what is lacking."""
+        kernel = partial(_kernel, self.structure, self.patterns)
+        march = LimitedMarch(self.patterns, self.limits, inverted_weights(self.structure, kernel), moving=True)
+        require_fine(self.structure.grid, march.weights)
+        return march
+
+    def off(self, beta: FloatArray, lack: FloatArray) -> FloatArray:
+        """Return by how much what is cut off an answer differs from what was marched, in patterns."""
+        asked = at_points(self.patterns, beta - lack - np.concatenate([np.zeros_like(beta[..., :1]), beta[..., :-1]], axis=-1))
+        limits = self.limits[..., None]
+        return np.asarray(np.einsum("qn,int->iqt", self.patterns.project, np.clip(asked, -limits, limits) - asked) - lack)
+
+
+def charge_per_volt(structure: StructureSpectra) -> ComplexArray:
+    """Return Q at the orders and nodes of a run, (controlled, controlled, orders, nodes)."""
+    bare = structure.open_loop
+    if not bare.problem.two_faced:
+        return response_of(structure, charge_of).read
+    return _strained(structure.problem, per_volt_of_grid(bare.problem, controlled(structure.problem), bare.modes, bare.grid).charge)
+
+
+def charge_without(structure: StructureSpectra, free: Moved) -> ComplexArray:
+    """Return the charge of strain in a motion without voltages, (controlled, parities, orders, nodes)."""
+    if free.solid is None:
+        return read_of(structure, free, charge_of)
+    bare, shells = structure.open_loop, controlled(structure.problem)
+    return np.stack([charge_in_motion(bare.problem.shells[i], i, free, bare.modes, bare.grid) for i in shells])
+
+
 def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
     """Return the answer of a structure whose amplifiers' currents stop at their limit; None where none reaches it.
 
@@ -160,25 +222,14 @@ def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, 
     response = answers.response
     patterns = patterns_of(problem, response.shells, structure.modes.orders, answers.read.shape[1])
     loops = ElectrodeLoops.of(problem, response, patterns, grid.nodes)
-    held, strained = capacities(problem)[:, None, None], patterns.responses(answers.charge)
-
-    def charged(voltage: ComplexArray, moved: ComplexArray | float = 0.0) -> ComplexArray:
-        """Return u + m/C under voltages, and under sources where their charge is given."""
-        return np.asarray(voltage + (moved + np.einsum("ijqk,jqk->iqk", strained, voltage)) / held)
-
+    charges = ChargedLoops(structure, patterns, patterns.responses(answers.charge))
     free, sources = loops.asked(patterns.readings(answers.read)), patterns.readings(answers.held)
-    linear = grid.invert(charged(free, sources))
-    limits = largest_steps(problem, grid.time_step)[:, None] * np.ones(len(patterns.evaluate))
-    steps = np.abs(np.diff(at_points(patterns, linear), axis=-1, prepend=0.0))
-    if (steps <= limits[..., None] * (1.0 + 1e-9)).all():
+    linear = grid.invert(charges.charged(free, sources))
+    if not charges.reached(linear):
         return None
-    march = LimitedMarch(patterns, limits, inverted_weights(structure, partial(_kernel, structure, patterns)), moving=True)
-    require_fine(grid, march.weights)
-    lack, iterations = march.lack(linear, progress)
+    lack, iterations = charges.march().lack(linear, progress)
     given = free + times(loops.inverse, grid.transform_linear(lack))
-    beta = grid.invert(charged(given, sources))
-    asked = at_points(patterns, beta - lack - np.concatenate([np.zeros_like(beta[..., :1]), beta[..., :-1]], axis=-1))
-    off = np.einsum("qn,int->iqt", patterns.project, np.clip(asked, -limits[..., None], limits[..., None]) - asked) - lack
+    off = charges.off(grid.invert(charges.charged(given, sources)), lack)
     force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
     voltage = of_all(problem, response, patterns.in_orders(given))
     return SolvedSpectra(

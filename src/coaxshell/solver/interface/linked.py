@@ -41,9 +41,8 @@ def solve_linked(
     """
     grid = structure.grid
     if limits_voltages(structure.problem.system):
-        voltages = solve_limited_beside if absorbers.count else solve_limited
-        limit = solve_limited_currents if limits_currents(structure.problem.system) else voltages
-        limited = limit(structure, absorbers, progress)
+        alone = solve_limited_currents if limits_currents(structure.problem.system) else solve_limited
+        limited = (solve_limited_beside if absorbers.count else alone)(structure, absorbers, progress)
         if limited is not None:
             return limited
         saturate = False
