@@ -24,7 +24,7 @@ from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.belts import Belts
 from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis
 from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, several_by_shapes, shown_by_shapes
-from coaxshell.structure.inclined_drive import inclined_under_volts
+from coaxshell.structure.inclined_drive import InclinedAnswer, inclined_under_volts
 from coaxshell.structure.layered_wall import LayeredWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.shape_sums import modal_sums
@@ -175,19 +175,25 @@ class ElasticWall(LayeredWall):
         if self.transducers is None or not self.closes_a_loop:
             free, found = inclined_port(self.layers, modes, s, self.frequency, places)
             return FaceReceptance(*free), -pressed * found, None
-        each = inclined_under_volts(self.layers, modes, s, self.frequency, places, self.transducers, self.driven_layers)
-        circuits = None
-        if self.transducers.circuits.any_open:
-            circuits = OpenCircuits(pressed * each.charged, each.all_of_volts, each.at_once)
-        wall = Unanswered(each.moved, pressed * each.heard, each.of_volts, circuits)
         law = self._law(modes, s) if fed_back else 0.0
-        loop = closed_loop(wall, self.transducers.circuits, law)
+        each, loop = self._inclined_loop(modes, s, places, law)
         shown = pressed * each.shown + under_volts(each.by_volts, loop.volts)
         if tells:
             shown = np.concatenate([shown, loop.sensed[None], law * loop.sensed[None]])
         faces = -each.faces
         receptance = self._under_loop(FaceReceptance(faces[0, 0], faces[0, 1], faces[1, 1]), loop)
         return receptance, shown, None if fed_back else DrivenPort.of(loop, each.by_volts)
+
+    def _inclined_loop(
+        self, modes: Modes, s: ComplexArray, places: Sequence[InclinedPlace], law: ComplexArray | float
+    ) -> tuple[InclinedAnswer, Loop]:
+        assert self.transducers is not None
+        each = inclined_under_volts(self.layers, modes, s, self.frequency, places, self.transducers, self.driven_layers)
+        pressed, circuits = -np.array(self.wetted)[:, None, None], None
+        if self.transducers.circuits.any_open:
+            circuits = OpenCircuits(pressed * each.charged, each.all_of_volts, each.at_once)
+        wall = Unanswered(each.moved, pressed * each.heard, each.of_volts, circuits)
+        return each, closed_loop(wall, self.transducers.circuits, law)
 
     def inclined_under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt on all its actuators does in a wave that runs along the axis."""
@@ -223,7 +229,10 @@ class ElasticWall(LayeredWall):
 
     def loop(self, modes: Modes, s: ComplexArray, *, fed_back: bool = True) -> Loop | None:
         """Return what its transducers do to it; None without any, or where none acts and none is open."""
-        return self._loop(modes, s, self._law(modes, s) if fed_back else 0.0) if self.closes_a_loop else None
+        if not self.closes_a_loop:
+            return None
+        law = self._law(modes, s) if fed_back else 0.0
+        return self._inclined_loop(modes, s, [], law)[1] if np.ndim(modes.wavenumber) else self._loop(modes, s, law)
 
     def _loop(self, modes: Modes, s: ComplexArray, law: ComplexArray | float) -> Loop:
         assert self.transducers is not None

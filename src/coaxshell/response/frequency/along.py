@@ -28,7 +28,6 @@ from coaxshell.response.frequency.steady import Tail
 from coaxshell.solver.excitation import source_spectrum
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.steady import Frequencies, SteadySystem
-from coaxshell.structure.elastic_wall import ElasticWall
 
 DEEPEST = 1.0
 """d of the deeper path, in 1/a; at most 2/|z|, as cos kz grows with it."""
@@ -105,12 +104,12 @@ def of_point_source(problem: Problem, omega: FloatArray, orders: int, what: Aske
     scattered = replace(what, part="scattered") if what.quantity.kind == "field" else what
     found, apart = [], 0.0
     for one in omega:
-        both = []
+        both, resolving = [], problem.resolving(float(one))
         for share in (1.0, 0.5):
             depth = share * min(DEEPEST, 2.0 / abs(away) if away else DEEPEST)
             path = path_of(float(one), depth, share * RISE, geometry.distance - geometry.head)
             grid = Frequencies.of(np.full(path.wavenumbers.size, float(one)))
-            system = SteadySystem(problem, grid, Modes.up_to(orders, path.wavenumbers))
+            system = SteadySystem(resolving, grid, Modes.up_to(orders, path.wavenumbers))
             along = 2.0 / np.pi * path.weights * np.cos(path.wavenumbers * away)
             both.append(np.tensordot(along, read(system, scattered, tail), axes=1))
         found.append(both[1])
@@ -122,14 +121,7 @@ def of_point_source(problem: Problem, omega: FloatArray, orders: int, what: Aske
 
 
 def _require(problem: Problem, what: Asked) -> None:
-    """Raise InputError if a quantity is not read under a point source, or a wall has no shapes at complex wavenumbers."""
-    solid = next((number for number, wall in enumerate(problem.shells) if isinstance(wall, ElasticWall)), None)
-    if solid is not None:
-        problem_, remedy = (
-            "an elastic wall has no shapes at the complex wavenumbers of a point source",
-            'use theory = "thin", or a plane wave',
-        )
-        raise InputError(f"shells[{solid}].theory", problem_, remedy)
+    """Raise InputError if a quantity is not read under a point source."""
     if len(problem.sources) > 1:
         raise InputError("source", "each point source has a sum of its own", "give the number of one, source=0")
     if what.quantity.kind not in ("shell", "field"):
