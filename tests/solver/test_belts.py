@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -20,6 +21,7 @@ from coaxshell.solver.axial.belts import classes_of, driven_sets
 from coaxshell.solver.axial.sampling import FAR, AxialSampling
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
+from coaxshell.solver.segmented_margins import segmented_loops
 from coaxshell.solver.stability import Contour, highest_frequency
 from coaxshell.solver.tied_stability import fastest_growth_of, growing_of
 from coaxshell.solver.voltage_response import VoltageResponse
@@ -45,7 +47,7 @@ def late(**others: Any) -> cx.System:
 @cache
 def broken() -> cx.SpatialResponse:
     return cx.simulate(
-        cut(segment_pitch=0.8, segment_length=0.7, segments=4, segment_gap="20 mm").with_overrides({"source.z": 0.3}), **SMALL
+        cut(segment_pitch=0.8, segment_length=0.7, segments=4, segment_gap="20 mm", dead=[2]).with_overrides({"source.z": 0.3}), **SMALL
     )
 
 
@@ -72,7 +74,11 @@ def dense(problem: Problem, modes: Modes, s: np.ndarray) -> tuple[np.ndarray, np
     return np.linalg.inv(matrix), push, read
 
 
-@pytest.mark.parametrize("others", [{}, {"segments": 3, "segment_gap": "20 mm"}], ids=["whole around", "segments"])
+@pytest.mark.parametrize(
+    "others",
+    [{}, {"segments": 3, "segment_gap": "20 mm"}, {"segments": 3, "segment_gap": "20 mm", "dead": [0]}],
+    ids=["whole around", "segments", "dead"],
+)
 def test_belts_are_all_waves_and_all_belts_at_once(others):
     """Three belts of a period, both parities along the axis, means over each belt and segment taken numerically."""
     law = cx.Feedback(numerator=[2 * TIME, 3.0], transducers="electrodes", matrix=MIXED, segment_pitch=1.0, segment_length=0.7, **others)
@@ -133,7 +139,7 @@ def projection(law: Any, shells: Any, top: int) -> np.ndarray:
         return np.kron(np.ones((2, 2)), np.eye(top))
     angles = [2 * np.pi / law.segments - law.segment_gap / shells[wall].radius for wall in range(2)]
     found = np.zeros((2, top, 2, top))
-    for k in range(law.segments):
+    for k in set(range(law.segments)) - set(law.dead or ()):
         theta = 2 * np.pi * k / law.segments + np.multiply.outer(angles, (np.arange(4000) + 0.5) / 4000 - 0.5)
         means = [np.cos(np.outer(m, one)).mean(axis=1) for one in theta]
         for i, j in np.ndindex(2, 2):
@@ -210,6 +216,8 @@ def test_a_belt_has_one_voltage_and_files_know_it(tmp_path):
     voltage = response.spatial.at(0).segment_voltage
     assert voltage.shape == (2, 4, 26)
     assert not response.spatial.at(1).segment_voltage.any()  # between belts
+    assert not voltage[:, 2].any()  # dead ones of all belts
+    assert voltage[:, [0, 1, 3]].any(axis=(0, 2)).all()
     ends = cx.simulate(response.system, **{**SMALL, "stations": [0.3, 0.34, 0.36], "axial_period": response.spatial.settings.axial_period})
     assert_allclose(ends.spatial.at(1).segment_voltage, ends.spatial.at(0).segment_voltage, rtol=1e-12)
     assert_allclose(ends.spatial.at(1).segment_voltage, voltage, rtol=0, atol=1e-12 * np.abs(voltage).max())
@@ -303,12 +311,23 @@ def test_margins_of_belts_in_segments_are_told_by_pattern():
         cx.stability_margins(late(), duration=0.5, modes=3, dimensions=3)
 
 
+def test_delay_margins_of_belts_with_dead_segments_part_stable_from_growing_ones():
+    problem = dimensionless(late(segments=2, dead=[1], numerator=[0.2 * TIME, 1.0], delay="0.2 us"), 3)
+    tie, place = ties_of_belts(problem, AxialSampling(4 * 0.6 / A, 2, 6.0))[1], 1
+    least = segmented_loops(problem, tie, 1.0)[place].margins.delay.min()
+    for factor, many in ((0.97, False), (1.03, True)):
+        walls = list(problem.shells)
+        walls[place] = walls[place].with_gains(walls[place].gains.late(factor * least))
+        found, _ = growing_of(replace(problem, shells=tuple(walls)), tie, 1.0)
+        assert (found is not None) == many
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
         ({"control.segment_length": 0.5}, r"control\.segment_length: is said of electrodes that are not cut along the axis"),
         ({"control.segment_pitch": 0.5, "control.segment_length": 0.6}, r"control\.segment_length: 0\.6 m is more than the 0\.5 m"),
-        ({"control.segment_pitch": 0.5, "control.segments": 4, "control.dead": [1]}, r"control\.dead: is not known of electrodes that are"),
+        ({"control.segment_pitch": 0.5, "control.dead": [1]}, r"control\.dead: is said of electrodes that are not cut; give the number"),
         ({"control.segment_pitch": 0.5, "control.transducers": "paper"}, r"control\.segment_pitch: 0\.5 m: .* the paper's law"),
         ({"control.segment_pitch": 0.1}, r"control\.segment_length: 0\.1 m are less than half of the shortest wave .*axial_modes=32"),
         ({"control.segment_pitch": 0.8, "control.saturation": True}, r"control\.saturation: "),

@@ -33,7 +33,7 @@ Dead = Annotated[tuple[int, ...], BeforeValidator(_dead)]
 
 def require_segments(law: Any) -> None:
     """Raise InputError if what a law says of segments does not go together."""
-    _require_belts(law.segment_pitch, law.segment_length, law.dead, law.transducers)
+    _require_belts(law.segment_pitch, law.segment_length, law.transducers)
     segments, gap, dead, transducers = law.segments, law.segment_gap, law.dead, law.transducers
     if segments is None:
         for name, given in (("segment_gap", gap), ("dead", dead)):
@@ -48,7 +48,7 @@ def require_segments(law: Any) -> None:
         raise InputError("dead", f"lists all {segments} segments", "leave control out, or some segments alive")
 
 
-def _require_belts(pitch: float | None, length: float | None, dead: tuple[int, ...] | None, transducers: str) -> None:
+def _require_belts(pitch: float | None, length: float | None, transducers: str) -> None:
     """Raise InputError if what is said of electrodes that are cut along the axis does not go together."""
     if pitch is None:
         if length is not None:
@@ -61,6 +61,3 @@ def _require_belts(pitch: float | None, length: float | None, dead: tuple[int, .
     if length is not None and length > pitch:
         told = f"{length:g} m is more than the {pitch:g} m from middle to middle"
         raise InputError("segment_length", told, f"must be at most segment_pitch, {pitch:g} m, which leaves no gap")
-    if dead:
-        told = "is not known of electrodes that are cut along the axis"
-        raise InputError("dead", told, "leave dead out, or segment_pitch: segments are then strips along the whole length")

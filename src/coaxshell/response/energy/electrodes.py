@@ -77,7 +77,9 @@ def driven_at(motion: Motion, shell: int, wall: ShellModel) -> DrivenWall:
     moved, weight = [_combined(charge, v, w, u) for charge, _ in known], wall.radius * motion.circle
     more = None if motion.charged is None else motion.charged[:, None] * volts
     if isinstance(wall, SegmentedWall):
-        more = None if more is None else on_segments(wall, more, [], motion.around)[0]
+        if more is not None:
+            more = on_segments(wall, more, [], motion.around)[0]
+            more[:, list(wall.segments.dead)] = 0.0  # the orders of a voltage count more each by itself
         volts, moved, weight = on_segments(wall, volts, moved, motion.around)
     charging = volts if more is None else more
     return DrivenWall(volts, charging, [(one, capacitance) for one, (_, capacitance) in zip(moved, known, strict=True)], weight)

@@ -190,7 +190,7 @@ class BeltDriver:
                     share = self._classes.read[parity, wave] * self._about_zero[place, parity, wave]
                     phi[parity, :, : seen.shape[1], :count] += share * seen
         loops = ElectrodeLoops.of(self._problem, VoltageResponse.of_faces(self._shells, read), patterns, s)
-        return np.stack([patterns.in_orders(loops.asked(patterns.readings(one))) for one in phi])
+        return np.stack([patterns.in_orders(loops.voltages(patterns.readings(one))) for one in phi])
 
     @property
     def _along(self) -> int:
