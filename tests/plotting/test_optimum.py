@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 
 import coaxshell as cx
-from coaxshell.plotting import plot_parallel
+from coaxshell.plotting import plot_convergence, plot_parallel
 
 
 def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
@@ -25,3 +25,25 @@ def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
     labels = [label.get_text() for label in ax.get_xticklabels()]
     plt.close(figure)
     assert labels == ["absorbers.\ndamping\n1e+04 to 1e+08\nN s/m²", "absorbers.\ncount\n5 to 10"]
+
+
+def test_designs_are_drawn_where_none_keeps_the_limits():
+    found = cx.optimise(
+        "absorbers",
+        variables={"absorbers.count": cx.Range(5, 10)},
+        objectives="absorbers.mass",
+        constraints=["absorbers.mass <= 65 kg/m", "absorbers.count >= 9"],
+        evaluations=6,
+        seed=1,
+        workers=1,
+        modes=4,
+        duration=1.0,
+        time_step=0.02,
+    )
+    figure, ax = plt.subplots()
+    plot_convergence(found, ax)
+    plt.close(figure)
+    (designs, _) = ax.lines
+    assert designs.get_label() == "design beyond a limit (all are)"
+    assert sorted(designs.get_ydata()) == sorted(one.targets["absorbers.mass"] for one in found.history)
+    assert ax.get_ylim()[0] < min(designs.get_ydata())

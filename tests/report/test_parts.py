@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coaxshell.apps.report.parts import MOST_ROWS, Picture, drawn
+from coaxshell.apps.report.page import page
+from coaxshell.apps.report.parts import MOST_ROWS, Picture, Section, Table, drawn
 from coaxshell.plotting.style import new_figure
 
 
@@ -21,3 +22,9 @@ def test_long_data_are_thinned_evenly():
     assert head == "time (s),a; b"
     assert len(rows) == MOST_ROWS
     assert rows[1] == "4,-4"
+
+
+def test_numbers_of_tables_stand_as_in_print():
+    table = Table("what", ("peak", "error", "none"), [("-250 m/s^2", "4.5e-03", "-")])
+    cells = page("title", "under it", [Section("section", [table])]).split("<tbody>")[1].split("</tbody>")[0]
+    assert [cell in cells for cell in ("−250 m/s²<", ">4.5e-3<", ">–<")] == [True, True, True]

@@ -50,15 +50,23 @@ def figure_optimum(optimum: Optimum) -> Figure:
 
 
 def plot_convergence(optimum: Optimum, ax: Axes) -> Axes:
-    """Draw the first objective of every feasible design, the best so far and the baseline, against the number of evaluations."""
+    """Draw the first objective of every feasible design, the best so far and the baseline, against the number of evaluations.
+
+    Where no design keeps all limits those beyond them are drawn instead.
+    """
     goal = optimum.targets.goals[0].target
-    factor, unit = scale([one.targets[goal.name] for one in optimum.history if one.feasible], goal.metric.units)
+    some = any(one.feasible for one in optimum.history)
+    drawn = np.array([one.targets.get(goal.name, np.nan) if one.feasible == some else np.nan for one in optimum.history])
+    factor, unit = scale(drawn, goal.metric.units)
     numbers = np.array([one.number + 1 for one in optimum.history])
-    values = np.array([one.targets.get(goal.name, np.nan) if one.feasible else np.nan for one in optimum.history]) * factor
-    sign = -1.0 if optimum.targets.goals[0].maximise else 1.0
-    best = sign * np.fmin.accumulate(sign * values)
-    ax.plot(numbers, values, ".", color=COLOURS["sky"], markersize=2.5, label="feasible design")
-    ax.step(numbers, best, where="post", color=COLOURS["blue"], linewidth=1.6, label="best so far")
+    values = drawn * factor
+    if some:
+        ax.plot(numbers, values, ".", color=COLOURS["sky"], markersize=2.5, label="feasible design")
+        sign = -1.0 if optimum.targets.goals[0].maximise else 1.0
+        best = sign * np.fmin.accumulate(sign * values)
+        ax.step(numbers, best, where="post", color=COLOURS["blue"], linewidth=1.6, label="best so far")
+    else:
+        ax.plot(numbers, values, "x", color=COLOURS["grey"], markersize=3.5, label="design beyond a limit (all are)")
     before = optimum.baseline.targets.get(goal.name)
     if before is not None:
         ax.axhline(before * factor, color=COLOURS["orange"], linestyle=(0, (4, 1.5)), label="baseline")

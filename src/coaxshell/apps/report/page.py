@@ -9,6 +9,7 @@ from importlib.resources import files
 from urllib.parse import quote
 
 from coaxshell.apps.report.parts import Beside, Code, Drawing, Item, Listed, Picture, Section, Table
+from coaxshell.numerics.texts import typeset
 
 _SHORT = 16
 """Rows of a table that stays on one page of paper."""
@@ -61,7 +62,7 @@ class _Writer:
                 self.tables += 1
                 return _table(item, self.tables)
             case Listed():
-                return f"<ul>{''.join(f'<li>{escape(text)}</li>' for text in item.items)}</ul>"
+                return f"<ul>{''.join(f'<li>{_told(text)}</li>' for text in item.items)}</ul>"
             case Code():
                 saved = _saved(item.text, item.name, "application/toml", f"save {item.name}") if item.name else ""
                 kept = ' class="scenario"' if item.name else ""
@@ -77,6 +78,11 @@ class _Writer:
         return f"<figure>{shown}<figcaption><b>Figure {self.figures}.</b> {escape(item.caption)}{saved}</figcaption></figure>"
 
 
+def _told(text: str) -> str:
+    """Return a text with its numbers as they are printed; a dash for what there is nothing of."""
+    return escape("–" if text == "-" else typeset(text))
+
+
 def _saved(text: str, name: str, kind: str, words: str) -> str:
     """Return a link that saves a text as a file."""
     content = quote(text, safe=" ,()/.:;=-_*+@!?~^[]{}|")
@@ -87,7 +93,7 @@ def _table(table: Table, number: int) -> str:
     def cells(row: Sequence[str], tag: str) -> str:
         kind = ' scope="col"' if tag == "th" else ""
         return "".join(
-            f"<{tag}{kind}{'' if i < table.words else ' class=n'}>{escape(cell)}</{tag}>" if cell or tag == "td" else "<td></td>"
+            f"<{tag}{kind}{'' if i < table.words else ' class=n'}>{_told(cell)}</{tag}>" if cell or tag == "td" else "<td></td>"
             for i, cell in enumerate(row)
         )
 
