@@ -49,16 +49,33 @@ def absorber_force(solution: ModalSolution | SpatialSolution, station: Any = Non
     InputError
         If the system has no absorbers.
     """
-    scales, points = solution.problem.scales, not isinstance(solution, ModalSolution) and not of_lines(solution)
+    points = not isinstance(solution, ModalSolution) and not of_lines(solution)
     side = xr.Variable("side", list(SIDES), {"long_name": "which of the two linked shells the force acts on"})
     long_name = "force of the absorber on the shell" + ("" if points else ", per metre of length")
     attributes = {"units": "N" if points else "N/m", "long_name": long_name, "sign": f"{INWARD} on the shell"}
     if of_lines(solution):
-        found = np.moveaxis(scales.line_force * _present(solution.line_force), 0, 2)
+        found = np.moveaxis(force_values(solution), 0, 2)
         return _along(solution, station, found, ("absorber", "side"), {"side": side}, "absorber_force", attributes)
-    values = (scales.force if points else scales.line_force) * _present(solution.absorber_force)
+    values = force_values(solution)
     coordinates = {**_coordinates(solution), "side": side}
     return xr.DataArray(values, dims=("absorber", "side", "time"), coords=coordinates, name="absorber_force", attrs=attributes)
+
+
+def force_values(solution: ModalSolution | SpatialSolution) -> FloatArray:
+    """Return the forces f_n of the absorbers on the shells they link without labels, which take longer to import than a preview may take.
+
+    N/m, or N of point absorbers, (absorber, side, time); of line absorbers in three dimensions N/m, (station, absorber, side, time).
+
+    Raises
+    ------
+    InputError
+        If the system has no absorbers.
+    """
+    scales = solution.problem.scales
+    if of_lines(solution):
+        return scales.line_force * _present(solution.line_force)
+    unit = scales.line_force if isinstance(solution, ModalSolution) else scales.force
+    return unit * _present(solution.absorber_force)
 
 
 def of_lines(solution: ModalSolution | SpatialSolution) -> TypeGuard[SpatialSolution]:

@@ -96,6 +96,22 @@ def test_cuts_and_energy_wait_until_asked_for_and_tell_their_cost(page, whole):
     assert not page.locator("#wave-cut").is_visible()
 
 
+def test_what_is_described_is_solved_before_the_bare_system(kept_page, open_page, server):
+    asked = []
+
+    def told(what, request):
+        if request.url.endswith("/api/jobs"):
+            asked.append((what, request.post_data_json["slot"]))
+
+    heard = {"request": lambda request: told("asked", request), "response": lambda response: told("answered", response.request)}
+    for event, hear in heard.items():
+        kept_page.on(event, hear)
+    page = open_page(linked(server, "hybrid", stations=[0.0], modes=3, time_step=0.05), drawing=False)
+    for event, hear in heard.items():
+        page.remove_listener(event, hear)
+    assert asked == [(what, f"{slot}-full") for slot in ("current", "bare") for what in ("asked", "answered")]
+
+
 def test_three_dimensions_are_chosen_and_told_their_cost(linked_page):
     page = linked_page({**SPACE, "dimensions": 2, "stations": [0.0]}, preset="bare")
     page.locator('details[data-group="dimensions"]').evaluate("box => { box.open = true; }")
@@ -116,7 +132,9 @@ def test_three_dimensions_are_chosen_and_told_their_cost(linked_page):
 @pytest.mark.slow
 def test_three_dimensions_are_chosen_by_keyboard_with_their_cost_and_can_be_stopped(open_page, server):
     page = open_page(linked(server, dimensions=2, stations=[0.0], modes=40, time_step=1e-3, duration=4.0), wait=False)
-    until(page, "window.coaxshell?.state.runs.current")
+    until(page, "window.coaxshell?.state.runs.current?.full")
+    held = []
+    page.route("**/api/runs/*", lambda route: held.append(route))  # the preview is not shown before it is stopped
     page.locator('details[data-group="dimensions"] > summary').press("Enter")
     page.locator('[data-path="resolution.dimensions"]').focus()
     page.keyboard.press("t")
@@ -128,6 +146,9 @@ def test_three_dimensions_are_chosen_by_keyboard_with_their_cost_and_can_be_stop
     assert "Stopped" in page.locator("#state").inner_text()
     assert page.locator("#refine").inner_text() == "Solve the preview"
     assert page.locator(".of-old").is_visible()
+    for route in held:
+        route.continue_()
+    page.unroute_all()
     field = page.locator('[data-path="resolution.stations"]')
     field.fill("0, 1 s")
     field.press("Enter")

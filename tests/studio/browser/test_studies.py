@@ -19,11 +19,15 @@ ENTRIES = (
 
 
 def start(page, **entries):
+    """Start a sweep and wait until it is listed, before what a test before has left; what that has come to is gone."""
     page.locator("#tab-studies").click()
     page.get_by_role("radio", name="Sweep").check(force=True)
     page.locator("#sweep").wait_for()
+    before = page.evaluate("document.getElementById('study-jobs').children.length")
+    page.evaluate("document.getElementById('study-result').replaceChildren()")
     page.evaluate(ENTRIES, {name.rstrip("_"): str(value) for name, value in entries.items()})
     page.locator("#sweep button.main").click()
+    until(page, "before => document.getElementById('study-jobs').children.length > before", before)
 
 
 def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(linked_page):
@@ -42,8 +46,9 @@ def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(linked_page):
 def test_a_sweep_can_be_cancelled(linked_page):
     page = linked_page(SECONDS, preset="hybrid")
     start(page, path="absorbers.mass", from_=1, to=100, count=200, scale="linear", metric="inner.peak_stress")
-    page.locator("#study-jobs").get_by_role("button", name="Cancel").first.click()
-    page.locator('#study-jobs [data-state="cancelled"]').wait_for()
+    mine = page.locator("#study-jobs .job").first
+    mine.get_by_role("button", name="Cancel").click()
+    until(page, "document.querySelector('#study-jobs .job').dataset.state === 'cancelled'")
 
 
 def again(page):
@@ -59,8 +64,18 @@ def test_a_sweep_outlives_its_page_being_loaded_anew(server, open_page, count):
     start(page, path="absorbers.mass", from_=2, to=90, count=count, scale="linear", metric="outer.peak_stress")
     mine = page.locator("#study-jobs .job").filter(has_text="outer · peak stress over absorbers · mass").first
     mine.wait_for()
+    unheard = []
+
+    def not_yet(route):
+        if unheard:
+            return route.continue_()
+        unheard.append(route)
+        return route.fulfill(json={"jobs": []})  # as if the server had not heard yet that the page before has gone
+
+    page.route("**/api/studies", not_yet)
     again(page)
     mine.wait_for()
+    assert unheard
     if count > 6:
         until(page, "count => document.getElementById('study-plot')?.data?.[0].x.length === count", count)
         assert mine.get_attribute("data-state") == "done"

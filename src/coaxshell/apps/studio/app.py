@@ -9,6 +9,7 @@ from pathlib import Path
 
 from anyio import to_thread
 from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response
@@ -18,6 +19,7 @@ from starlette.staticfiles import StaticFiles
 from coaxshell.apps.studio import job_routes, projects, record_uploads, refusals, routes, study_routes
 from coaxshell.apps.studio.guard import NAMES, Guard
 from coaxshell.apps.studio.refusals import RefusedError
+from coaxshell.apps.studio.schema import schema
 from coaxshell.apps.studio.state import Studio
 
 
@@ -46,6 +48,8 @@ async def _alive(app: Starlette) -> AsyncIterator[None]:
     to_thread.current_default_thread_limiter().total_tokens = 4
     app.state.studio = studio = Studio()
     resting = asyncio.get_running_loop().create_task(studio.rest())
+    # What every page asks for first is made while the browser starts.
+    app.state.schema = asyncio.get_running_loop().create_task(run_in_threadpool(schema))
     try:
         yield
     finally:

@@ -35,9 +35,7 @@ def studio_of(request: Request) -> Studio:
 
 async def schema(request: Request) -> Response:
     """Answer with all that a form is made from."""
-    from coaxshell.apps.studio.schema import schema as content
-
-    return JSONResponse(await run_in_threadpool(content))
+    return JSONResponse(await asyncio.shield(request.app.state.schema))
 
 
 async def validate(request: Request) -> Response:

@@ -8,6 +8,7 @@ import numpy as np
 
 from coaxshell.apps.studio.arrays import Item, Packed, packed
 from coaxshell.apps.studio.curves import absorber_bars, absorbers_of, bars_of, given, header_of
+from coaxshell.response.absorbers import force_values
 from coaxshell.response.spatial import SpatialResponse
 from coaxshell.response.spatial_summary import summarise_stations
 
@@ -53,8 +54,7 @@ def _forces(response: SpatialResponse, absorbers: dict[str, Any], unit: str) -> 
     """Return the forces of the absorbers nearest to head and tail on their shells: of points (2, instants), of lines at every station."""
     if absorbers["head"] is None:
         return {}
-    found = np.asarray(response.absorber_force())[[absorbers["head"], absorbers["tail"]]]
-    forces = found if found.ndim == 3 else found.transpose(2, 0, 1, 3)
+    forces = force_values(response.spatial)[..., [absorbers["head"], absorbers["tail"]], :, :]
     pairs = {(absorbers["inner_shells"][absorbers[end]], absorbers["outer_shells"][absorbers[end]]) for end in ("head", "tail")}
     if len(pairs) > 1:  # between different shells
         return {}

@@ -55,21 +55,24 @@ export async function start(body, watcher) {
   return answer.job;
 }
 
-// A promise of the job's end, with its progress on the way.
-export function finished(body, progress = () => {}) {
+// A promise of the job's end, with its progress on the way. It is asked for once `turn`, a promise, is kept; `asked` tells that it was.
+export function finished(body, progress = () => {}, turn = null) {
   let id = null, cancelled = false;
+  const follow = (resolve, reject) => (job) => {
+    progress(job);
+    if (job.state === "done") resolve(job);
+    else if (ended(job)) reject(Object.assign(new Error(job.state), { job, problem: job.error, cancelled: job.state === "cancelled" }));
+  };
+  let asked;
   const promise = new Promise((resolve, reject) => {
-    start(body, (job) => {
-      progress(job);
-      if (job.state === "done") resolve(job);
-      else if (ended(job)) reject(Object.assign(new Error(job.state), { job, problem: job.error, cancelled: job.state === "cancelled" }));
-    }).then((job) => {
+    const begin = () => (cancelled ? null : start(body, follow(resolve, reject)));
+    asked = (turn ? turn.then(begin) : Promise.resolve(begin())).then((job) => {
       id = job?.id;
       if (!id) reject(Object.assign(new Error("a newer one has come"), { problem: job?.problem, cancelled: !job }));
       else if (cancelled) stop(id);
     }, reject);
   });
-  return { promise, cancel() { cancelled = true; if (id) stop(id); } };
+  return { promise, asked, cancel() { cancelled = true; if (id) stop(id); } };
 }
 
 export async function stop(id) {

@@ -6,8 +6,10 @@ import { finished } from "./events.js";
 const PATIENCE = 900; // ms without a change before full resolution starts
 const PAUSE = 150; // and before errors and warnings are asked for
 const OFTEN = 400; // ms between bars while a slider moves: they take as long as a run
-const QUIET = 350; // ms without a change before a preview in three dimensions starts
+const AGAIN = 1000, SELDOM = 30_000; // from a failure to the next attempt: at first, and at most
+const QUIET = 350; // ms without a movement of a slider before a preview in three dimensions starts
 let revision = 0;
+let turn = null; // kept once the server has what was asked for last: previews that take seconds are solved in the order of the wishes
 export const sent = { rates: false }; // whether velocities and accelerations are, whose transforms a slider would wait for
 export const times = []; // ms from a change to the curves of its own run drawn, the newest last; those of the bare system may come before or after
 
@@ -17,6 +19,9 @@ export function drawn(result) {
   times.push(performance.now() - result.since);
   delete result.since;
 }
+
+// Whether the same request may be answered a little later.
+const passing = ({ status }) => !status || status === 429 || status >= 500;
 
 // Whether two runs have as many shells, and of the same kinds.
 const alike = (one, other) => one.shells?.map(({ rigid }) => rigid).join() === other.shells.map(({ rigid }) => rigid).join();
@@ -30,10 +35,11 @@ export class Slot {
   }
 
   // Ask for a system; the newest wish wins. One request is on its way at a time: a drag gets every answer that there is time for.
-  want(system, { resolution = "preview", full = null, since = performance.now() } = {}) {
+  // `moving` says that the next wish may follow at once: what takes seconds waits for the slider to rest, and for nothing else.
+  want(system, { resolution = "preview", full = null, since = performance.now(), moving = false } = {}) {
     this.wanted = { system, resolution, full, since, revision: ++revision };
     this.stopFull();
-    if (resolution.dimensions === 3) this.timer = setTimeout(() => this.carryOut(resolution, false), QUIET);
+    if (resolution.dimensions === 3) this.timer = setTimeout(() => this.carryOut(resolution, false), moving ? QUIET : 0);
     else if (!this.busy) this.next();
   }
 
@@ -78,12 +84,16 @@ export class Slot {
     if (this.tell.judged && !result.judged) setTimeout(() => this.judge(result), full ? 0 : PAUSE);
   }
 
-  // Bars of a run whose curves came without: at once where it rests, of a few runs on the way while a slider moves.
-  async measure(result, stays = false) {
+  // Bars of a run whose curves came without: at once where it rests, of a few runs on the way while a slider moves. What the server was too
+  // busy for, or not there for, is asked for again as long as the run is the one shown.
+  async measure(result, stays = false, pause = AGAIN) {
     const rests = stays || this.wanted.revision === result.revision;
     if (result.withBars || (!rests && performance.now() - this.asked < OFTEN)) return;
     this.asked = performance.now();
-    const told = await request(`/api/runs/${result.run}/bars`).catch(() => null), now = this.result;
+    const told = await request(`/api/runs/${result.run}/bars`).catch((error) => {
+      if (passing(error)) setTimeout(() => this.result === result && this.measure(result, stays, Math.min(2 * pause, SELDOM)), pause);
+    });
+    const now = this.result;
     if (!told || now.withBars || this.measured > result.revision || !alike(now, result)) return;
     this.measured = result.revision;
     Object.assign(now, { bars: told.bars, withBars: now === result });
@@ -106,8 +116,9 @@ export class Slot {
   carryOut(resolution, full) {
     const wish = this.wanted;
     this.stopFull();
-    const work = finished({ kind: "solve", slot: `${this.name}-full`, revision: ++revision, system: wish.system, resolution }, (job) => this.full === work && this.tell.progress?.({ ...job, full }));
-    this.full = work;
+    const body = { kind: "solve", slot: `${this.name}-full`, revision: ++revision, system: wish.system, resolution };
+    const work = finished(body, (job) => this.full === work && this.tell.progress?.({ ...job, full }), turn);
+    [this.full, turn] = [work, work.asked];
     if (!full) this.tell.progress?.({ fraction: 0, stage: "", full });
     work.promise.then(async (job) => {
       const answer = await request(`/api/runs/${job.run}`);

@@ -56,8 +56,8 @@ const preview = () => previewOf(page.resolution);
 
 const inSpace = () => space.spatial(page.resolution);
 
-function solve(since = performance.now()) {
-  const how = { resolution: preview(), full: page.resolution, since };
+function solve(since = performance.now(), moving = false) {
+  const how = { resolution: preview(), full: page.resolution, since, moving };
   page.stopped = false;
   slots.current.want(page.system, how);
   if (isBare(page.system)) { slots.bare.stopFull(); drop("bare"); page.bareKey = ""; return; }
@@ -93,7 +93,7 @@ async function change(path, value, { live = false } = {}) {
   else if (ofResolution) page.resolution = { ...page.resolution, [path.slice(11)]: value };
   else page.system = written(page.system, path, value);
   if (live && !page.problems.length) {
-    solve(since); // the server is at it while the page is brought up to date
+    solve(since, true); // the server is at it while the page is brought up to date
     form.refresh(forForm());
     section.draw(page.system);
     return keepLink();

@@ -10,6 +10,7 @@ import { refusal, told } from "./words.js";
 
 const KINDS = { sweep, optimise };
 const jobs = new Map(); // by id: { kind, title, row, state }
+const LATER = [0, 1000, 4000, 15_000]; // ms after the page's beginning: the server may hear late that the page before has gone
 let kind = "sweep", world, redraw = () => {}, fileTimer;
 
 // `page` holds what main.js does; `preview` gives its coarse resolution; `opened` adopts a system.
@@ -29,7 +30,7 @@ export function setUp(page, { preview, opened }) {
     for (const type of ["input", "change", "click"]) form.addEventListener(type, keepFile);
   }
   document.addEventListener("theme", () => redraw());
-  takeOver();
+  for (const pause of LATER) setTimeout(takeOver, pause);
   onRestart(() => { for (const one of jobs.values()) one.row.remove(); jobs.clear(); });
 }
 
@@ -75,7 +76,7 @@ async function start() {
 // What this page had started before it was loaded anew, or another one that has gone.
 async function takeOver() {
   try {
-    for (const job of (await request("/api/studies", { body: { client } })).jobs) list(job, job.title || KINDS[job.kind].title, { quiet: job.state === "done" });
+    for (const job of (await request("/api/studies", { body: { client } })).jobs) if (!jobs.has(job.id)) list(job, job.title || KINDS[job.kind].title, { quiet: job.state === "done" });
   } catch { /* the page says by itself that the server does not answer */ }
 }
 
