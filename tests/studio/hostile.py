@@ -134,6 +134,53 @@ LAWS = [
 CROSSED = {"numerator": [1.0], "matrix": [[1, 0.3], [0.6, 1]], "weights": [0, 1, 1], "transducers": "electrodes"}
 BELTS = {**CROSSED, "segment_pitch": "80 cm", "segment_length": "80 cm"}
 
+LIMITED = {
+    "numerator": [1e-3],
+    "denominator": [1],
+    "transducers": "electrodes",
+    "segments": 8,
+    "current_limit": "20 A/m^2",
+    "current_saturation": True,
+    "bridge_imbalance": 0.01,
+}
+FITTED = {"mass": 5.0, "linear_stiffness": 1e8, "angle": 10.0, "inner_shell": 0, "outer_shell": 2, "footprint": "1 cm"}
+BELTED = (
+    *(("control", name) for name in (*BELTS, "segments", "segment_gap", "delay", "saturation")),
+    *(("source", name) for name in ("z", "inclination", "pulse")),
+    *(("shells", 0, name) for name in ("theory", "wetted", "layers")),
+    *(("resolution", name) for name in ("dimensions", "stations", "axial_modes", "axial_period")),
+)
+CROWDED = (
+    *(("control", name) for name in LIMITED),
+    *(("absorbers", 0, name) for name in (*FITTED, "inertance", "law", "z")),
+    *(("shells", 0, "layers", 0, name) for name in ("material", "role", "loss_factor")),
+)
+"""Entries of belts in three dimensions, and of limits of current and absorbers past a shell; not all are there."""
+
+
+def past_a_shell():
+    """Return a system of three shells with an absorber from the first to the last, under a law with limits of current."""
+    system = described("electrodes")
+    inner, outer = system["shells"]
+    shells = [inner, outer, {**outer, "radius": 1.5 * outer["radius"]}]
+    return {**system, "shells": shells, "fluids": [*system["fluids"], system["fluids"][-1]], "absorbers": [FITTED], "control": LIMITED}
+
+
+def spoilt_entries(random_, values):
+    """Yield bodies in which one of the entries is something else than it may be."""
+    belted = {"system": {**described("electrodes"), "control": BELTS}, "resolution": SPACE, "preview": SPACE, "choices": True}
+    for whole, entries in ((belted, BELTED), ({"system": past_a_shell(), "resolution": SMALL}, CROWDED)):
+        yield whole
+        for path in entries:
+            for value in random_.sample(VALUES, values):
+                body = copy.deepcopy(whole)
+                owner = body if path[0] == "resolution" else body["system"]
+                for key in path[:-1]:
+                    owner = owner[key]
+                owner[path[-1]] = copy.deepcopy(value)
+                yield body
+
+
 STUDY = {
     "over": {"absorbers.mass": {"from": 1, "to": 2, "count": 2}},
     "metrics": ["inner.peak_stress"],
@@ -216,6 +263,8 @@ def requests(seed=1, count=1100):
     for raw in RAW:
         for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open", "/api/project"):
             yield "POST", path, raw
+    for body in spoilt_entries(random_, 1 if count < 1000 else 20):
+        yield "POST", "/api/validate", encoded(body)
     for path, body in grave.requests(random_, systems, VALUES):
         yield "POST", path, encoded(body)
     for number in range(count):

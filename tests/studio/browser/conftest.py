@@ -24,10 +24,12 @@ LINKS = itertools.count()
 """Tells links apart, so that a test knows when the page has opened its own."""
 
 OF_ITS_OWN = """([slots, wanted]) => slots.every(slot => {
-  const run = window.coaxshell.state.runs[slot];
-  return run?.full && Object.entries(wanted).every(([name, value]) => run.resolution[name] === value);
+  const {system, runs: {[slot]: run}} = window.coaxshell.state, more = slot === 'bare' ? {absorbers: [], control: null} : {};
+  const described = one => JSON.stringify({...one, ...more, name: ''});
+  const fits = ([name, value]) => run.resolution[name] === value;
+  return run?.full && described(run.system) === described(system) && Object.entries(wanted).every(fits);
 })"""
-"""Whether the runs on the page have the resolution of the link, and no finer one follows."""
+"""Whether the runs on the page are of the link's system at its resolution, and no finer one follows."""
 
 FLAGS = [
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),

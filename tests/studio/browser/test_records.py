@@ -13,6 +13,14 @@ import coaxshell as cx
 PULSE = "window.coaxshell.state.system.source.pulse"
 
 
+HELD_FROM = """async start => {
+  const {request} = await import('/page/js/api.js');
+  const {system} = await request('/api/link/open', {body: {fragment: location.hash.slice(1)}});
+  return system?.source.pulse?.start === start;
+}"""
+"""Whether the address holds, half a second after the form, a pulse that is cut at an instant."""
+
+
 def kind(page, path, label):
     page.locator(f'[id="kind-{path}"]').evaluate(
         "one => { for (let box = one.closest('details'); box; box = box.parentElement.closest('details')) box.open = true; }"
@@ -66,8 +74,8 @@ def test_a_record_is_pasted_opened_cut_and_solved(server, open_page, tmp_path):
     stress = np.asarray(solved(system, run["resolution"]).stress("inner", angle=[0, 180])).T
     assert_allclose(run["arrays"]["stress/0"], stress, rtol=0, atol=1e-7 * np.abs(stress).max())
     # Its link is short, and holds it as long as the server runs.
-    until(page, "location.hash.length > 0 && location.hash.length < 3000")
-    page.wait_for_timeout(900)
+    until(page, HELD_FROM, 1e-4)
+    assert len(page.evaluate("location.hash")) < 3000
     again = open_page(f"{server.address}#{page.url.partition('#')[2]}", drawing=False)
     assert system_of(again) == system
 
