@@ -320,7 +320,7 @@ class InclinedDrive:
                 by_volts[row] += np.multiply.outer(shares[driven.index(place.layer)], field)
 
 
-_drives = lru_cache(maxsize=32)(InclinedDrive)
+_drives = lru_cache(maxsize=24)(InclinedDrive)
 
 
 def inclined_under_volts(

@@ -104,4 +104,4 @@ def _followed(before: FloatArray, shapes: FloatArray) -> FloatArray:
     return np.take_along_axis(shapes, most[..., None], axis=1)
 
 
-lowest_shapes = lru_cache(maxsize=64)(LowestShapes)
+lowest_shapes = lru_cache(maxsize=24)(LowestShapes)
