@@ -223,4 +223,20 @@ ELECTRODES = (
         "the loop of a class hears all its waves",
         "solver/test_belts.py",
     ),
+    Mutation(
+        "belts-dead",
+        "solver/axial/belts.py",
+        "patterns.in_orders(loops.voltages(patterns.readings(one)))",
+        "patterns.in_orders(loops.asked(patterns.readings(one)))",
+        "dead segments are at ground in every belt",
+        "solver/test_belts.py",
+    ),
+    Mutation(
+        "belts-of-faces",
+        "solver/axial/open_waves.py",
+        "return self._open.readings(motion.faces)",
+        "return 0.5 * self._open.readings(motion.faces)",
+        "belts on exact walls read what the loads on both faces move",
+        "solver/test_exact_belts.py",
+    ),
 )
