@@ -5,8 +5,8 @@ Feedback of a rate of stretching makes a wall viscous along the axis: in the sim
     I s^2 = (d11 + G s) (-k^2) = (d11 + G s) s^2 sin^2 alpha,        s_0 = (I - d11 sin^2 alpha)/(G sin^2 alpha).
 
 What is viscous has no fastest wave: the wall is stretched ahead of the front, by e^{s_0 t} before it comes. That is a pole on the real
-axis, right of the contour, and the inverse transform takes it for what it is as long as the contour runs well to its left; further left,
-where feedback is strong or the front steep, it would take it for growth. The determinants of an order with feedback and without tell where
+axis, right of the contour, and the inverse transform takes it for what it is as long as the contour runs well to its left: what was before
+t = 0 returns around the period P as e^{s_0 (t - P)} e^{sigma P}. The determinants of an order with feedback and without tell where
 it is: real on the real axis, where k = -i s sin alpha is imaginary, their ratio changes sign there. Fluids are counted in.
 """
 
@@ -20,14 +20,15 @@ from coaxshell.acoustics.sources import PlaneGeometry
 from coaxshell.errors import InputError
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.causality import rounded_up
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import determinant_ratio
 
 _ORDERS = np.arange(2.0)
 """Those that bend least are stretched furthest ahead."""
 _SAMPLES, _ROUNDS = 40, 2
-_BESIDE = 2.0
-"""How many times as fast as the contour's e^{sigma t} it has to rise."""
+_LEFT = 1e-2
+"""What may return around the period, of the motion as the front comes."""
 
 
 def require_fronts_before_feedback(problem: Problem, grid: LaplaceGrid) -> None:
@@ -39,12 +40,13 @@ def require_fronts_before_feedback(problem: Problem, grid: LaplaceGrid) -> None:
         It names the source's inclination.
     """
     for where, degrees, rate in _ahead(problem, grid):
-        if rate < _BESIDE * _contour(grid):
+        needed = math.log(1.0 / (grid.wrap_around * _LEFT)) / rate  # e^{s_0 (T - P)} of t = 0, with e^{sigma P}
+        if grid.period - grid.time[-1] < needed:
             raise InputError(
                 where,
                 f"{degrees:g} degrees: feedback damps the walls along the axis, which stretches them {_told(problem, rate)} and more "
                 "before the front comes: a run of this length cannot tell that from growth",
-                "use less inclination, lower derivative gains, or a spherical source far away",
+                f"use duration = {rounded_up(needed):g} or more, less inclination, or lower derivative gains",
             )
 
 
@@ -59,10 +61,6 @@ def moved_ahead(problem: Problem, grid: LaplaceGrid) -> list[str]:
 
 def _told(problem: Problem, rate: float) -> str:
     return f"{1e6 * problem.scales.time / rate:.3g} microseconds"
-
-
-def _contour(grid: LaplaceGrid) -> float:
-    return float(grid.nodes[0].real)
 
 
 def _ahead(problem: Problem, grid: LaplaceGrid) -> list[tuple[str, float, float]]:
