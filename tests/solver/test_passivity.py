@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from electrode_pairs import pairs
 
 import coaxshell as cx
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver import passivity, stability
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import FluidRegion, dimensionless
-from coaxshell.solver.stability import unstable_poles
+from coaxshell.solver.stability import along_alone, unstable_poles
 
 BARE = cx.presets.load("bare")
 TIME = BARE.transit_time
@@ -74,6 +75,20 @@ def test_a_corner_is_harmless_up_to_the_gain_that_it_turns(proportional, passive
     # (k_p + k_d s)/(1 + s/w) has a positive real part over s, for Re s = 0, as long as k_p < k_d w.
     system = electrodes(numerator=[40.0 * TIME, 40.0 * proportional * CORNER], amplifier_corner=5e4)
     assert passive_orders(dimensionless(system), MODES, 1e-3).all() == passive
+
+
+@pytest.mark.parametrize(("gains", "proven"), [((0.0, 2.0), range(31)), ((100.0, 10.0), range(6)), ((0.0, -2.0), range(1, 1))])
+def test_layers_of_solid_walls_that_sense_and_act_are_passive_as_long_as_they_do_the_same(gains, proven, monkeypatch):
+    # What they push and what they read part as the square of the order; a push of the wrong sign is counted, and grows.
+    modes, law = Modes.up_to(30), cx.PDControl(proportional=gains[0], derivative=gains[1], transducers="electrodes")
+    problem = dimensionless(pairs().replace(control=law))
+    passive = set(modes.orders[passive_orders(along_alone(problem, modes), modes, 0.25)].tolist())
+    assert passive >= set(proven)
+    assert (len(passive) > 0) == (len(proven) > 0)
+    monkeypatch.setattr(stability, "passive_orders", lambda problem, modes, least: np.zeros(modes.count, dtype=bool))
+    counted = unstable_poles(problem, 30, 4.0).orders
+    assert not passive & set(counted.tolist())
+    assert (counted.size > 0) == (gains[1] < 0.0)
 
 
 def test_a_filter_leaves_orders_as_they_are():

@@ -54,7 +54,7 @@ def voltage_asked(solved: SolvedSpectra) -> ComplexArray:
         if isinstance(wall, ElasticWall):
             if wall.gains is not None:
                 assert solved.solid is not None
-                voltage[i] = solved.solid.potentials[wall.shown_potentials - 1, i]
+                voltage[i] = solved.solid.voltage(i, wall)
         elif wall.gains is not None:
             sensor = wall.sensor_gain(solved.modes).columns
             voltage[i] = wall.gains.at(solved.grid.nodes, solved.modes) * (sensor.v * solved.tangential[i] + sensor.w * solved.normal[i])

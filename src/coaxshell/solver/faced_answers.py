@@ -135,7 +135,7 @@ def _widened(given: ComplexArray, parities: int) -> ComplexArray:
 def read_within(problem: Problem, grid: LaplaceGrid, modes: Modes, moved: UnderSources, progress: Progress | None = None) -> SolidSpectra:
     """Return all that walls do: of solids by the loads on their faces, of thin ones, which are surfaces themselves, by their W."""
     found, read_now = room_for(problem, grid, modes, moved.loads)
-    make_shapes(problem, modes, grid.nodes)
+    make_shapes(problem, modes, grid.nodes, read_now)
     surface = {one.shell: number for number, one in enumerate(problem.surfaces) if one.side is None}
 
     def work(block: slice) -> None:
@@ -144,7 +144,7 @@ def read_within(problem: Problem, grid: LaplaceGrid, modes: Modes, moved: UnderS
             for parity in range(moved.loads.shape[2]):
                 inner, outer = moved.loads[:, shell, parity, :, block]
                 w = moved.surfaces[surface[shell], parity, :, block] if shell in surface else inner
-                found.put_read(shell, parity, block, read(reading, FaceMotion(w, w, inner, outer)))
+                found.put_read(shell, parity, block, read(reading, FaceMotion(w, w, inner, outer), read_now))
 
     with one_blas_thread():
         map_node_blocks(node_blocks(grid, modes.max_order), work, progress, "motion within the walls")

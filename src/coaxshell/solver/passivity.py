@@ -7,6 +7,10 @@ on V as well, V alone has to be passive first, so that Z has no poles.
 
 In waves along the axis U and V together have to be: the Hermitian part of their 2 x 2, over s, is positive definite.
 
+Of a wall of solids the shapes along it are asked, which alone hear and answer volts: omega^2 + s^2 - H d p' on them, over s, has to have a
+positive definite Hermitian part, and then its faces, too, take energy from what presses on them. Where one layer senses and acts, d and -p
+are alike but for a hundredth or less.
+
 The line is walked at nodes as far from each other as the functions bend: beside each resonance of V (of U and V) and of the law at
 distances that grow from sigma_0, and by a growing step in between. A delay turns the feedback between nodes: where by more than half a
 radian, its phase counts at its worst.
@@ -20,6 +24,7 @@ import numpy.typing as npt
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.scaling import FluidRegion, Problem
+from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import ShellModel
 
 Orders = npt.NDArray[np.bool_]
@@ -43,7 +48,9 @@ def passive_orders(problem: Problem, modes: Modes, least: float) -> Orders:
     known = np.ndim(modes.wavenumber) == 0 and all(fluid is None or type(fluid) is FluidRegion for fluid in problem.fluids)
     found = np.full(modes.count, known)
     for wall in problem.shells:
-        if wall.gains is not None and found.any():
+        if wall.gains is not None and found.any() and isinstance(wall, ElasticWall):
+            found &= _passive_solid(wall, modes, least)
+        elif wall.gains is not None and found.any():
             found[found] = _passive(wall, Modes(modes.orders[found], modes.wavenumber, modes.sparse), least)
     return found
 
@@ -71,16 +78,37 @@ def _passive(wall: ShellModel, modes: Modes, least: float) -> Orders:
     return passive
 
 
+def _passive_solid(wall: ElasticWall, modes: Modes, least: float) -> Orders:
+    """Return for which orders the shapes of a wall that bends and stretches along itself alone are passive with its feedback."""
+    assert wall.gains is not None
+    fed: Orders = np.asarray(wall.gains.weight(modes.orders)) * np.ones(modes.count) != 0.0
+    if wall.gains.delay or wall.closed_by_solver:
+        return ~fed
+    s = np.asarray(least + 1j * np.sort(np.concatenate(_common(wall, least))), dtype=np.complex128)
+    return ~fed | (wall.along_resistance(modes, s) > _SURE * least).all(axis=1)
+
+
 def _frequencies(wall: ShellModel, modes: Modes, least: float) -> FloatArray:
     """Return where the line of Re s = *least* is looked at, ascending, shape (orders, nodes)."""
     assert wall.gains is not None
-    common: list[FloatArray] = [np.zeros(1), np.geomspace(_LOWEST, _HIGHEST, int(_DECADE * np.log10(_HIGHEST / _LOWEST)))]
-    far = np.arcsinh(1e4 / least)
-    beside = np.sinh(np.linspace(-far, far, int(2 * far / _BESIDE)))
-    common += [np.asarray(np.abs(frequency + max(width, least) * beside)) for frequency, width in wall.gains.resonances]
+    common, beside = _common(wall, least), _beside(least)
     if wall.gains.delay:
         common.append(np.arange(0.0, _LATE) * (_TURNED / wall.gains.delay))
     own = {x.tobytes(): x for one in (wall.with_gains(None), wall) for x in one.along_frequencies(modes).T}
     each = [np.abs(x[:, None] + least * beside) for x in own.values()]
     rows = [np.broadcast_to(x, (modes.count, x.size)) for x in common]
     return np.sort(np.concatenate([*rows, *each], axis=1), axis=1)
+
+
+def _common(wall: ShellModel, least: float) -> list[FloatArray]:
+    """Return those of them that follow the resonances of the law, and all else that is smooth."""
+    assert wall.gains is not None
+    everywhere = np.geomspace(_LOWEST, _HIGHEST, int(_DECADE * np.log10(_HIGHEST / _LOWEST)))
+    resonant = [np.asarray(np.abs(frequency + max(width, least) * _beside(least))) for frequency, width in wall.gains.resonances]
+    return [np.zeros(1), everywhere, *resonant]
+
+
+def _beside(least: float) -> FloatArray:
+    """Return the distances of nodes from a resonance over its width."""
+    far = np.arcsinh(1e4 / least)
+    return np.asarray(np.sinh(np.linspace(-far, far, int(2 * far / _BESIDE))))

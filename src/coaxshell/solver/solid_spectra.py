@@ -36,7 +36,7 @@ def band(grid: LaplaceGrid) -> float:
 class WallAnswer(NamedTuple):
     """What one wall does, each (orders, nodes): W, V, hoop stress and potentials of its reference, 0 of thin walls, and its faces.
 
-    Thin walls tell U besides, where there is an axial wavenumber.
+    Thin walls tell U besides, where there is an axial wavenumber; walls of which W and V alone are read the voltage that their law gives.
     """
 
     normal: ComplexArray
@@ -45,6 +45,7 @@ class WallAnswer(NamedTuple):
     potentials: list[ComplexArray]
     faces: FaceMotion
     axial: ComplexArray | float = 0.0
+    given: ComplexArray | None = None
 
 
 class FacedSystem:
@@ -60,7 +61,7 @@ class FacedSystem:
     """
 
     def __init__(self, problem: Problem, s: ComplexArray, modes: Modes, some: slice = slice(None)) -> None:
-        self._problem, self._s, self._modes = problem, s, modes
+        self._problem, self._s, self._modes, self._some = problem, s, modes, some
         ports = [port(wall, modes, s, some) for wall in problem.shells]
         self.cascade = CascadeSystem(problem, s, modes, walls=[receptance for receptance, _ in ports])
         self.radial = self.cascade.radial
@@ -69,7 +70,7 @@ class FacedSystem:
 
     def under_sources(self, load: ComplexArray) -> list[WallAnswer]:
         """Return what all walls do under a pressure on the surface that the exterior fluid wets."""
-        return [read(reading, faces) for reading, faces in zip(self._reading, self.cascade.solve_outside(load), strict=True)]
+        return [read(reading, faces, self._some) for reading, faces in zip(self._reading, self.cascade.solve_outside(load), strict=True)]
 
     def under_force(self, surface: Surface, load: ComplexArray | float) -> list[WallAnswer]:
         """Return what all walls do under an inward pressure on one surface of a wall."""
@@ -136,16 +137,18 @@ class FacedSystem:
     def _together(self, each: Sequence[Sequence[FaceMotion]]) -> list[WallAnswer]:
         """Return what all walls do in several motions of their faces at once."""
         faces = [FaceMotion(*(sum(parts[1:], parts[0]) for parts in zip(*moving, strict=True))) for moving in zip(*each, strict=True)]
-        return [read(reading, moving) for reading, moving in zip(self._reading, faces, strict=True)]
+        return [read(reading, moving, self._some) for reading, moving in zip(self._reading, faces, strict=True)]
 
 
-def read(reading: ComplexArray | WallOperator, faces: FaceMotion) -> WallAnswer:
-    """Return what a wall does whose faces move so; ``reading`` is what it shows by :func:`port`."""
+def read(reading: ComplexArray | WallOperator, faces: FaceMotion, some: slice = slice(None)) -> WallAnswer:
+    """Return what a wall does whose faces move so; ``reading`` is some of what it shows by :func:`port`."""
     if isinstance(reading, WallOperator):
         axial = 0.0 if reading.axial is None else reading.axial * faces.outer
         return WallAnswer(faces.outer, reading.tangential * faces.outer, 0.0, [], faces, axial)
     normal, tangential, *more = reading[:, 0] * faces.load_inner + reading[:, 1] * faces.load_outer
-    return WallAnswer(normal, tangential, more[0] if more else 0.0, more[1:], faces)
+    if some == MOTION:
+        return WallAnswer(normal, tangential, 0.0, [], faces, given=more[0] if more else None)
+    return WallAnswer(normal, tangential, more[0], more[1:], faces)
 
 
 def sensed_place(wall: ElasticWall) -> int:
@@ -158,11 +161,11 @@ def sensed_place(wall: ElasticWall) -> int:
 def port(wall: ShellModel, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> tuple[FaceReceptance, ComplexArray | WallOperator]:
     """Return how a wall answers, and what it shows: per load on either face, (3 or more, 2, orders, nodes), or of one W per W.
 
-    Of walls of solids without control ``some`` of that alone, if asked for.
+    Of walls of solids ``some`` of that alone, if asked for; with their motion alone comes the voltage that a law of their own gives.
     """
     if not isinstance(wall, ElasticWall):
         return wall.receptance(modes, s), wall.operator(modes, s)
-    return wall.two_port(modes, s) if wall.shows_control else wall.two_port(modes, s, some)
+    return wall.two_port(modes, s, some, gives=some == MOTION and wall.gains is not None)
 
 
 MOTION, STRESS, POTENTIALS = slice(0, 2), slice(2, 3), slice(3, None)
@@ -207,7 +210,7 @@ class Unread:
             found[0, shell, ..., block] = h.inner * on_inner + h.across * on_outer
             found[1, shell, ..., block] = h.back * on_inner + h.outer * on_outer
 
-        self._each(work)
+        self._each(work, slice(0))
         return found
 
     @cached_property
@@ -224,17 +227,17 @@ class Unread:
         found = np.zeros((count, *self._normal.shape), np.complex128)
 
         def work(wall: ElasticWall, shell: int, block: slice) -> None:
-            per_load = wall.two_port(self._modes, self._grid.nodes[block], some)[1]  # under control all of it has been put down
+            per_load = wall.two_port(self._modes, self._grid.nodes[block], some)[1]
             inner, outer = self._loads[:, shell, ..., block]
             for row, (by_inner, by_outer) in zip(found, per_load, strict=False):  # a wall may have fewer layers
                 row[shell, ..., block] = by_inner * inner + by_outer * outer
 
-        self._each(work)
+        self._each(work, some)
         return found
 
-    def _each(self, work: Callable[[ElasticWall, int, slice], None]) -> None:
-        """Do the work for each wall of solids at each block of nodes."""
-        make_shapes(self.problem, self._modes, self._grid.nodes)
+    def _each(self, work: Callable[[ElasticWall, int, slice], None], some: slice) -> None:
+        """Do the work, for which some of what walls show is read, for each wall of solids at each block of nodes."""
+        make_shapes(self.problem, self._modes, self._grid.nodes, some)
 
         def of_block(block: slice) -> None:
             for shell, wall in enumerate(self.problem.shells):
@@ -257,12 +260,15 @@ class SolidSpectra:
         Loads on the inner and the outer faces, positive inward.
     beside : Written or Unread
         What else walls show: it has been put down, or is read when it is first asked for.
+    asked : ndarray, shape (shells, parities, M + 1, nodes), or None
+        Voltages that the laws of solid walls give, where they are not among the potentials that have been put down.
     """
 
     normal: ComplexArray
     tangential: ComplexArray
     loads: ComplexArray
     beside: Written | Unread
+    asked: ComplexArray | None = None
 
     @property
     def faces(self) -> ComplexArray:
@@ -282,6 +288,10 @@ class SolidSpectra:
         """
         return self.beside.potentials
 
+    def voltage(self, shell: int, wall: ElasticWall) -> ComplexArray:
+        """Return the voltage that the law of a solid wall gives, shape (parities, M + 1, nodes)."""
+        return np.asarray(self.potentials[wall.shown_potentials - 1, shell] if self.asked is None else self.asked[shell])
+
     def put(self, parity: int, nodes: slice, answers: Sequence[WallAnswer]) -> None:
         """Put down what all walls do, in one parity at a slice of the nodes; what thin walls do not show stays 0."""
         for shell, wall in enumerate(answers):
@@ -295,6 +305,8 @@ class SolidSpectra:
         """Put down what one wall shows of itself."""
         at = (shell, parity, slice(None), nodes)
         self.normal[at], self.tangential[at] = wall.normal, wall.tangential
+        if wall.given is not None and self.asked is not None:
+            self.asked[at] = wall.given
         if isinstance(wall.hoop, np.ndarray):
             self.beside.hoop[at] = wall.hoop
         for layer, potential in enumerate(wall.potentials):
@@ -314,7 +326,7 @@ class SolidSpectra:
     @property
     def nbytes(self) -> int:
         """Bytes beside W and V, of all that may be read."""
-        return 2 * self.loads.nbytes + (1 + self.layers) * self.normal.nbytes
+        return 2 * self.loads.nbytes + (1 + self.layers) * self.normal.nbytes + (0 if self.asked is None else self.asked.nbytes)
 
 
 def _together(a: ComplexArray, b: ComplexArray) -> ComplexArray:
@@ -349,22 +361,23 @@ def nothing_moves(problem: Problem, parities: int, orders: int, nodes: int) -> S
 def room_for(problem: Problem, grid: LaplaceGrid, modes: Modes, loads: ComplexArray) -> tuple[SolidSpectra, slice]:
     """Return where to put all that walls do under loads on their faces, known or to be put there too, and what of it is read now.
 
-    W and V; where walls are under control the voltages too, and with them all but the motion of the faces.
+    W and V, and the voltages that laws give; all but the motion of the faces where voltages come from without, in loops that the solver
+    closes.
     """
     normal, tangential = (np.empty(loads.shape[1:], np.complex128) for _ in range(2))
     beside = Unread(problem, grid, modes, normal, loads)
-    found = SolidSpectra(normal, tangential, loads, beside)
-    if not any(wall.shows_control for wall in problem.shells):
-        return found, MOTION
+    controlled = [wall for wall in problem.shells if wall.shows_control and isinstance(wall, ElasticWall)]
+    if all(wall.gains is not None and not wall.closed_by_solver for wall in controlled):
+        return SolidSpectra(normal, tangential, loads, beside, np.zeros_like(normal) if controlled else None), MOTION
     vars(beside).update(hoop=np.zeros_like(normal), potentials=np.zeros((_layers(problem), *normal.shape), np.complex128))
-    return found, slice(None)
+    return SolidSpectra(normal, tangential, loads, beside), slice(None)
 
 
-def make_shapes(problem: Problem, modes: Modes, s: ComplexArray) -> None:
-    """Make what all blocks of nodes share of walls with two faces, before all threads ask for it."""
+def make_shapes(problem: Problem, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> None:
+    """Make what all blocks of nodes share of walls with two faces, of which ``some`` is read, before all threads ask for it."""
     for wall in problem.shells:
         if isinstance(wall, ElasticWall):
-            wall.two_port(modes, s[:1])
+            port(wall, modes, s[:1], some)
 
 
 def solid_spectra(problem: Problem, grid: LaplaceGrid, modes: Modes, loads: SurfaceLoads, progress: Progress | None = None) -> SolidSpectra:
@@ -380,7 +393,7 @@ def solid_spectra(problem: Problem, grid: LaplaceGrid, modes: Modes, loads: Surf
     """
     shape = (2, len(problem.shells), loads.parities, modes.count, grid.nodes.size)
     found, read_now = room_for(problem, grid, modes, np.empty(shape, np.complex128))
-    make_shapes(problem, modes, grid.nodes)
+    make_shapes(problem, modes, grid.nodes, read_now)
 
     def work(block: slice) -> None:
         system = FacedSystem(problem, grid.nodes[block], modes, read_now)

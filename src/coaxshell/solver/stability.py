@@ -40,6 +40,8 @@ from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
 from coaxshell.structure.control_law import ControlGains
+from coaxshell.structure.elastic_wall import ElasticWall
+from coaxshell.structure.shell_model import FaceReceptance, ShellModel
 
 _MAX_NODES = 8192
 SPACING = 0.8
@@ -116,34 +118,41 @@ class OpenLoop:
 
 @dataclass(frozen=True)
 class FacedLoop:
-    """The system without feedback at some nodes where walls have two faces: its determinant, by the cascade, and its fluids."""
+    """The system without feedback at some nodes where walls have two faces: its determinant, by the cascade, its walls and its fluids."""
 
     determinant: ComplexArray
+    walls: Sequence[FaceReceptance]
     fluids: Sequence[FluidOperator]
 
     @classmethod
     def of(cls, passive: Problem, nodes: ComplexArray, modes: Modes) -> FacedLoop:
         """Return it for a problem without feedback."""
-        system = _of_faces(passive, nodes, modes)
-        return cls(system.determinant(), system.fluids)
+        with one_blas_thread():  # many small matrices
+            system = CascadeSystem(passive, nodes, modes)
+        return cls(system.determinant(), system.walls, system.fluids)
 
     @property
     def nbytes(self) -> int:
         """Bytes of all arrays."""
-        return self.determinant.nbytes + sum(x.nbytes for fluid in self.fluids for x in fluid if isinstance(x, np.ndarray))
+        kept = [x for wall in self.walls for x in vars(wall).values()] + [x for fluid in self.fluids for x in fluid]
+        return self.determinant.nbytes + sum({id(x): x.nbytes for x in kept if isinstance(x, np.ndarray)}.values())
 
     def closed(self, problem: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
         """Return D_m/D0_m; of thin walls under electrodes with what feedback leaves along the hoop."""
-        ratio = _of_faces(problem, nodes, modes, self.fluids).determinant() / self.determinant
+        with one_blas_thread():
+            walls = [_closed(wall, own, modes, nodes) for wall, own in zip(problem.shells, self.walls, strict=True)]
+            ratio = CascadeSystem(problem, nodes, modes, walls=walls, fluids=self.fluids).determinant() / self.determinant
         for wall in problem.shells:
             if wall.faces_move_alike and wall.gains is not None:
                 ratio = ratio * (1.0 - wall.gains.at(nodes, modes) * wall.fed_back_along(modes, nodes))
         return np.asarray(ratio)
 
 
-def _of_faces(problem: Problem, nodes: ComplexArray, modes: Modes, fluids: Sequence[FluidOperator] | None = None) -> CascadeSystem:
-    with one_blas_thread():  # many small matrices
-        return CascadeSystem(problem, nodes, modes, fluids=fluids)
+def _closed(wall: ShellModel, own: FaceReceptance, modes: Modes, nodes: ComplexArray) -> FaceReceptance:
+    """Return receptances of a wall with its feedback, of which ``own`` are those without."""
+    if wall.gains is None:
+        return own
+    return wall.fed_back_from(own, modes, nodes) if isinstance(wall, ElasticWall) else wall.receptance(modes, nodes)
 
 
 def opened(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes, shared: SharedParts | None) -> OpenLoop | FacedLoop:
@@ -166,21 +175,16 @@ def highest_frequency(problem: Problem, max_order: int, wavenumber: float | Comp
     return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
 
 
-def _resonance(problem: Problem, modes: Modes) -> float:
-    """Return a frequency below which all walls resonate, but for motions through their thickness."""
-    ends = Modes(np.array([1.0, modes.max_order]), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
-    return max(float(np.hypot(*wall.highest_frequency(ends))) for wall in problem.shells)
-
-
 def along_alone(problem: Problem, modes: Modes) -> Problem:
-    """Return the problem whose elastic walls bend and stretch along themselves alone.
+    """Return the problem whose elastic walls bend and stretch along themselves alone, each order as fast as it resonates.
 
     Voltages find no inertia in motions through the thickness (:func:`coaxshell.structure.solid_transducers.along_wall`).
     """
     if not problem.two_faced:
         return problem
-    highest = 1.1 * _resonance(problem, modes)
-    return replace(problem, shells=tuple(wall.along_alone(highest) for wall in problem.shells))
+    first = Modes(np.ones(1), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
+    highest = ((modes.orders, 1.1 * np.hypot(wall.highest_frequency(modes), wall.highest_frequency(first))) for wall in problem.shells)
+    return replace(problem, shells=tuple(wall.along_alone(np.stack(own)) for wall, own in zip(problem.shells, highest, strict=True)))
 
 
 class Contour(NamedTuple):
@@ -234,11 +238,13 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
 
     Those are counted that are fed back and whose walls it may make give energy (:mod:`coaxshell.solver.passivity`); no other has any.
     """
-    doubtful = fed_orders(problem, modes) if problem.two_faced else modes.orders[~passive_orders(problem, modes, least)]
+    slow = along_alone(problem, modes)
+    doubtful = modes.orders[~passive_orders(slow, modes, least)]
+    if problem.two_faced:
+        doubtful = np.intersect1d(doubtful, fed_orders(problem, modes))
     if not doubtful.size:
         return UnstablePoles(doubtful, np.zeros(0))
     some = few_of(modes, doubtful)
-    slow = along_alone(problem, some)
     turn, nearest = turned(slow, some, Contour.of(problem, some, least), partial(_ratio, slow, shared, slow.open_loop))
     counts = np.rint(-turn / np.pi)
     return UnstablePoles(doubtful[counts > 0], counts[counts > 0], nearest)

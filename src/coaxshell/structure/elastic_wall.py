@@ -11,7 +11,6 @@ thin wall. The reference surface, whose motion stands for the wall's, is its mid
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Self
@@ -28,10 +27,21 @@ from coaxshell.structure.inclined_drive import InclinedAnswer, inclined_under_vo
 from coaxshell.structure.layered_wall import LayeredWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.shape_sums import modal_sums
-from coaxshell.structure.shell_model import FaceReceptance, WallEnergy, WallMotion, WallOperator
+from coaxshell.structure.shell_model import FaceReceptance
 from coaxshell.structure.solid import SolidLayer
 from coaxshell.structure.solid_inclined import InclinedPlace, inclined_port
-from coaxshell.structure.solid_ports import DrivenPort, Port, UnderVoltage, VoltPort, of_faces, per_volt, products, under_volts
+from coaxshell.structure.solid_ports import (
+    ByVolts,
+    DrivenPort,
+    Port,
+    UnderVoltage,
+    by_volts,
+    of_faces,
+    per_volt,
+    products,
+    under_volts,
+    volt_port,
+)
 from coaxshell.structure.solid_transducers import (
     Driven,
     Loop,
@@ -39,14 +49,13 @@ from coaxshell.structure.solid_transducers import (
     OpenCircuits,
     Transducers,
     Unanswered,
-    along_wall,
     at_rest,
     by_circuits,
     closed_loop,
     driven_of,
-    field_of_volts,
     loop_part,
     loop_sizes,
+    resistance_along,
     unanswered,
 )
 from coaxshell.structure.tied_wall import TiedWall
@@ -71,8 +80,8 @@ class ElasticWall(LayeredWall):
         Depth at which stations read it; None for the motion of its middle and the stresses at its design depth.
     keeps_shapes : bool
         Whether stations keep its shapes as long as the modes are in use, which are three times what they read of them.
-    silent : float
-        Frequency above which shapes do not answer, where only slower ones are looked at.
+    silent : ndarray, shape (2, orders), or None
+        Orders, and the frequency of each above which shapes do not answer, where only slower ones are looked at.
     meshed_as : tuple of SolidLayer or None
         Layers beside its own that decide on its mesh.
     segments : Segments or None
@@ -89,7 +98,7 @@ class ElasticWall(LayeredWall):
     tied_as: TiedWall | None = None
     depth_read: float | None = field(default=None, compare=False)
     keeps_shapes: bool = field(default=False, compare=False)
-    silent: float = field(default=math.inf, compare=False)
+    silent: FloatArray | None = field(default=None, compare=False)
     meshed_as: tuple[SolidLayer, ...] | None = field(default=None, compare=False)
 
     @classmethod
@@ -103,9 +112,9 @@ class ElasticWall(LayeredWall):
         """Return the wall with degrees for waves up to a frequency, radians per transit."""
         return replace(self, frequency=frequency)
 
-    def along_alone(self, frequency: float) -> Self:
-        """Return the wall whose shapes above a frequency do not answer: it bends and stretches along itself alone."""
-        return replace(self, silent=frequency)
+    def along_alone(self, highest: FloatArray) -> Self:
+        """Return the wall whose shapes above a frequency of each order do not answer: it bends and stretches along itself alone."""
+        return replace(self, silent=highest)
 
     # Answers
 
@@ -113,9 +122,9 @@ class ElasticWall(LayeredWall):
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes, made once as long as these are in use; nobody may change them."""
         found = self._shapes(modes)
-        if self.silent == math.inf:
+        if self.silent is None:
             return found
-        slow = (part.squares < self.silent**2 for part in found)
+        slow = (part.squares < np.interp(part.orders, *self.silent)[:, None] ** 2 for part in found)
         return tuple(replace(part, shapes=part.shapes * answering[..., None, None]) for part, answering in zip(found, slow, strict=True))
 
     def _shapes(self, modes: Modes) -> tuple[OrdersBasis, ...]:
@@ -133,24 +142,37 @@ class ElasticWall(LayeredWall):
         loop = self.loop(modes, s)
         return FaceReceptance(*found) if loop is None else self._under_loop(FaceReceptance(*found), loop)
 
-    def two_port(self, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> tuple[FaceReceptance, ComplexArray]:
+    def fed_back_from(self, open_loop: FaceReceptance, modes: Modes, s: ComplexArray) -> FaceReceptance:
+        """Return how its faces answer with its feedback from how they do without."""
+        if self.transducers is None or self.transducers.circuits.any_open or np.ndim(modes.wavenumber):
+            return self.receptance(modes, s)  # open circuits charge themselves without feedback too
+        return self._under_loop(open_loop, self._loop(modes, s, self._law(modes, s)))
+
+    def two_port(
+        self, modes: Modes, s: ComplexArray, some: slice = slice(None), *, gives: bool = False
+    ) -> tuple[FaceReceptance, ComplexArray]:
         """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes).
 
         W and V of the middle, hoop stress at the design depth and potentials in the middle of the piezoelectric layers, whose faces are
-        grounded, in the sign of the sensor equation. Under control two more: what the law reads, and the voltage that it gives. Without
-        control ``some`` of it, if asked for.
+        grounded, in the sign of the sensor equation. Under control two more: what the law reads, and the voltage that it gives. Or ``some``
+        of it, if asked for, and last that voltage if the wall *gives* it besides.
         """
+        first, stop, _ = some.indices(len(self.asked_of_port))
+        found = self._summed(modes, s, [weights[:, [0, 1, 2, *range(3 + 2 * first, 3 + 2 * stop)]] for weights in self._of_port(modes)])
+        receptance, shown = FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
         if self.transducers is None:
-            rows = [0, 1, 2, *range(3, 3 + 2 * len(self.asked_of_port))[2 * (some.start or 0) : some.stop and 2 * some.stop]]
-            found = self._summed(modes, s, [weights[:, rows] for weights in self._of_port(modes)])
-            return FaceReceptance(*found[:3]), found[3:].reshape(-1, 2, *found.shape[1:])
-        found = self._summed(modes, s, self._of_port(modes))
-        shown = found[3:].reshape(-1, 2, *found.shape[1:])
-        loop = self._loop(modes, s, self._law(modes, s))
-        shown = shown + self.signs_of(self.asked_of_port) * self._by_volts(modes, s, self.asked_of_port, loop)
-        return self._under_loop(FaceReceptance(*found[:3]), loop), np.concatenate(
-            [shown, loop.sensed[None], self._law(modes, s) * loop.sensed[None]]
-        )
+            return receptance, shown
+        law, asked = self._law(modes, s), slice(first, stop)
+        loop = self._loop(modes, s, law)
+        added = under_volts(self._shown_per_volt(modes, s, self._volts_of_port(modes), asked), loop.volts)
+        shown += self.signs_of(self.asked_of_port[asked]) * added
+        told = [loop.sensed, law * loop.sensed]
+        return self._under_loop(receptance, loop), np.concatenate([shown, *(told[one][None] for one in self._told(some, gives))])
+
+    def _told(self, some: slice, gives: bool) -> list[int]:
+        """Return which of what the law reads and gives is among what :meth:`two_port` shows, where it comes last."""
+        count = len(self.asked_of_port)
+        return [*(one - count for one in range(count + 2)[some] if one >= count), *([1] if gives else [])]
 
     def transfer(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True) -> ComplexArray:
         """Return quantities per inward load on the inner and on the outer face, shape (quantities, 2, orders, nodes).
@@ -161,7 +183,9 @@ class ElasticWall(LayeredWall):
             return self.inclined_port(modes, s, asked, fed_back=fed_back)[1]
         found = self._summed(modes, s, self._weights(modes, asked))
         shown, loop = found.reshape(-1, 2, *found.shape[1:]), self.loop(modes, s, fed_back=fed_back)
-        return shown if loop is None else shown + self._by_volts(modes, s, asked, loop)
+        if loop is None:
+            return shown
+        return shown + under_volts(self._shown_per_volt(modes, s, self._volts_of(modes, asked)), loop.volts)
 
     def inclined_port(
         self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], *, fed_back: bool = True, tells: bool = False
@@ -211,7 +235,8 @@ class ElasticWall(LayeredWall):
         if np.ndim(modes.wavenumber):
             return self.inclined_under_voltage(modes, s, asked)
         loop = self._loop(modes, s, 0.0)
-        each, given = np.concatenate([loop.moved, self._shown_per_volt(modes, s, asked)]), loop.given[:, None]
+        volts = self._volts_of_port(modes) if list(asked) == self.asked_of_port else self._volts_of(modes, asked)
+        each, given = np.concatenate([loop.moved, self._shown_per_volt(modes, s, volts)]), loop.given[:, None]
         found = under_volts(each, given)[:, 0]
         return UnderVoltage(found[:2], found[2:], loop.heard)
 
@@ -236,16 +261,30 @@ class ElasticWall(LayeredWall):
 
     def _loop(self, modes: Modes, s: ComplexArray, law: ComplexArray | float) -> Loop:
         assert self.transducers is not None
+        return self._loop_of(self._loop_parts(modes), [part.squares for part in self.basis(modes)], s, law)
+
+    @kept_with_modes
+    def _loop_parts(self, modes: Modes) -> tuple[LoopPart, ...]:
+        """Return what closes its loop, of each part of the basis."""
+        assert self.transducers is not None
         opened, bases = self.transducers.circuits.any_open, self.basis(modes)
         each = zip(bases, self._circuits(modes), self._at_once(modes) if opened else [None] * len(bases), strict=True)
-        parts = [loop_part(part, driven, self.wetted, opened=opened, at_once=at_once) for part, driven, at_once in each]
-        return self._loop_of(parts, [part.squares for part in bases], s, law)
+        return tuple(loop_part(part, driven, self.wetted, opened=opened, at_once=at_once) for part, driven, at_once in each)
 
     @kept_with_modes
     def _at_once(self, modes: Modes) -> tuple[FloatArray, ...]:
         """Return what volts add at once to the readings of its circuits: through the thickness, in which nothing else may move."""
-        whole = replace(self, silent=math.inf)
+        whole = replace(self, silent=None)
         return tuple(at_rest(part, one.readings, one) for part, one in zip(whole.basis(modes), whole._circuits(modes), strict=True))
+
+    def along_resistance(self, modes: Modes, s: ComplexArray) -> FloatArray:
+        """Return :func:`resistance_along` of what volts move and the law hears, (orders, nodes); -inf where open circuits answer too."""
+        assert self.transducers is not None
+        if self.transducers.circuits.any_open:
+            return np.full((modes.count, s.size), -np.inf)
+        law = np.broadcast_to(self._law(modes, s), (modes.count, s.size))
+        pairs = zip(self.basis(modes), self._circuits(modes), strict=True)
+        return np.concatenate([resistance_along(part, driven, law[part.members], s) for part, driven in pairs])
 
     @property
     def closes_a_loop(self) -> bool:
@@ -287,27 +326,21 @@ class ElasticWall(LayeredWall):
         h_ii, h_io, h_oo = open_loop.inner, open_loop.across, open_loop.outer
         return FaceReceptance(h_ii + added[0, 0], h_io + added[0, 1], h_oo + added[1, 1], loop.characteristic, h_io + added[1, 0])
 
-    def _by_volts(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked], loop: Loop) -> ComplexArray:
-        """Return what voltages add to quantities per load on either face, (quantities, 2, orders, nodes)."""
-        return under_volts(self._shown_per_volt(modes, s, asked), loop.volts)
-
-    def _shown_per_volt(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> ComplexArray:
+    def _shown_per_volt(self, modes: Modes, s: ComplexArray, volts: Sequence[ByVolts], some: slice = slice(None)) -> ComplexArray:
         """Return quantities per volt of each circuit: by the motion that it makes, in its layers by their field."""
-        pairs = zip(self.basis(modes), self._circuits(modes), strict=True)
-        parts = [self._per_volt(part, driven, self._shown(part, asked), asked) for part, driven in pairs]
-        return per_volt(self._summed(modes, s, [rows for rows, _ in parts]), [resting for _, resting in parts])
+        return per_volt(volts, [part.squares for part in self.basis(modes)], s, some)
 
-    def _per_volt(self, part: OrdersBasis, driven: Driven, shown: FloatArray, asked: Sequence[Asked]) -> tuple[FloatArray, FloatArray]:
-        """Return what volts of each circuit add to quantities, ``shown`` per unit of each shape.
+    @kept_with_modes
+    def _volts_of_port(self, modes: Modes) -> tuple[ByVolts, ...]:
+        """Return what volts of each circuit add to what :meth:`two_port` shows, of each part of the basis."""
+        return self._volts_of(modes, self.asked_of_port)
 
-        Weights of all shapes in the motion along the wall, (orders, quantities circuits, shapes), and what answers at once, by the field
-        and through the thickness, (orders, quantities, circuits).
-        """
+    def _volts_of(self, modes: Modes, asked: Sequence[Asked]) -> tuple[ByVolts, ...]:
         assert self.transducers is not None
-        along = (shown * (np.arange(shown.shape[-1]) < along_wall(part.wavenumber)))[:, :, None] * driven.loads[:, None]
-        each = [field_of_volts(part, self.transducers, self.layer_at(x.depth), self.radius + x.depth, x.what) for x in asked]
-        at_once = np.stack(each, axis=1) @ self.transducers.circuits.shares + at_rest(part, shown, driven)
-        return along.reshape(part.orders.size, -1, shown.shape[-1]), at_once
+        places, found = self._read_at(asked), []
+        for part, driven in zip(self.basis(modes), self._circuits(modes), strict=True):
+            found.append(by_volts(part, self.transducers, driven, self._shown(part, asked), places))
+        return tuple(found)
 
     @property
     def shows_control(self) -> bool:
@@ -375,8 +408,7 @@ class ElasticWall(LayeredWall):
         loop = self._loop_of([one.loop for one in volts], [port.squares for port in ports], s, law)
         each = np.zeros((0, len(loop.volts), *found.shape[1:]), np.complex128)
         if reads:
-            sums = [modal_sums(one.rows, port.squares, s) for one, port in zip(volts, ports, strict=True)]
-            each = per_volt(sums[0] if len(sums) == 1 else np.concatenate(sums, axis=1), [one.resting for one in volts])
+            each = per_volt([one.shown for one in volts], [port.squares for port in ports], s)
             per_load = np.concatenate([per_load + under_volts(each, loop.volts), loop.sensed[None], law * loop.sensed[None]])
         driven = None if fed_back else DrivenPort.of(loop, each)
         return self._under_loop(FaceReceptance(*found[:3]), loop), per_load, driven
@@ -404,16 +436,11 @@ class ElasticWall(LayeredWall):
                 rows[:, :count] = all_by_shapes(part, self.layer_at(moved), self.radius + moved)[:, :count]
             volts = [-shown_by_shapes(part, i, r, "potential")[:, None] for i, r in zip(self.piezoelectric, middles, strict=True)]
             shown = np.concatenate([rows, *volts], axis=1)
-            found.append(Port(part.squares, part.faces, shown, self._volts_of(part, shown)))
+            given = None
+            if self.transducers is not None and self.closes_a_loop:
+                given = volt_port(part, self.transducers, self.wetted, shown, self._read_at(self.asked_of_stations))
+            found.append(Port(part.squares, part.faces, shown, given))
         return tuple(found)
-
-    def _volts_of(self, part: OrdersBasis, shown: FloatArray) -> VoltPort | None:
-        """Return what voltages do to what stations read, None where no loop is closed."""
-        if self.transducers is None or not self.closes_a_loop:
-            return None
-        driven = by_circuits(driven_of(part, self.transducers), self.transducers.circuits)
-        loop = loop_part(part, driven, self.wetted, opened=self.transducers.circuits.any_open)
-        return VoltPort(loop, *self._per_volt(part, driven, shown, self.asked_of_stations))
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make what all blocks of nodes share in three dimensions, before all threads ask for it."""
@@ -460,7 +487,10 @@ class ElasticWall(LayeredWall):
 
     def _shown(self, part: OrdersBasis, asked: Sequence[Asked]) -> FloatArray:
         """Return quantities per unit of each shape, (orders, quantities, shapes)."""
-        return several_by_shapes(part, [(one.what, self.layer_at(one.depth), self.radius + one.depth) for one in asked])
+        return several_by_shapes(part, self._read_at(asked))
+
+    def _read_at(self, asked: Sequence[Asked]) -> list[tuple[Shown, int, float]]:
+        return [(one.what, self.layer_at(one.depth), self.radius + one.depth) for one in asked]
 
     def _summed(self, modes: Modes, s: ComplexArray, weights: list[FloatArray]) -> ComplexArray:
         """Return the sums over all shapes, (rows, orders, nodes), from their weights in each part of the basis."""
@@ -476,13 +506,3 @@ class ElasticWall(LayeredWall):
         if role == "sensor" and self.transducers is not None:
             return len(self.piezoelectric)
         return next((number for number, i in enumerate(self.piezoelectric) if serves(self.layers[i].role, role)), None)
-
-    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
-        """Refuse: two faces have no one impedance."""
-        raise NotImplementedError("the faces of an elastic wall move differently: it answers by receptances")
-
-    # What else is asked of a wall
-
-    def energy(self, motion: WallMotion) -> WallEnergy:
-        """Refuse: the energy of a solid wall needs its motion through the thickness."""
-        raise NotImplementedError("the energy of an elastic wall is that of its shapes")

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.lobatto import lobatto
 from coaxshell.numerics.modes import Modes
 from coaxshell.structure.elastic_mesh import degree
-from coaxshell.structure.shell_model import ShellModel
+from coaxshell.structure.shell_model import ShellModel, WallEnergy, WallMotion, WallOperator
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, SolidLayer
 
 UNSTATED_FREQUENCY = 300.0
@@ -114,3 +114,11 @@ class LayeredWall(ShellModel):
     def crossing_order(self) -> float:
         """R sqrt(12)/t, about where stretching and bending frequencies of a thin wall of one layer would cross."""
         return self.radius * math.sqrt(12.0) / (self.faces[1] - self.faces[0])
+
+    def passive(self, modes: Modes, s: ComplexArray) -> WallOperator:
+        """Refuse: two faces have no one impedance."""
+        raise NotImplementedError("the faces of an elastic wall move differently: it answers by receptances")
+
+    def energy(self, motion: WallMotion) -> WallEnergy:
+        """Refuse: the energy of a solid wall needs its motion through the thickness."""
+        raise NotImplementedError("the energy of an elastic wall is that of its shapes")

@@ -7,7 +7,6 @@ with the impedance rho c_L sqrt(g).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,6 +27,8 @@ from coaxshell.structure.solid_pieces import MOST_DEGREE, Piece, Place, pieces
 from coaxshell.structure.solid_ports import DrivenPort, UnderVoltage, under_volts
 from coaxshell.structure.solid_transducers import Loop, OpenCircuits, Unanswered, closed_loop, field_of_volts
 
+BOTH = (0, 1)
+"""What the law reads and the voltage that it gives."""
 SOFT_DEGREE = 64
 """A wall without losses of which a layer needs a higher degree at the top of the band answers by pieces too."""
 
@@ -60,7 +61,7 @@ class LossySolidWall(ElasticWall):
     @cached_property
     def driven_pieces(self) -> WallDrive | None:
         """The transducers on its pieces; None where it is not under control."""
-        return None if self.transducers is None else WallDrive(self.pieces, self.transducers, self.silent < math.inf)
+        return None if self.transducers is None else WallDrive(self.pieces, self.transducers, self.silent is not None)
 
     @property
     def driven_layers(self) -> tuple[range, ...]:
@@ -105,11 +106,17 @@ class LossySolidWall(ElasticWall):
         found = self.answered(modes, s)
         return self._under_loop(found.receptance, self._closed_by(found, self._law(modes, s)))
 
-    def two_port(self, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> tuple[FaceReceptance, ComplexArray]:
-        """Return how its faces answer, and what its reference shows, per load on either face: shape (3 + layers, 2, orders, nodes)."""
-        if self.driven_pieces is not None:
-            return self._port_under_loop(self.asked_of_port, modes, s)[:2]
+    def fed_back_from(self, open_loop: FaceReceptance, modes: Modes, s: ComplexArray) -> FaceReceptance:
+        """Return how its faces answer with its feedback; what they do without is no part of its sums."""
+        return self.receptance(modes, s)
+
+    def two_port(
+        self, modes: Modes, s: ComplexArray, some: slice = slice(None), *, gives: bool = False
+    ) -> tuple[FaceReceptance, ComplexArray]:
+        """Return how its faces answer, and some of what its reference shows, per load on either face: (quantities, 2, orders, nodes)."""
         asked = self.asked_of_port[some]
+        if self.driven_pieces is not None:
+            return self._port_under_loop(asked, modes, s, tells=self._told(some, gives))[:2]
         chain, shown = self._kept_reading(tuple(asked)).at(modes, s)
         shown *= self.signs_of(asked)  # of potentials, as without losses
         return _receptance(chain), self._per_load(shown)
@@ -119,7 +126,7 @@ class LossySolidWall(ElasticWall):
         if np.ndim(modes.wavenumber):
             return super().station_port(modes, s, reads=reads)
         if self.closes_a_loop:
-            return self._port_under_loop(self.asked_of_stations if reads else [], modes, s, tells=reads)[:2]
+            return self._of_stations(modes, s, reads)[:2]
         chain, shown = (self._stations if reads else self._faces).at(modes, s)
         shown[len(DISPLACEMENTS) + len(STRESSES) :] *= -1.0
         return _receptance(chain), self._per_load(shown)
@@ -128,9 +135,14 @@ class LossySolidWall(ElasticWall):
         """Return the same of a wall whose loop the solver closes, and how its transducers answer."""
         if np.ndim(modes.wavenumber):
             return super().driven_port(modes, s, reads=reads)
-        known = self.asked_of_stations if reads else [], modes, s
-        receptance, shown, loop, each = self._port_under_loop(*known, tells=reads, fed_back=False)
+        receptance, shown, loop, each = self._of_stations(modes, s, reads, fed_back=False)
         return receptance, shown, DrivenPort.of(loop, each)
+
+    def _of_stations(
+        self, modes: Modes, s: ComplexArray, reads: bool, *, fed_back: bool = True
+    ) -> tuple[FaceReceptance, ComplexArray, Loop, ComplexArray]:
+        asked, tells = (self.asked_of_stations, BOTH) if reads else ([], ())
+        return self._port_under_loop(asked, modes, s, tells=tells, fed_back=fed_back)
 
     def prepare_stations(self, modes: Modes) -> None:
         """Make the shapes of its pieces."""
@@ -155,9 +167,9 @@ class LossySolidWall(ElasticWall):
     # Control
 
     def _port_under_loop(
-        self, asked: Sequence[Asked], modes: Modes, s: ComplexArray, *, tells: bool = True, fed_back: bool = True
+        self, asked: Sequence[Asked], modes: Modes, s: ComplexArray, *, tells: Sequence[int] = BOTH, fed_back: bool = True
     ) -> tuple[FaceReceptance, ComplexArray, Loop, ComplexArray]:
-        """Return how its faces answer and what it shows per load on them, last what the law reads and gives if it *tells* that.
+        """Return how its faces answer and what it shows per load on them, last what the law reads and gives, as far as it *tells* that.
 
         And the loop, with what a volt of each circuit shows, (quantities, circuits, orders, nodes).
         """
@@ -166,9 +178,8 @@ class LossySolidWall(ElasticWall):
         loop = self._closed_by(found, law)
         by_volts = signs * (found.by_volts + self._fields(modes, asked))
         shown = signs * self._per_load(found.shown) + under_volts(by_volts, loop.volts)
-        if tells:
-            shown = np.concatenate([shown, loop.sensed[None], law * loop.sensed[None]])
-        return self._under_loop(found.receptance, loop), shown, loop, by_volts
+        told = [loop.sensed, law * loop.sensed]
+        return self._under_loop(found.receptance, loop), np.concatenate([shown, *(told[one][None] for one in tells)]), loop, by_volts
 
     def under_voltage(self, modes: Modes, s: ComplexArray, asked: Sequence[Asked]) -> UnderVoltage:
         """Return what a volt that is given to all its actuators does, open circuits beside them charging themselves, without feedback."""
@@ -179,6 +190,10 @@ class LossySolidWall(ElasticWall):
         shown = found.by_volts + self._fields(modes, asked)
         both = under_volts(np.concatenate([-found.moved, shown]), loop.given[:, None])[:, 0]
         return UnderVoltage(both[:2], both[2:], loop.heard)
+
+    def along_resistance(self, modes: Modes, s: ComplexArray) -> FloatArray:
+        """Return -inf: its pieces have shapes, some of them, and nothing is proven of it."""
+        return np.full((modes.count, s.size), -np.inf)
 
     def answered(self, modes: Modes, s: ComplexArray) -> DrivenAnswer:
         """Return what its faces and its transducers answer while no voltage does."""

@@ -27,6 +27,8 @@ FEWEST = 64
 """Nodes of a block from which a polynomial pays."""
 WIDEST = 1e6
 """rho_w up to which there is one."""
+FEW = 3
+"""Shapes that are summed one by one: as many as bend and stretch along a wall."""
 
 
 class _Smooth(NamedTuple):
@@ -58,8 +60,11 @@ def modal_sums(weights: FloatArray, squares: FloatArray, s: ComplexArray) -> Com
         omega^2, ascending.
     s : ndarray, shape (nodes,)
     """
-    orders, rows, _ = weights.shape
+    orders, rows, shapes = weights.shape
     z = s * s
+    if shapes <= FEW:
+        each = 1.0 / (squares[..., None] + z)
+        return np.moveaxis((weights @ each.view(np.float64)).view(np.complex128), 1, 0)
     smooth = _smooth(squares, z, rows)
     coefficients, count = weights @ smooth.series, smooth.terms.shape[0]
     most = int((smooth.last - smooth.first).max(initial=0))

@@ -274,8 +274,8 @@ class ShellModel(ABC):
         """Return the wall resolving waves up to a frequency, radians per transit: itself where its theory has no such choice."""
         return self
 
-    def along_alone(self, frequency: float) -> Self:
-        """Return the wall without motions through its thickness, whose shapes ring above a frequency: itself where it has none."""
+    def along_alone(self, highest: FloatArray) -> Self:
+        """Return the wall without motions through its thickness, which ring above frequencies, (2, orders): of orders, these."""
         return self
 
     @property

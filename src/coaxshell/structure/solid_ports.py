@@ -9,24 +9,42 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.structure.elastic_basis import OrdersBasis
-from coaxshell.structure.solid_transducers import Loop, LoopPart
+from coaxshell.structure.elastic_depth import Shown
+from coaxshell.structure.shape_sums import modal_sums
+from coaxshell.structure.solid_transducers import (
+    Driven,
+    Loop,
+    LoopPart,
+    Transducers,
+    along_wall,
+    at_rest,
+    by_circuits,
+    driven_of,
+    field_of_volts,
+    loop_part,
+)
 
 
-class VoltPort(NamedTuple):
-    """What voltages of the circuits do to what is shown.
+class ByVolts(NamedTuple):
+    """What a volt on each circuit does to what is shown.
 
     Attributes
     ----------
-    loop : LoopPart
-    rows : ndarray, shape (orders, quantities circuits, shapes)
-        Weights of the shapes in the motion along the wall that volts make.
-    resting : ndarray, shape (orders, quantities, circuits)
-        What they make at once.
+    along : ndarray, shape (orders, quantities, circuits, shapes along the wall)
+        Weights of the shapes in the motion along the wall.
+    at_once : ndarray, shape (orders, quantities, circuits)
+        What is made without inertia, through the thickness and by the field.
     """
 
+    along: FloatArray
+    at_once: FloatArray
+
+
+class VoltPort(NamedTuple):
+    """What closes a loop, and what volts of its circuits do to what is shown."""
+
     loop: LoopPart
-    rows: FloatArray
-    resting: FloatArray
+    shown: ByVolts
 
 
 class Port(NamedTuple):
@@ -89,17 +107,59 @@ class DrivenPort(NamedTuple):
         return cls(loop.sensed, UnderVoltage(moved, shown, loop.heard))
 
 
-def per_volt(sums: ComplexArray, resting: Sequence[FloatArray]) -> ComplexArray:
+def by_volts(
+    basis: OrdersBasis, transducers: Transducers, driven: Driven, shown: FloatArray, places: Sequence[tuple[Shown, int, float]]
+) -> ByVolts:
+    """Return what volts of each circuit add to quantities.
+
+    Parameters
+    ----------
+    basis : OrdersBasis
+    transducers : Transducers
+    driven : Driven
+        Of the circuits.
+    shown : ndarray, shape (orders, quantities, shapes)
+        The quantities per unit of each shape.
+    places : sequence of (str, int, float)
+        What each of them is, in which layer and at which radius.
+    """
+    moving = slice(along_wall(basis.wavenumber))
+    fields = [field_of_volts(basis, transducers, layer, radius, what) for what, layer, radius in places]
+    at_once = np.stack(fields, axis=1) @ transducers.circuits.shares + at_rest(basis, shown, driven)
+    return ByVolts(shown[:, :, None, moving] * driven.loads[:, None, :, moving], at_once)
+
+
+def volt_port(
+    basis: OrdersBasis,
+    transducers: Transducers,
+    wetted: tuple[float, float],
+    shown: FloatArray,
+    places: Sequence[tuple[Shown, int, float]],
+) -> VoltPort:
+    """Return what voltages do to what stations read, ``shown`` and ``places`` as of :func:`by_volts`."""
+    driven = by_circuits(driven_of(basis, transducers), transducers.circuits)
+    loop = loop_part(basis, driven, wetted, opened=transducers.circuits.any_open)
+    return VoltPort(loop, by_volts(basis, transducers, driven, shown, places))
+
+
+def per_volt(volts: Sequence[ByVolts], squares: Sequence[FloatArray], s: ComplexArray, some: slice = slice(None)) -> ComplexArray:
     """Return quantities per volt of each circuit, (quantities, circuits, orders, nodes), by motion along the wall and at once.
 
     Parameters
     ----------
-    sums : ndarray, shape (quantities circuits, orders, nodes)
-        Over all shapes, of the motion along the wall.
-    resting : sequence of ndarray, shape (orders, quantities, circuits)
-        What answers at once, of each part of a basis.
+    volts : sequence of ByVolts
+        Of each part of a basis.
+    squares : sequence of ndarray, shape (orders, shapes)
+        omega^2 of all shapes.
+    s : ndarray, shape (nodes,)
+    some : slice, optional
+        Of the quantities.
     """
-    at_once = np.concatenate(resting)
+    parts, at_once = [], np.concatenate([one.at_once[:, some] for one in volts])
+    for one, square in zip(volts, squares, strict=True):
+        rows = one.along[:, some]
+        parts.append(modal_sums(rows.reshape(len(rows), -1, rows.shape[-1]), square[:, : rows.shape[-1]], s))
+    sums = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
     return np.asarray(sums.reshape(*at_once.shape[1:], *sums.shape[1:]) + np.moveaxis(at_once, 0, -1)[..., None])
 
 

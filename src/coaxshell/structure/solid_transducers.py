@@ -394,6 +394,29 @@ def loop_sizes(bases: Sequence[OrdersBasis], driven: Sequence[Driven], highest: 
     return np.concatenate([(each * (basis.squares < highest**2)).sum(axis=1) for basis, each in zip(bases, products, strict=True)])
 
 
+def resistance_along(basis: OrdersBasis, driven: Driven, law: ComplexArray, s: ComplexArray) -> FloatArray:
+    """Return the least eigenvalue of the Hermitian part of (omega^2 + s^2 - H d p')/s on the shapes along a wall, shape (orders, nodes).
+
+    -inf where other shapes answer too.
+
+    Parameters
+    ----------
+    basis : OrdersBasis
+    driven : Driven
+        Of the one circuit.
+    law : ndarray, shape (orders, nodes)
+        H(s).
+    s : ndarray, shape (nodes,)
+    """
+    along = along_wall(basis.wavenumber)
+    fed_back = driven.loads[:, 0, :along, None] * driven.readings[:, 0, None, :along]
+    matrix, places = -(law / s)[..., None, None] * fed_back[:, None], np.arange(along)
+    matrix[..., places, places] += (basis.squares[:, None, :along] + (s * s)[:, None]) / s[:, None]
+    least = np.linalg.eigvalsh(0.5 * (matrix + np.conj(np.swapaxes(matrix, -1, -2))))[..., 0]
+    least[np.any(basis.shapes[:, along:], axis=(1, 2, 3))] = -np.inf
+    return np.asarray(least)
+
+
 def inertia_left_out(squares: FloatArray, s: ComplexArray, along: int) -> ComplexArray:
     """Return by how much more a voltage pushes each shape that answers it without inertia, 1 + s^2/omega^2, shape (shapes, nodes).
 
