@@ -101,17 +101,6 @@ class ElasticWall(LayeredWall):
     silent: FloatArray | None = field(default=None, compare=False)
     meshed_as: tuple[SolidLayer, ...] | None = field(default=None, compare=False)
 
-    @classmethod
-    def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
-        """Return the wall of dimensionless layers."""
-        radius = 0.5 * (layers[0].inner + layers[-1].outer)
-        mass = sum(0.5 * layer.density * (layer.outer**2 - layer.inner**2) for layer in layers) / radius
-        return cls(radius=radius, mass=mass, layers=layers, core=core)
-
-    def resolving(self, frequency: float) -> Self:
-        """Return the wall with degrees for waves up to a frequency, radians per transit."""
-        return replace(self, frequency=frequency)
-
     def along_alone(self, highest: FloatArray) -> Self:
         """Return the wall whose shapes above a frequency of each order do not answer: it bends and stretches along itself alone."""
         return replace(self, silent=highest)

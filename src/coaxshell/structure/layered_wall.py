@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
@@ -40,6 +41,17 @@ class LayeredWall(ShellModel):
     layers: tuple[SolidLayer, ...]
     core: int
     frequency: float = field(default=UNSTATED_FREQUENCY, compare=False)
+
+    @classmethod
+    def of(cls, layers: tuple[SolidLayer, ...], core: int) -> Self:
+        """Return the wall of dimensionless layers."""
+        radius = 0.5 * (layers[0].inner + layers[-1].outer)
+        mass = sum(0.5 * layer.density * (layer.outer**2 - layer.inner**2) for layer in layers) / radius
+        return cls(radius=radius, mass=mass, layers=layers, core=core)
+
+    def resolving(self, frequency: float) -> Self:
+        """Return the wall with degrees for waves up to a frequency, radians per transit."""
+        return replace(self, frequency=frequency)
 
     @property
     def wetted(self) -> tuple[float, float]:
