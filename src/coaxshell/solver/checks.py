@@ -11,7 +11,6 @@ import numpy as np
 
 from coaxshell.acoustics.pulse_band import largest_after, pulse_end
 from coaxshell.model.bubble import first_pulse
-from coaxshell.model.control import PDControl
 from coaxshell.model.feedback import Feedback
 from coaxshell.model.gains import law_of, limits_currents, saturates, segments_of, ties_shells, wired
 from coaxshell.model.parts import laws_of
@@ -191,10 +190,18 @@ def actuators(*motions: ModalSolution) -> list[str]:
             remedy = "lower the gains to stay within what the actuator can do"
         else:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
-            paper = control.transducers == "paper" and isinstance(control, PDControl)  # what saturates
-            remedy = "set control.saturation = true to see what it can really do, or lower the gains" if paper else "lower the gains"
+            see = "set control.saturation = true to see what it can really do, or " if _can_saturate(problem) else ""
+            remedy = f"{see}lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
+
+
+def _can_saturate(problem: Problem) -> bool:
+    """Return whether a run with the same settings can stop voltages at their limit."""
+    if problem.dimensions == 2:
+        return True
+    inclined = any(getattr(geometry, "inclination", 0.0) for geometry in problem.sources)
+    return not (problem.belts or problem.system.absorber_list or problem.system.point_absorbers or inclined)
 
 
 def ideal_loop(problem: Problem, settings: Settings) -> list[str]:
@@ -273,7 +280,7 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     if error.value <= SLICE_LIMIT:
         return []
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
-    beside = problem.two_faced or bool(problem.system.absorber_list) or limits_currents(problem.system)
+    beside = bool(problem.system.absorber_list) or limits_currents(problem.system)
     changed = " without saturation" if saturates(problem.system) and beside else ""
     if problem.system.absorber_list and (segments_of(problem.system) is not None or ties_shells(problem.system)):
         changed = " without absorbers"  # beside which segments and matrices are refused there
