@@ -8,6 +8,8 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from saving import lighten
+
 STUDIES = Path(__file__).resolve().parents[1] / "studies"
 
 
@@ -21,6 +23,7 @@ def search(name: str, target: Path) -> None:
     with TemporaryDirectory() as folder:
         words = ["optimise", STUDIES / f"{name}.toml", "--output", "found", "--figure", target.resolve(), "--quiet", "--force"]
         subprocess.run([sys.executable, "-m", "coaxshell", *words], check=True, stdout=subprocess.DEVNULL, cwd=folder)  # its journal too
+    lighten(target, shades=5)  # a front's many thin lines make a file that pages would load slowly
 
 
 equal = partial(search, "a-equal-absorbers")
