@@ -10,7 +10,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.interface import march as marching
 from coaxshell.solver.interface.absorbers import absorber_set
-from coaxshell.solver.interface.saturation import CircleTransform, LimitedVoltages, circle, voltage_limit
+from coaxshell.solver.interface.saturation import CircleSums, LimitedVoltages, circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
 
@@ -32,8 +32,8 @@ def test_to_the_circle_and_back(parities: int) -> None:
 
 
 @pytest.mark.parametrize("parities", [1, 2])
-def test_fast_transforms_do_the_same(parities: int) -> None:
-    (evaluate, project), fast = circle(MODES, parities), CircleTransform(MODES, parities)
+def test_sums_by_symmetries_are_the_same(parities: int) -> None:
+    (evaluate, project), fast = circle(MODES, parities), CircleSums(MODES, parities)
     given = np.stack([amplitudes(parities), -2.0 * amplitudes(parities)])
     values = given.reshape(2, -1) @ evaluate.T
     np.testing.assert_allclose(fast.at_points(given), values, rtol=0, atol=1e-13)
@@ -45,7 +45,7 @@ def test_fast_transforms_do_the_same(parities: int) -> None:
 def test_actuators_alone_are_marched_as_with_newton_s_method(
     angle: float, limit: float, gains: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By transforms and a fixed point, or, where feedback is too strong within a step, by Newton's method itself."""
+    """By a fixed point, or, where feedback is too strong within a step, by Newton's method itself."""
     control = cx.PDControl(proportional=-2e4 * gains, derivative=-150 * gains, saturation=True, field_limit=limit)
     shock = cx.SphericalShock(distance=5.0, peak_pressure=2.5e5, decay_time=1.314e-4, angle=angle)
     problem = dimensionless(cx.presets.load("active").replace(control=control, source=shock))

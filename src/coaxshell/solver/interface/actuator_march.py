@@ -1,4 +1,4 @@
-"""The march of saturating actuators alone: blocks of steps, by transforms around the circle and a fixed point that must converge.
+"""The march of saturating actuators alone: blocks of steps, by sums around the circle and a fixed point that must converge.
 
 At the steps of a block the voltages asked for are, by modes and in units of the limits,
 
@@ -31,7 +31,7 @@ from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.interface.plan import Actuators, actuators_of, demanded_voltage
-from coaxshell.solver.interface.saturation import CircleTransform
+from coaxshell.solver.interface.saturation import CircleSums
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 _SHARE = 0.55
@@ -66,7 +66,7 @@ class ActuatorPlan:
         (1 - Z)^-1.
     known, given : ndarray, same shape
         (1 - sigma Z)^-1, and that times Z.
-    circle : CircleTransform
+    circle : CircleSums
     """
 
     weights: FloatArray
@@ -74,14 +74,14 @@ class ActuatorPlan:
     linear: FloatArray
     known: FloatArray
     given: FloatArray
-    circle: CircleTransform
+    circle: CircleSums
 
     @classmethod
     def of(cls, structure: StructureSpectra, actuators: Actuators) -> ActuatorPlan | None:
         """Return the plan with the longest block that converges fast, None if there is none."""
         of_pressure = structure.kernels_with_voltage.kernels[actuators.shells :, actuators.controlled]
         weights = of_pressure * (actuators.full_pressure / actuators.limits[:, None])[..., None, None]
-        circle = CircleTransform(actuators.modes, actuators.parities)
+        circle = CircleSums(actuators.modes, actuators.parities)
         for length in _LENGTHS:
             toeplitz = _toeplitz(weights, length)
             own = np.eye(toeplitz.shape[-1])

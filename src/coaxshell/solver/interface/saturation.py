@@ -14,7 +14,6 @@ system (1 + B) delta = clip - u_known, whose set is corrected until it reproduce
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
 
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.model.gains import law_of
@@ -28,18 +27,13 @@ _OVERSAMPLING = 4
 _FEWEST_POINTS = 180
 
 
-def points_around(modes: int, parities: int) -> int:
-    """Return how many points a circle has (:data:`_OVERSAMPLING`), a number that transforms fast; cosines alone need half of it."""
-    return parities * int(fft.next_fast_len(max(_OVERSAMPLING * modes, _FEWEST_POINTS), real=True))
-
-
 def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
     """Return the matrices from modal amplitudes (parities * modes) to the points of a circle, and back.
 
     Cosines alone have their points on half the circle: they are even.
     """
     orders = all_orders(modes - 1)
-    points = points_around(modes, parities)
+    points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * parities
     span = np.pi if parities == 1 else 2.0 * np.pi
     theta = span * (np.arange(points) + 0.5) / points
     angles = theta[:, None] * orders
@@ -48,8 +42,11 @@ def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
     return evaluate, np.ascontiguousarray(evaluate.T * (2.0 / (beta * points))[:, None])
 
 
-class CircleTransform:
-    """What :func:`circle` does, by fast transforms: of many instants at once, where points are many.
+class CircleSums:
+    """What :func:`circle` does, of many instants at once and at half the cost or a quarter: by the symmetries of cosines and sines.
+
+    Values at theta and pi - theta are sum and difference of what even and odd orders make at theta alone, and those at -theta of what
+    cosines and sines make.
 
     Parameters
     ----------
@@ -57,29 +54,47 @@ class CircleTransform:
     """
 
     def __init__(self, modes: int, parities: int) -> None:
-        self._modes, self._parities, self._points = modes, parities, points_around(modes, parities)
-        self._turn = np.exp(1j * np.pi / self._points * np.arange(modes))  # points lie half a step beside theta = 0
+        self._modes, self._parities = modes, parities
+        evaluate, project = circle(modes, parities)
+        self._points = len(evaluate)
+        quarter = self._points // (2 * parities)  # of the circle: half the points that cosines alone have
+        parts = [slice(p * modes + odd, (p + 1) * modes, 2) for p in range(parities) for odd in (0, 1)]
+        self._evaluate = [np.ascontiguousarray(evaluate[:quarter, part].T) for part in parts]
+        self._project = [np.ascontiguousarray(project[part, :quarter].T) for part in parts]
 
     def at_points(self, amplitudes: FloatArray) -> FloatArray:
         """Return values at the points, shape (..., points), of amplitudes (..., parities, M + 1)."""
-        if self._parities == 1:
-            padded = np.zeros((*amplitudes.shape[:-2], self._points))
-            padded[..., : self._modes] = 0.5 * amplitudes[..., 0, :]
-            padded[..., 0] *= 2.0
-            return np.asarray(fft.dct(padded, 3, axis=-1, overwrite_x=True))
-        spectrum = 0.5 * self._points * (amplitudes[..., 0, :] - 1j * amplitudes[..., 1, :]) * self._turn
-        spectrum[..., 0] = self._points * amplitudes[..., 0, 0]
-        return np.asarray(fft.irfft(spectrum, self._points, axis=-1))
+        rows = amplitudes.reshape(-1, self._parities, self._modes)
+        even, odd = (rows[:, 0, k::2] @ self._evaluate[k] for k in (0, 1))
+        values = _mirrored(even + odd, even - odd)
+        if self._parities == 2:
+            even, odd = (rows[:, 1, k::2] @ self._evaluate[2 + k] for k in (0, 1))
+            sines = _mirrored(even + odd, odd - even)
+            values = _mirrored(values + sines, values - sines)
+        return values.reshape(*amplitudes.shape[:-2], self._points)
 
     def amplitudes(self, values: FloatArray) -> FloatArray:
-        """Return the amplitudes (..., parities, M + 1) of values at the points; they are overwritten."""
-        if self._parities == 1:
-            found = fft.dct(values, 2, axis=-1, overwrite_x=True)[..., None, : self._modes] / self._points
-        else:
-            spectrum = fft.rfft(values, axis=-1)[..., : self._modes] * (2.0 / self._points) / self._turn
-            found = np.stack([spectrum.real, -spectrum.imag], axis=-2)
-        found[..., 0] *= 0.5
-        return np.asarray(found)
+        """Return the amplitudes (..., parities, M + 1) of values at the points."""
+        rows = values.reshape(-1, self._points)
+        found = np.empty((len(rows), self._parities, self._modes))
+        if self._parities == 2:
+            there, mirrored = _halves(rows)
+            rows, (right, left) = there + mirrored, _halves(there - mirrored)
+            found[:, 1, 0::2], found[:, 1, 1::2] = (right - left) @ self._project[2], (right + left) @ self._project[3]
+        right, left = _halves(rows)
+        found[:, 0, 0::2], found[:, 0, 1::2] = (right + left) @ self._project[0], (right - left) @ self._project[1]
+        return found.reshape(*values.shape[:-1], self._parities, self._modes)
+
+
+def _mirrored(there: FloatArray, mirrored: FloatArray) -> FloatArray:
+    """Return values along an arc, then those at its mirror image, where it goes back."""
+    return np.concatenate([there, mirrored[:, ::-1]], axis=1)
+
+
+def _halves(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the values on the first half of an arc and those at their mirror images."""
+    middle = values.shape[1] // 2
+    return values[:, :middle], values[:, : middle - 1 : -1]
 
 
 class LimitedVoltages:
