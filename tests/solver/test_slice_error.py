@@ -75,6 +75,8 @@ def test_a_spherical_source_in_two_dimensions_is_warned_of_once():
     held = cx.presets.load("hybrid")
     held = held.replace(control=held.control.replace(saturation=True))
     assert warned(held)[0].endswith("use dimensions=3 without saturation")
+    cut = {"control.segments": 4, "control.current_limit": 1.0, "control.current_saturation": True}
+    assert slice_of_sphere(dimensionless(cx.presets.load("electrodes").with_overrides(cut)), 2.0)[0].endswith("use dimensions=3")
     exact = held.replace(absorbers=None).with_overrides({"shells.0.theory": "elastic"})
     assert slice_of_sphere(dimensionless(exact), 2.0)[0].endswith("use dimensions=3")  # limits stand there without absorbers
     driven = cx.presets.load("electrodes-hybrid")

@@ -209,10 +209,6 @@ def test_what_is_not_solved_is_refused_with_a_remedy():
             cut(segments=4).replace(absorbers=rings),
             r"control\.segments: 4 segments .* march of line absorbers .*use linear springs, point absorbers",
         ),
-        (
-            under(None, segments=4, current_limit=1.0, current_saturation=True),
-            r"control\.current_saturation: currents stop .* two dimensions",
-        ),
         (cut(segments=30), r"control\.segments: 30 segments push on order 30 as well, and the run ends at 5"),
     ):
         with pytest.raises(InputError, match=said):

@@ -198,6 +198,8 @@ def actuators(*motions: ModalSolution) -> list[str]:
 
 def _can_saturate(problem: Problem) -> bool:
     """Return whether a run with the same settings can stop voltages at their limit."""
+    if limits_currents(problem.system):
+        return False
     if problem.dimensions == 2:
         return True
     inclined = any(getattr(geometry, "inclination", 0.0) for geometry in problem.sources)
@@ -280,8 +282,7 @@ def slice_of_sphere(problem: Problem, duration: float) -> list[str]:
     if error.value <= SLICE_LIMIT:
         return []
     about, low, high, limit = (f"{100.0 * value:.0f}" for value in (error.value, error.low, error.high, SLICE_LIMIT))
-    beside = bool(problem.system.absorber_list) or limits_currents(problem.system)
-    changed = " without saturation" if saturates(problem.system) and beside else ""
+    changed = " without saturation" if saturates(problem.system) and problem.system.absorber_list else ""
     if problem.system.absorber_list and (segments_of(problem.system) is not None or ties_shells(problem.system)):
         changed = " without absorbers"  # beside which segments and matrices are refused there
     return [

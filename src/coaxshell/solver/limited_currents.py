@@ -71,6 +71,17 @@ def _acts(wall: ShellModel) -> bool:
     return bool(wall.transducers and wall.transducers.actuators) if isinstance(wall, ElasticWall) else bool(wall.charges(Modes.up_to(0)))
 
 
+def _held(limit: float) -> str:
+    return f"the current was held at {engineering(limit, 'A/m^2')}; lower the gains to stay within it"
+
+
+def warnings_of_held(problem: Problem) -> list[str]:
+    """Return the warnings of a run whose currents stop at their limit and reached it, none where voltages stop."""
+    laws = [(i, law_of(problem.system, i)) for i in controlled(problem) if _acts(problem.shells[i])]
+    limits = [(i, law.current_limit) for i, law in laws if law is not None and law.current_saturation]
+    return [f"{shell_phrase(i, len(problem.shells))}: {_held(limit)}" for i, limit in limits if limit is not None]
+
+
 def warnings_of(solved: SolvedSpectra) -> list[str]:
     """Return the warnings about amplifiers asked for more than their current, means over a segment."""
     problem, found = solved.problem, []
@@ -87,7 +98,7 @@ def warnings_of(solved: SolvedSpectra) -> list[str]:
         per_area = problem.scales.pressure * problem.scales.length / problem.scales.time
         asked = 0.0 if peak is None else abs(peak.value) * per_area
         if solved.iterations and law.current_saturation:
-            told = f"the current was held at {engineering(law.current_limit, 'A/m^2')}; lower the gains to stay within it"
+            told = _held(law.current_limit)
         elif asked > law.current_limit:
             told = f"the control law asks for {engineering(asked, 'A/m^2')} (mean over {engineering(length, 'm')} of the wall), "
             told += f"{asked / law.current_limit:.3g} times the {engineering(law.current_limit, 'A/m^2')} of its amplifier; "

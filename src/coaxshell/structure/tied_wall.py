@@ -95,6 +95,8 @@ class TiedWall(ElectrodedWall):
     def charge_voltage(self, modes: Modes) -> Gain:
         """Return the charge that strain brings to all actuators together, over their capacitance, per unit (V, W, U), V."""
         each = [gain for gain, _ in self.charges(modes)]
+        if not each:  # it has no actuators
+            return Gain(np.zeros_like(modes.orders), np.zeros_like(modes.orders))
         v, w = (np.sum([getattr(one, name) for one in each], axis=0) / self.capacitance for name in ("v", "w"))
         along = [one.u for one in each if one.u is not None]
         return Gain(v, w, np.sum(along, axis=0) / self.capacitance if along else None)

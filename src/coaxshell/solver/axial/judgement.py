@@ -19,6 +19,7 @@ from coaxshell.solver.axial.line_solve import LineSolution
 from coaxshell.solver.axial.linked import PointSolution
 from coaxshell.solver.axial.softened import Softened, softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
+from coaxshell.solver.limited_currents import warnings_of_held
 from coaxshell.solver.solution import KEPT_BYTES, Judgement
 from coaxshell.solver.spectral import Stopwatch
 
@@ -68,6 +69,8 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
     warnings += checks.after(problem, estimates, settings) + checks.ideal_loop(problem, settings)
     if linked is not None and linked.laws is not None:
         warnings += checks.swinging_on_laws(linked.laws.angle, given.grid.time_step, settings.refinement)
+    if isinstance(linked, LimitedSolution):
+        warnings += warnings_of_held(problem)
     stations = range(len(settings.stations))
     return Judgement(estimates, (*warnings, *checks.actuators(*(solution.at(i) for i in stations))))
 

@@ -7,6 +7,9 @@ point of the walls ties to all others. As in two dimensions the lack delta = cli
 
 a_0 and K of each wave and pattern, delta at the points of :mod:`coaxshell.solver.axial.limited_surface`. Images of the sources are cut as
 the sources are, and stay as far away.
+
+Where currents stop a is the charge asked for over C, alpha, K that of :mod:`coaxshell.solver.limited_currents`, and what is cut is the
+change of the charge since the step before, delta = clip(alpha_n - beta_(n-1)) - (alpha_n - beta_(n-1)), beta = alpha + delta.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import fft
 
+from coaxshell.model.gains import limits_currents
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
@@ -28,6 +32,7 @@ from coaxshell.solver.axial.lack import Channels, VoltageLack, lack_of, wave_pat
 from coaxshell.solver.axial.limited_surface import SurfaceStep, WallSurface
 from coaxshell.solver.axial.limited_wave import axial_parities, even_about, loop_kernel, voltages_asked
 from coaxshell.solver.axial.sampling import AxialSampling
+from coaxshell.solver.limited_currents import largest_steps
 from coaxshell.solver.limited_voltages import BLOCK, limits_of, require_fine, trapezoidal_nodes
 from coaxshell.solver.scaling import Problem
 
@@ -66,25 +71,28 @@ class LimitedSolution:
     def error(self) -> float:
         """By how much what is cut off the answer differs from what was marched, relative to it: the waves are solved once more."""
         asked = _asked(self.problem, self.grid, self.forces.channels, self.forces.origin, self.forces, on_threads, None)["asked"]
-        surface, limits = _surface(self.problem, self.forces.channels, self.forces.axial_parities)
+        surface, limits = _surface(self.problem, self.grid, self.forces.channels, self.forces.axial_parities)
         off = whole = 0.0
-        for volts, lack in zip(np.moveaxis(self.grid.invert(asked), -1, 0), np.moveaxis(self.lack, -1, 0), strict=True):
+        found = self.grid.invert(asked)
+        if limits_currents(self.problem.system):
+            found[..., 1:] -= found[..., :-1] + self.lack[..., :-1]
+        for volts, lack in zip(np.moveaxis(found, -1, 0), np.moveaxis(self.lack, -1, 0), strict=True):
             if not lack.any():
                 continue
             for wall, limit in enumerate(limits):
-                found = -lack[wall]
+                away = -lack[wall]
                 along = surface.along(surface.gridded(volts[wall]))
                 if (rows := surface.beyond(along, limit)).size:
                     there = along[rows] @ surface.evaluate
-                    found = found + surface.amplitudes(np.clip(there, -limit, limit) - there, rows)
-                off, whole = off + float((found**2).sum()), whole + float((lack[wall] ** 2).sum())
+                    away = away + surface.amplitudes(np.clip(there, -limit, limit) - there, rows)
+                off, whole = off + float((away**2).sum()), whole + float((lack[wall] ** 2).sum())
         return float(np.sqrt(off / whole))
 
 
 def solve_limited_waves(
     problem: Problem, grid: LaplaceGrid, sampling: AxialSampling, on: BlockMap, progress: Progress | None = None
 ) -> LimitedSolution | None:
-    """Return what amplifiers lack whose voltages stop at a limit; None where none reaches it.
+    """Return what amplifiers lack whose voltages or currents stop at a limit; None where none reaches it.
 
     Raises
     ------
@@ -93,22 +101,28 @@ def solve_limited_waves(
     """
     channels, origin = Channels.of(problem, sampling), even_about(problem)
     parities = axial_parities(problem, origin)
-    surface, limits = _surface(problem, channels, parities)
+    surface, limits = _surface(problem, grid, channels, parities)
+    moving = limits_currents(problem.system)
     found = _asked(problem, grid, channels, origin, None, on, progress)
-    if not _reached(surface, limits, grid.invert(found["linear" if "linear" in found else "asked"])):
+    free = grid.invert(found["linear" if "linear" in found else "asked"])
+    if not _reached(surface, limits, np.diff(free, axis=-1, prepend=0.0) if moving else free):
         return None
     asked = grid.invert(found.pop("asked"))
-    del found
+    del found, free
     weights = _weights(problem, grid, channels, on, progress)
     require_fine(grid, weights)
-    lack, iterations = _march(SurfaceStep(surface, limits, weights[..., 0].copy()), weights, asked, progress)
+    step = SurfaceStep(surface, limits, weights[..., 0].copy())
+    lack, iterations = _march(step, weights, asked, progress, moving=moving)
     return LimitedSolution(problem, grid, lack_of(channels, grid.transform_linear(lack), origin), lack, iterations)
 
 
-def _surface(problem: Problem, channels: Channels, parities: int) -> tuple[WallSurface, FloatArray]:
-    """Return the points of the walls and the limit at each of those around, (walls, points around)."""
+def _surface(problem: Problem, grid: LaplaceGrid, channels: Channels, parities: int) -> tuple[WallSurface, FloatArray]:
+    """Return the points of the walls and the limit at each of those around, (walls, points around), of charges that of a step."""
     patterns = wave_patterns(problem, channels.sampling.modes[0])
-    return WallSurface(patterns, channels, parities), limits_of(problem, patterns)
+    limits = limits_of(problem, patterns)
+    if limits_currents(problem.system):
+        limits = largest_steps(problem, grid.time_step)[:, None] * np.ones_like(limits)
+    return WallSurface(patterns, channels, parities), limits
 
 
 def _asked(
@@ -161,9 +175,14 @@ def _weights(problem: Problem, grid: LaplaceGrid, channels: Channels, on: BlockM
     return weights
 
 
-def _march(step: SurfaceStep, weights: FloatArray, asked: FloatArray, progress: Progress | None) -> tuple[FloatArray, int]:
-    """Return delta, (walls, parities, channels, T), from what is asked for without limits, and the iterations of all steps."""
-    steps = asked.shape[-1]
+def _march(
+    step: SurfaceStep, weights: FloatArray, asked: FloatArray, progress: Progress | None, *, moving: bool = False
+) -> tuple[FloatArray, int]:
+    """Return delta, (walls, parities, channels, T), from what is asked for without limits, and the iterations of all steps.
+
+    ``moving`` tells that limits are those of a change since the step before.
+    """
+    steps, present, before = asked.shape[-1], weights[..., 0], np.zeros(asked.shape[:-1])
     found, sums, history, iterations = np.zeros_like(asked), HistorySum(KernelTable(weights), asked.shape[1]), History(), 0
     for block in _blocks(steps):
         size = block.stop - block.start
@@ -171,14 +190,16 @@ def _march(step: SurfaceStep, weights: FloatArray, asked: FloatArray, progress: 
         if history.step:
             known += sums.forcing(history, size)
         for n in range(size):
-            delta, taken = step.solve(known[..., n])
+            delta, taken = step.solve(known[..., n] - before)
             iterations += taken
+            if moving:
+                before = known[..., n] + delta + np.einsum("ijc,jpc->ipc", present, delta)
             if taken:
                 found[..., block.start + n] = delta
                 known[..., n + 1 :] += np.einsum("ijct,jpc->ipct", weights[..., 1 : size - n], delta)
         history, _ = sums.push(history, found[..., block])
         if progress is not None:
-            progress(block.stop / steps, "voltages at their limit")
+            progress(block.stop / steps, f"{'currents' if moving else 'voltages'} at their limit")
     return found, iterations
 
 

@@ -9,6 +9,12 @@ P is the adjoint of E, but for the mean squares of the waves, in the product tha
 symmetric there, its eigenvalues lie between 1 - max kappa > 0 and 1, and conjugate gradients solve for d without it, by transforms along
 the axis and products around. The points held are corrected until they reproduce themselves.
 
+Where they turn in circles the step is solved by an iteration that always converges, with y(a) = P of what exceeds the limit,
+
+    a <- (1 - kappa/2)^-1 [b + kappa (y(a) - a/2)],
+
+which shortens the way left by |kappa/(2 - kappa)| < 1 at each turn: y(a) - a/2 is of slope 1/2 or -1/2 at every point.
+
 Points are those of two dimensions around, and more than four to the shortest wave along the axis: what clipping makes of higher waves
 folds back from three times the highest on alone.
 """
@@ -26,8 +32,8 @@ from coaxshell.solver.electrode_patterns import Patterns
 
 _MAX_SETS, _WHOLE = 60, 12
 """Sets of points in a step at most, and those after which a set that differs by what is next to the limit alone will do."""
-_MOST = 400
-"""Iterations of conjugate gradients."""
+_MOST, _MOST_TURNS = 2_000, 2_000
+"""Iterations of conjugate gradients, and of those that always converge."""
 _TOLERANCE = 1e-10
 """Of the voltages, in units of the limit."""
 _ROUNDS = 30
@@ -103,7 +109,7 @@ class SurfaceStep:
         Raises
         ------
         InputError
-            If the points held do not come to an end, or walls answer each other within a step too strongly.
+            If no iteration comes to an end, or walls answer each other within a step too strongly.
         """
         delta, taken = np.zeros_like(known), 0
         for _ in range(_ROUNDS):
@@ -123,11 +129,12 @@ class SurfaceStep:
         if not (rows := surface.beyond(free, limit)).size:
             self._sides[wall][:] = 0
             return np.zeros_like(b), 0
-        sides, cut, taken = self._sides[wall], self._cut[wall], 0
+        sides, cut, taken, seen = self._sides[wall], self._cut[wall], 0, set[bytes]()
         for turn in range(_MAX_SETS):
             held = sides.any()
             y, cut, more = self._excess(wall, free, sides, cut) if held else (np.zeros_like(b), cut, 0)
-            along = surface.along(surface.gridded(b + self._kappa[wall] * y)) if held else free
+            asked = b + self._kappa[wall] * y
+            along = surface.along(surface.gridded(asked)) if held else free
             rows = surface.beyond(along, limit)
             volts = along[rows] @ surface.evaluate
             over = np.abs(volts) - limit
@@ -137,10 +144,33 @@ class SurfaceStep:
             near = np.full(sides.shape, np.inf)
             near[rows] = np.abs(over)
             doubtful = found != sides
-            if not doubtful.any() or (turn >= _WHOLE and near[doubtful].max() <= 1e-7 * self._size):
+            circles = found.tobytes() in seen
+            if not doubtful.any() or ((circles or turn >= _WHOLE) and near[doubtful].max() <= 1e-7 * self._size):
                 self._sides[wall], self._cut[wall] = sides, cut
                 return -y, taken
+            if circles:
+                break
+            seen.add(sides.tobytes())
             sides = found
+        y, more = self._safely(wall, b, asked)
+        return -y, taken + more
+
+    def _safely(self, wall: int, b: FloatArray, asked: FloatArray) -> tuple[FloatArray, int]:
+        """Return y by the iteration that always converges, from a guess of a, and how often it turned."""
+        surface, limit, kappa = self._surface, self._limits[wall], self._kappa[wall]
+        rate = float(np.abs(kappa / (2.0 - kappa)).max())
+        enough = _TOLERANCE * self._size * (1.0 - rate) / max(rate, _TOLERANCE)
+        for taken in range(1, _MOST_TURNS):
+            along = surface.along(surface.gridded(asked))
+            rows = surface.beyond(along, limit)
+            volts, cut = along[rows] @ surface.evaluate, np.zeros(self._cut[wall].shape)
+            cut[rows] = volts - np.clip(volts, -limit, limit)
+            y = surface.amplitudes(cut[rows], rows)
+            after = (b + kappa * (y - 0.5 * asked)) / (1.0 - 0.5 * kappa)
+            change, asked = float(np.linalg.norm(after - asked)), after
+            if change <= enough:
+                self._sides[wall], self._cut[wall] = np.sign(cut).astype(np.int8), cut
+                return y, taken
         raise _too_long()
 
     def _excess(self, wall: int, free: FloatArray, sides: Sides, start: FloatArray) -> tuple[FloatArray, FloatArray, int]:
@@ -166,6 +196,8 @@ class SurfaceStep:
             before, square = square, float((weight * left * left).sum())
             way = left + (square / before) * way
             taken += 1
+        if not square <= enough:
+            raise _too_long()
         cut = np.zeros(sides.shape)
         cut[rows] = d
         return surface.amplitudes(d, rows), cut, taken
@@ -174,6 +206,6 @@ class SurfaceStep:
 def _too_long() -> InputError:
     return InputError(
         "time_step",
-        "is too long for voltages that stop at their limit: what amplifiers give does not settle within a step",
+        "is too long for amplifiers that stop at their limit: their voltages do not settle within a step",
         "use a quarter of it, or four times the refinement, or lower gains",
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from coaxshell.model.gains import limits_currents
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
@@ -13,6 +14,7 @@ from coaxshell.solver.axial.blocks import Found
 from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lack import Channels, VoltageLack, wave_patterns
+from coaxshell.solver.axial.limited_charges import WaveCharges
 from coaxshell.solver.axial.normals import normals_of, piezoelectric_layers, potentials_of
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
@@ -25,7 +27,7 @@ from coaxshell.solver.voltage_response import controlled
 def limited_motions(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
     """Return what thin walls are read for in wave j under each family, (3 + layers, shells, parities, orders, nodes).
 
-    Walls that show what they give show what their law asks for.
+    Walls that show what they give show what their law asks for, and where currents stop what that leaves.
     """
     wave = TiedWave(problem, grid.nodes[block], waves.modes[j], motion_parities(problem))
     patterns, found = wave.loops.patterns, []
@@ -38,7 +40,8 @@ def limited_motions(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid,
         moved = wave.moved(patterns.in_orders(given), normal)
         motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
         potentials = np.array(potentials_of(problem, wave.bare, piezoelectric_layers(problem), *motion))
-        for volts, i in zip(patterns.in_orders(asked), wave.response.shells, strict=True):
+        shown = given if limits_currents(problem.system) else asked
+        for volts, i in zip(patterns.in_orders(shown), wave.response.shells, strict=True):
             if problem.shells[i].shows_control:
                 potentials[problem.shells[i].shown_potentials - 1, i] = volts
         found.append(np.concatenate([np.stack(moved[:3]), potentials]))
@@ -60,8 +63,11 @@ def limited_faces(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: sli
 
 
 def lacking(problem: Problem, family: Family, modes: Modes) -> ComplexArray | float:
-    """Return what actuators lack of what is asked for, (shells, parities, orders, nodes), in a wave of a family; 0 of others."""
-    if not isinstance(family.forces, VoltageLack):
+    """Return what actuators lack of what stations show, (shells, parities, orders, nodes), in a wave of a family; 0 of others.
+
+    Where currents stop these show what is given.
+    """
+    if not isinstance(family.forces, VoltageLack) or limits_currents(problem.system):
         return 0.0
     volts = wave_patterns(problem, modes).in_orders(family.forces.of(modes, odd=family.odd_forces))
     found = np.zeros((len(problem.shells), *volts.shape[1:]), np.complex128)
@@ -83,12 +89,15 @@ def _loops(problem: Problem, s: ComplexArray, modes: Modes) -> TiedWave | TiedFa
     return TiedWave(problem, s, modes, parities)
 
 
-def _readings(problem: Problem, wave: TiedWave | TiedFaces, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
-    """Return what patterns read of a family of sources without voltages, (walls, patterns, nodes)."""
+def _readings(
+    problem: Problem, wave: TiedWave | TiedFaces, family: Family, grid: LaplaceGrid, block: slice, charges: WaveCharges | None
+) -> tuple[ComplexArray, ComplexArray | float]:
+    """Return what patterns read of a family of sources without voltages, (walls, patterns, nodes), and m/C, 0 without charges."""
     if isinstance(wave, TiedFaces):
-        return wave.loops.patterns.readings(wave.readings(wave.wave.faces(family, grid, block)))
+        free = wave.wave.faces(family, grid, block)
+        return wave.loops.patterns.readings(wave.readings(free)), 0.0 if charges is None else charges.of_faces(free)
     normal = np.stack([np.stack(each) for each in normals_of(problem, wave.bare, family, grid, block)], axis=1)
-    return wave.loops.patterns.readings(wave.readings(normal))
+    return wave.loops.patterns.readings(wave.readings(normal)), 0.0 if charges is None else charges.of_normal(normal)
 
 
 def limited_voltages(loops: ElectrodeLoops, family: Family, modes: Modes, read: ComplexArray | None) -> tuple[ComplexArray, ComplexArray]:
@@ -108,7 +117,7 @@ def voltages_asked(
     """Return what the loops ask for under the sources, and with what is lacking, at a slice of the nodes.
 
     "asked", (walls, axial parities, channels, nodes): amplitudes along cos k(z - z_0) and sin k(z - z_0); dead segments as if alive. Where
-    there are some, "linear" has what is asked for with them at ground.
+    there are some, "linear" has what is asked for with them at ground. Where currents stop it is the charge asked for over C, alpha.
     """
     s, forces = grid.nodes[block], None if lack is None else lack.at(block)
     sets = wave_sets(problem, sampling, np.array([origin]), s, forces)
@@ -117,9 +126,14 @@ def voltages_asked(
     for waves in sets:
         for j, modes in enumerate(waves.modes):
             wave = _loops(problem, s, modes)
+            charges = WaveCharges(problem, wave) if limits_currents(problem.system) else None
             for family in waves.families:
-                read = None if isinstance(family.forces, VoltageLack) else _readings(problem, wave, family, grid, block)
-                each = {"asked": limited_voltages(wave.loops, family, modes, read)[0]}
+                read: ComplexArray | None = None
+                held: ComplexArray | float = 0.0
+                if not isinstance(family.forces, VoltageLack):
+                    read, held = _readings(problem, wave, family, grid, block, charges)
+                asked, given = limited_voltages(wave.loops, family, modes, read)
+                each = {"asked": asked if charges is None else asked + held + charges.strained(given)}
                 if wave.loops.patterns.dead and read is not None:
                     each["linear"] = wave.loops.voltages(read)
                 for name, values in each.items():
@@ -136,11 +150,17 @@ def axial_parities(problem: Problem, origin: float) -> int:
 
 
 def loop_kernel(problem: Problem, sampling: AxialSampling, s: ComplexArray, channels: Channels, block: slice) -> Found:
-    """Return K = (1 - H K C)^-1 - 1 at a slice of some nodes, "kernel": (walls, walls, channels, nodes)."""
+    """Return K = T - 1 at a slice of some nodes, T = (1 - H K C)^-1, "kernel": (walls, walls, channels, nodes).
+
+    Where currents stop it is T - 1 + Q T/C.
+    """
     nodes: ComplexArray = s[block]
     found = None
     for j, modes in enumerate(sampling.modes):
-        inverse = np.moveaxis(_loops(problem, nodes, modes).loops.inverse, (2, 3), (0, 1))
+        wave = _loops(problem, nodes, modes)
+        inverse = np.moveaxis(wave.loops.inverse, (2, 3), (0, 1))
+        if limits_currents(problem.system):
+            inverse = inverse + np.einsum("ijqk,jlqk->ilqk", WaveCharges(problem, wave).per_volt, inverse)
         if found is None:
             found = np.empty((*inverse.shape[:2], channels.count, nodes.size), np.complex128)
         found[:, :, channels.of_wave(j)] = inverse

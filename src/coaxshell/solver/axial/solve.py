@@ -233,9 +233,6 @@ def require_known(problem: Problem, settings: Settings) -> None:
     """Refuse what belongs to two dimensions, and stations that an inclined wave has passed before t = 0."""
     system = problem.system
     require_lines_alone(problem, settings)
-    if limits_currents(system):
-        told = "use current_saturation = false: two dimensions tell how much the limit matters"
-        raise InputError("control.current_saturation", "currents stop at their limit in two dimensions alone", told)
     if saturates(system):
         _require_limits(problem)
     for source, geometry in zip(problem.emitters, problem.sources, strict=True):
@@ -250,10 +247,12 @@ def require_known(problem: Problem, settings: Settings) -> None:
 
 
 def _require_limits(problem: Problem) -> None:
-    """Refuse what cannot be beside voltages that stop at their limit in three dimensions."""
-    where, told = "control.saturation", "use saturation = false, which warns where a voltage exceeds its limit"
+    """Refuse what cannot be beside voltages or currents that stop at their limit in three dimensions."""
+    what, where, told = "voltages", "control.saturation", "use saturation = false, which warns where a voltage exceeds its limit"
+    if limits_currents(problem.system):
+        what, where, told = "currents", "control.current_saturation", "use current_saturation = false and read control_effort"
     if problem.system.absorber_list or problem.system.point_absorbers:
-        raise InputError(where, "beside absorbers voltages are cut at their limit in two dimensions alone", f"{told}, or no absorbers")
+        raise InputError(where, f"beside absorbers {what} are cut at their limit in two dimensions alone", f"{told}, or no absorbers")
     if problem.belts is not None:
         found = "electrodes that are cut along the axis are not known to stop at a limit"
         raise InputError(where, found, f"{told}, or leave segment_pitch out")

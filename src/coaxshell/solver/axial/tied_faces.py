@@ -43,13 +43,15 @@ class OpenFaces:
     ----------
     wave : FacedWave
     response : VoltageResponse
+    per_volt : list of lists of FaceMotion
+        What the faces of all walls do under a volt on each wall under control.
     """
 
     def __init__(self, wave: FacedWave) -> None:
         self.wave, shells = wave, controlled(wave.problem)
-        self._per_volt = [wave.under_voltage(shell) for shell in shells]
+        self.per_volt = [wave.under_voltage(shell) for shell in shells]
         read = np.empty((len(shells), len(shells), wave.modes.count, wave.s.size), np.complex128)
-        for b, moved in enumerate(self._per_volt):
+        for b, moved in enumerate(self.per_volt):
             for a, shell in enumerate(shells):
                 read[a, b] = wave.sensed(shell, moved[shell], float(a == b))
         self.response = VoltageResponse.of_faces(shells, read)
@@ -59,10 +61,21 @@ class OpenFaces:
         wave = self.wave
         return np.stack([np.stack([wave.sensed(shell, faces[shell]) for faces in free]) for shell in self.response.shells])
 
+    def charges(self, free: list[list[FaceMotion]]) -> ComplexArray:
+        """Return what the charge of strain is over the capacitance of each thin wall under control, V, likewise; 0 of elastic walls."""
+        shape = (len(self.response.shells), len(free), self.wave.modes.count, self.wave.s.size)
+        found = np.zeros(shape, np.complex128)
+        for a, shell in enumerate(self.response.shells):
+            wall = self.wave.problem.shells[shell]
+            if isinstance(wall, TiedWall):
+                gain = wall.charge_voltage(self.wave.modes)
+                found[a] = np.stack([self.wave.sensed(shell, faces[shell], 0.0, gain) for faces in free])
+        return found
+
     def charges_per_volt(self) -> ComplexArray:
         """Return what the charge of each thin wall under control is over its capacitance, V, per volt on each; 0 of elastic walls."""
         found = np.zeros_like(self.response.read)
-        for b, moved in enumerate(self._per_volt):
+        for b, moved in enumerate(self.per_volt):
             for a, shell in enumerate(self.response.shells):
                 wall = self.wave.problem.shells[shell]
                 if isinstance(wall, TiedWall):
@@ -85,7 +98,7 @@ class OpenFaces:
         """Return motion without voltages and by voltages, (controlled, orders, nodes), together."""
         found = []
         for shell, moving in enumerate(alone):
-            by_volts = [per[shell] for per in self._per_volt]
+            by_volts = [per[shell] for per in self.per_volt]
             parts = zip(moving, *by_volts, strict=True)
             found.append(FaceMotion(*(own + sum(u * one for u, one in zip(volts, per, strict=True)) for own, *per in parts)))
         return found

@@ -11,6 +11,7 @@ B the stiffness of U and V on each other, P their load per volt (:mod:`coaxshell
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import patterns_of, segments_of
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all, sensed_of
 from coaxshell.structure.shell_model import Gain, ShellModel
 from coaxshell.structure.tied_wall import TiedWall
 
@@ -64,9 +65,16 @@ class OpenWave:
 
     def readings(self, normal: ComplexArray) -> ComplexArray:
         """Return what the sensors of walls under control read, (walls, parities, orders, nodes), of the W of all shells."""
+        return self._read(normal, sensed_of)
+
+    def charges(self, normal: ComplexArray) -> ComplexArray:
+        """Return what the charge of strain is over the capacitance of each wall under control, V, likewise."""
+        return self._read(normal, charge_of)
+
+    def _read(self, normal: ComplexArray, reading: Callable[[ShellModel, Modes], Gain]) -> ComplexArray:
         ratios = [(wall.tangential, wall.axial) for wall in self.bare.shells]
-        sensed = [self._problem.shells[i].sensor_gain(self.bare.modes).columns.recovered(*ratios[i]) for i in self.response.shells]
-        return np.stack([gain * normal[i] for gain, i in zip(sensed, self.response.shells, strict=True)])
+        gains = [reading(self._problem.shells[i], self.bare.modes).columns.recovered(*ratios[i]) for i in self.response.shells]
+        return np.stack([gain * normal[i] for gain, i in zip(gains, self.response.shells, strict=True)])
 
     def charges_per_volt(self) -> ComplexArray:
         """Return what the charge of each wall under control is over its capacitance, V, per volt on each, (walls, walls, orders, nodes)."""
