@@ -126,6 +126,7 @@ def test_labelled_and_drawn():
     assert shares == sorted(shares)
     assert 0.0 < shares[0] < shares[-1] < 1.0, "it tells how far it is"
     assert [ax.get_xlabel() for ax in figure.axes] == ["circumferential order $m$", "Re $L$", "frequency (Hz)", "frequency (Hz)"]
+    assert all(float(order).is_integer() for order in figure.axes[0].get_xticks())
 
 
 @pytest.mark.parametrize("cut", [{"segments": 6}, {"segments": 5, "dead": [2]}], ids=["live", "dead"])

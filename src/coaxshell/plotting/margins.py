@@ -39,6 +39,8 @@ def figure_margins(margins: xr.Dataset, worst: list[LoopResponse]) -> Figure:
 
 def plot_delay_margins(margins: xr.Dataset, ax: Axes | None = None) -> Axes:
     """Draw the delay that each order's loop stands, in three dimensions the least of all axial wavenumbers."""
+    from matplotlib.ticker import MaxNLocator
+
     ax = _axes(ax)
     for place, name in enumerate(margins["shell"].values):
         each = margins["delay_margin"].isel(shell=place)
@@ -49,6 +51,7 @@ def plot_delay_margins(margins: xr.Dataset, ax: Axes | None = None) -> Axes:
     cut = margins.attrs.get("segments")
     ax.set_xlabel("circumferential order $m$" if cut is None else f"pattern $q$ of {cut} segments")
     ax.set_ylabel("delay margin (µs)")
+    ax.xaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], integer=True))  # no half orders
     ax.legend()
     return ax
 
@@ -67,7 +70,7 @@ def plot_nyquist(worst: list[LoopResponse], ax: Axes | None = None) -> Axes:
     ax.set_aspect("equal")
     ax.set_xlabel("Re $L$")
     ax.set_ylabel("Im $L$")
-    ax.legend(loc="upper left")
+    ax.legend(loc="upper left", frameon=True, framealpha=0.85, edgecolor="none")  # loops run under it
     return ax
 
 
