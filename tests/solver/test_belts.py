@@ -16,10 +16,12 @@ from coaxshell.model import presets
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.response import load_response
-from coaxshell.solver.axial.belt_ties import TiedClass, ties_of_belts
+from coaxshell.solver.axial.belt_ties import TiedClass, tie_of_broken, ties_of_belts
 from coaxshell.solver.axial.belts import classes_of, driven_sets
 from coaxshell.solver.axial.sampling import FAR, AxialSampling
+from coaxshell.solver.axial.stability import require_stable_waves
 from coaxshell.solver.coupling import ModalSystem
+from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.segmented_margins import segmented_loops
 from coaxshell.solver.stability import Contour, highest_frequency
@@ -32,6 +34,7 @@ PAIRS = presets.load("electrodes")
 PLANE = cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4)
 TIME, A = PAIRS.transit_time, PAIRS.reference_radius
 SMALL: dict[str, Any] = {"duration": 0.5, "time_step": 2e-2, "modes": 5, "dimensions": 3, "stations": [0.0, 0.4, 0.75]}
+FEW = SMALL | {"duration": 0.3, "modes": 4, "axial_modes": 5}
 MIXED = [[1.0, 0.5], [0.3, 0.8]]
 
 
@@ -75,23 +78,33 @@ def dense(problem: Problem, modes: Modes, s: np.ndarray) -> tuple[np.ndarray, np
 
 
 @pytest.mark.parametrize(
-    "others",
-    [{}, {"segments": 3, "segment_gap": "20 mm"}, {"segments": 3, "segment_gap": "20 mm", "dead": [0]}],
-    ids=["whole around", "segments", "dead"],
+    ("others", "count", "z0"),
+    [
+        ({}, 3, 0.3),
+        ({"segments": 3, "segment_gap": "20 mm"}, 3, 0.3),
+        ({"segments": 3, "segment_gap": "20 mm", "dead": [0]}, 3, 0.3),
+        ({"dead_belts": [1]}, 4, 0.0),
+        ({"segments": 3, "segment_gap": "20 mm", "dead_belts": [0, -1]}, 3, 0.3),
+        ({"segments": 4, "segment_gap": "20 mm", "dead": [2], "dead_belts": [1], "dead_electrodes": [[0, 0], [-1, 1], [-1, 3]]}, 3, 0.3),
+    ],
+    ids=["whole around", "segments", "dead", "dead belt", "dead belts of segments", "dead electrodes"],
 )
-def test_belts_are_all_waves_and_all_belts_at_once(others):
-    """Three belts of a period, both parities along the axis, means over each belt and segment taken numerically."""
+def test_belts_are_all_waves_and_all_belts_at_once(others, count, z0):
+    """Some belts of a period, both parities along the axis, means over each belt and segment taken numerically."""
     law = cx.Feedback(numerator=[2 * TIME, 3.0], transducers="electrodes", matrix=MIXED, segment_pitch=1.0, segment_length=0.7, **others)
-    system = PAIRS.replace(control=law).with_overrides({"source.z": 0.3})
-    problem, sampling, grid = dimensionless(system, 3), AxialSampling(3.0 / A, 4, 5.5), LaplaceGrid(0.02, 25)
-    belts, block, top, count = problem.belts, slice(3, 4), 5, 3
+    system = PAIRS.replace(control=law).with_overrides({"source.z": z0})
+    problem, sampling, grid = dimensionless(system, 3), AxialSampling(count / A, 4, 5.5), LaplaceGrid(0.02, 25)
+    belts, block, top = problem.belts, slice(3, 4), 5
     assert belts is not None
     (waves,) = driven_sets(problem, sampling, np.zeros(1), grid, block)
     s, numbers = grid.nodes[block], np.arange(1 - len(sampling.modes), len(sampling.modes))
     z = belts.length * ((np.arange(4000) + 0.5) / 4000 - 0.5)
-    around = projection(law, problem.system.shells, top)
     law_at = problem.shells[0].gains.at(s, Modes(np.zeros(1))).ravel()[0]
-    fed = np.kron(np.array(MIXED) * law_at, np.ones((top, top))) * around
+    fed = np.zeros((count * 2 * top, count * 2 * top), np.complex128)
+    for n in range(count):
+        around = projection(law, problem.system.shells, top, n - count if n == count - 1 else n)
+        part = slice(n * 2 * top, (n + 1) * 2 * top)
+        fed[part, part] = np.kron(np.array(MIXED) * law_at, np.ones((top, top))) * around
     loops, right = np.eye(count * 2 * top, dtype=np.complex128), np.zeros(count * 2 * top, np.complex128)
     kept = np.zeros((count * top, count * top))
     middles, found = belts.pitch * np.arange(count), {}
@@ -104,20 +117,20 @@ def test_belts_are_all_waves_and_all_belts_at_once(others):
         pad = np.arange(2 * top).reshape(2, top)[:, :orders].ravel()
         whole = np.zeros((2 * top, 2 * top), np.complex128)
         whole[np.ix_(pad, pad)] = read @ inverse @ push
-        loops -= np.kron(np.multiply.outer(seen, seen.conj()) * belts.length / sampling.period, fed @ whole)
+        loops -= fed @ np.kron(np.multiply.outer(seen, seen.conj()) * belts.length / sampling.period, whole)
         kept += np.kron(held, np.diag(np.arange(top) < orders))
         free = waves.belts.amplitudes(abs(q))[0][:3, :, 0, :, 0]  # of the source alone, half of cos k(z - z0) each way
         phi = np.zeros(2 * top, np.complex128)
         phi[pad] = read @ free[[2, 1, 0]].transpose(1, 2, 0).ravel()
-        share = (1.0 if q == 0 else 0.5) * sampling.weights[abs(q)] * np.exp(-1j * k * 0.3 / A)
-        right += np.kron(seen * share, fed @ phi)
+        share = (1.0 if q == 0 else 0.5) * sampling.weights[abs(q)] * np.exp(-1j * k * z0 / A)
+        right += fed @ np.kron(seen * share, phi)
     inverse, push, read = dense(problem, Modes.up_to(4, FAR * 5.5), s)
     missing = (np.eye(count * top) - kept).reshape(count, top, count, top)
     full = np.einsum("amcm,imjn->aimcjn", missing, (read @ inverse @ push).reshape(2, top, 2, top)).reshape(loops.shape)
-    loops -= np.kron(np.eye(count), fed) @ full
+    loops -= fed @ full
     volts = np.linalg.solve(loops, right).reshape(count, 2, top)
     classes = classes_of(belts, sampling)
-    patterns, told = classes.patterns(np.arange(3.0)), np.zeros((count, 2, top), np.complex128)
+    patterns, told = classes.patterns(np.arange(float(count))), np.zeros((count, 2, top), np.complex128)
     for number in range(classes.classes):
         told += np.einsum("an,awm->nwm", patterns[..., number], waves.belts.voltages(number)[:, :, 0, :, 0])
     assert np.abs(volts).max() > 0.0
@@ -132,14 +145,16 @@ def test_belts_are_all_waves_and_all_belts_at_once(others):
     assert_allclose(both, moved, rtol=0, atol=1e-6 * np.abs(moved[0]).max())
 
 
-def projection(law: Any, shells: Any, top: int) -> np.ndarray:
+def projection(law: Any, shells: Any, top: int, belt: int) -> np.ndarray:
     """Return from readings of both walls to their voltages in orders, cosines alone: means over each segment of one, loads of the other."""
+    if belt in (law.dead_belts or ()):
+        return np.zeros((2 * top, 2 * top))
     m, weight = np.arange(top), np.where(np.arange(top) == 0, 2.0, 1.0) * np.pi
     if law.segments is None:
         return np.kron(np.ones((2, 2)), np.eye(top))
     angles = [2 * np.pi / law.segments - law.segment_gap / shells[wall].radius for wall in range(2)]
     found = np.zeros((2, top, 2, top))
-    for k in set(range(law.segments)) - set(law.dead or ()):
+    for k in set(range(law.segments)) - set(law.dead or ()) - {segment for n, segment in law.dead_electrodes or () if n == belt}:
         theta = 2 * np.pi * k / law.segments + np.multiply.outer(angles, (np.arange(4000) + 0.5) / 4000 - 0.5)
         means = [np.cos(np.outer(m, one)).mean(axis=1) for one in theta]
         for i, j in np.ndindex(2, 2):
@@ -224,6 +239,94 @@ def test_a_belt_has_one_voltage_and_files_know_it(tmp_path):
     assert not ends.spatial.at(2).segment_voltage.any()
     kept = load_response(response.save(tmp_path / "run.nc"))
     assert_allclose(kept.spatial.at(0).segment_voltage, voltage, rtol=0)
+
+
+@cache
+def failed() -> cx.SpatialResponse:
+    """Both kinds of dead ones, on one side of z = 0 alone."""
+    single = {"dead_belts": [-1], "dead_electrodes": [[0, 2], [1, 0]]}
+    return cx.simulate(cut(segment_pitch=0.8, segment_length=0.7, segments=4, segment_gap="20 mm", **single), **FEW)
+
+
+def test_single_dead_electrodes_are_at_ground_and_the_others_are_not():
+    run = cx.simulate(failed().system, **{**FEW, "stations": [0.0, 0.8, -0.8, 1.6]})
+    here, beside, gone, far = (run.spatial.at(number).segment_voltage for number in range(4))
+    largest = np.abs(here).max()
+    assert not gone.any()
+    assert not here[:, 2].any()
+    assert not beside[:, 0].any()
+    assert np.abs(here[:, [0, 1, 3]]).max(axis=(0, 2)).min() > 1e-3 * largest
+    assert np.abs(beside[:, 1:]).max(axis=(0, 2)).min() > 1e-3 * largest
+    assert np.abs(far).max() > 1e-3 * largest
+    volts = run.spatial.fields["potential 3"]
+    assert np.abs(volts[2]).max() == 0.0
+    effort = run.control_effort().at(0.0)["inner"].segments
+    assert effort[2].voltage == effort[2].current == effort[2].real_power == 0.0
+    assert effort[0].current > 0.0
+
+
+def test_balances_close_with_single_dead_electrodes():
+    energy = failed().energy(every=15)
+    assert np.abs(energy.closure_relative).max() < 2e-5
+    electrical = energy.amplifier_work - (energy.actuator_field - energy.actuator_work)
+    assert np.abs(electrical).max() < 1e-6 * np.abs(energy.actuator_work).max()
+
+
+def test_belts_that_are_all_dead_leave_the_walls_alone():
+    settings = {**FEW, "duration": 0.2, "axial_period": 8 * 0.8, "stations": [0.3]}
+    dead = cx.simulate(cut(segment_pitch=0.8, dead_belts=list(range(-3, 5))), **settings)
+    free = cx.simulate(PAIRS.replace(control=None), **settings)
+    assert_allclose(dead.spatial.fields["w"], free.spatial.fields["w"], rtol=0, atol=1e-6 * np.abs(free.spatial.fields["w"]).max())
+    assert not dead.spatial.at(0).control_voltage.any()
+
+
+def test_poles_with_single_dead_belts_are_those_of_one_matrix_of_the_live_ones():
+    problem = dimensionless(late(segment_length=0.5, dead_belts=[-1, 2]), 3)
+    count, s, order = 5, np.array([1.0 + 7.0j, 0.8 + 30.0j]), 2
+    sampling = AxialSampling(count * 0.6 / A, 4, 7.0)
+    tie, belts = tie_of_broken(problem, sampling), problem.belts
+    assert belts is not None
+    told = tie.factors(problem.open_loop, problem, patterns_of(problem, (0, 1), tie.modes.orders, 1), s).reshape(-1, 5, s.size)[:, order]
+    z = np.add.outer(belts.pitch * np.arange(count), belts.length * ((np.arange(2000) + 0.5) / 2000 - 0.5))
+    whole, left = np.zeros((s.size, count, 2, count, 2), np.complex128), np.eye(count, dtype=np.complex128)
+    law = np.stack([wall.gains.at(s, Modes(np.zeros(1))).ravel() for wall in problem.shells])
+    for modes in sampling.modes:
+        if order < modes.count:
+            seen = np.exp(1j * float(modes.wavenumber) * z).mean(axis=1)
+            held = np.multiply.outer(seen, seen.conj()).real * (2.0 if float(modes.wavenumber) else 1.0) * belts.length / sampling.period
+            left -= held
+            whole += np.einsum("nm,ijs->snimj", held, VoltageResponse.at(problem.open_loop, problem, modes, s).read[:, :, order])
+    whole += np.einsum("nm,ijs->snimj", left, VoltageResponse.at(problem.open_loop, problem, sampling.far, s).read[:, :, order])
+    live = [0, 1, 3]  # -1 is 4 of 5
+    loops = np.eye(6) - np.einsum("is,snimj->snimj", law, whole)[:, live][:, :, :, live].reshape(s.size, 6, 6)
+    assert_allclose(told.prod(axis=0), np.linalg.det(loops), rtol=1e-6)
+    with pytest.raises(
+        InputError, match=r"control\.delay: 14\.00 µs makes the closed loop unstable with its dead belts: .* motions, of all"
+    ):
+        require_stable_waves(problem, AxialSampling(3 * 0.6 / A, 1, 7.0), 1.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"dead_belts": [0]}, r"control\.dead_belts: is said of electrodes that are not cut along the axis; give segment_pitch"),
+        ({"segment_pitch": 0.8, "dead_belts": [0, 0]}, r"control\.dead_belts: \[0, 0\] names a belt twice"),
+        ({"segment_pitch": 0.8, "dead_belts": [10**400]}, r"control\.dead_belts: .* give a list of belts by number"),
+        ({"segment_pitch": 0.8, "dead_belts": ["one"]}, r"control\.dead_belts: .* give a list of belts by number"),
+        ({"segment_pitch": 0.8, "dead_electrodes": [[0, 1]]}, r"control\.dead_electrodes: names segments .* not cut around the wall"),
+        ({"segment_pitch": 0.8, "segments": 4, "dead_electrodes": [[0, 4]]}, r"control\.dead_electrodes: \[0, 4\]: 4 is no segment of 4"),
+        ({"segment_pitch": 0.8, "segments": 4, "dead_electrodes": [0, 4]}, r"control\.dead_electrodes: .* give pairs of a belt"),
+        ({"segment_pitch": 0.8, "dead_belts": [40]}, r"control\.dead_belts: belt 40 is outside the axial period of .*axial_period=64\.8"),
+    ],
+)
+def test_dead_ones_that_are_not_there_are_refused(changes, said):
+    with pytest.raises(InputError, match=said):
+        cx.simulate(cut(**changes), **SMALL)
+
+
+def test_margins_do_not_know_single_dead_belts():
+    with pytest.raises(InputError, match=r"control\.dead_belts: leaves no two belts alike"):
+        cx.stability_margins(cut(segment_pitch=0.8, dead_belts=[1]), duration=0.5, modes=3, axial_modes=5.0, dimensions=3)
 
 
 def test_poles_are_those_of_classes_of_waves():

@@ -35,10 +35,12 @@ def broken() -> cx.SpatialResponse:
     return cx.simulate(pairs(("thin", "elastic"), **law), stations=[0.0, 0.8], **SMALL)
 
 
-def test_belts_are_all_waves_and_all_belts_at_once() -> None:
+@pytest.mark.parametrize("dead", [[], [1]])
+def test_belts_are_all_waves_and_all_belts_at_once(dead: list[int]) -> None:
     """Three belts of a period, means over each taken numerically, by what waves read of forces on their faces and of volts."""
     problem = dimensionless(
-        pairs(("thin", "elastic"), matrix=MIXED, segment_pitch=1.0, segment_length=0.7).with_overrides({"source.z": 0.3}), 3
+        pairs(("thin", "elastic"), matrix=MIXED, segment_pitch=1.0, segment_length=0.7, dead_belts=dead).with_overrides({"source.z": 0.3}),
+        3,
     )
     sampling, grid, block, top, count = AxialSampling(3.0 / A, 2, 5.5), LaplaceGrid(0.02, 25), slice(3, 4), 3, 3
     belts, s = problem.belts, grid.nodes[block]
@@ -64,6 +66,7 @@ def test_belts_are_all_waves_and_all_belts_at_once() -> None:
         right[: modes.count] += share * np.einsum("n,il,lo->oin", seen, fed, phi)
     read = readings_per_volt(problem.open_loop, (0, 1), sampling.far, s)[..., 0]
     loops -= np.einsum("onm,il,ljo->oinjm", np.eye(count) - kept, fed, read)
+    loops[:, :, dead], right[:, :, dead] = np.eye(6).reshape(2, 3, 2, 3)[:, dead], 0.0
     volts = np.stack([np.linalg.solve(one.reshape(6, 6), b.ravel()).reshape(2, 3) for one, b in zip(loops, right, strict=True)])
     classes = classes_of(belts, sampling)
     patterns, told = classes.patterns(np.arange(3.0)), np.zeros((top, 2, count), complex)

@@ -145,7 +145,7 @@ LIMITED = {
 }
 FITTED = {"mass": 5.0, "linear_stiffness": 1e8, "angle": 10.0, "inner_shell": 0, "outer_shell": 2, "footprint": "1 cm"}
 BELTED = (
-    *(("control", name) for name in (*BELTS, "segments", "segment_gap", "delay", "saturation")),
+    *(("control", name) for name in (*BELTS, "segments", "segment_gap", "delay", "saturation", "dead_belts", "dead_electrodes")),
     *(("source", name) for name in ("z", "inclination", "pulse")),
     *(("shells", 0, name) for name in ("theory", "wetted", "layers")),
     *(("resolution", name) for name in ("dimensions", "stations", "axial_modes", "axial_period")),

@@ -154,6 +154,10 @@ def _control(system: SystemParts) -> None:
         if (law.segment_pitch, law.segment_length) != (first.segment_pitch, first.segment_length):
             found = "other walls are cut otherwise along the axis, where electrodes are known to lie over each other"
             raise InputError(f"{where}.segment_pitch", found, "give all laws the same segment_pitch and the same segment_length")
+        for single in ("dead_belts", "dead_electrodes"):
+            if (getattr(law, single) or ()) != (getattr(first, single) or ()):
+                found = "other walls have others, and electrodes that lie over each other are known to be dead together"
+                raise InputError(f"{where}.{single}", found, f"give all laws the same {single}")
         name = "current_saturation" if law.current_saturation else "saturation"
         if several and getattr(law, name):
             remedy = f"use {name} = false and compare what is asked for and its limit, or one law with a list of gains"

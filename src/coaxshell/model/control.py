@@ -10,7 +10,7 @@ from pydantic_core import core_schema
 
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described
-from coaxshell.model.segments import Count, Dead, Gap, Length, require_segments
+from coaxshell.model.segments import Count, Dead, DeadBelts, DeadElectrodes, Gap, Length, require_segments
 from coaxshell.model.units import DIMENSIONS, Quantity, quantity
 from coaxshell.numerics.scalars import plain
 
@@ -130,6 +130,10 @@ class PDControl(Described):
     """Of each electrode along the axis (m), what is left of the pitch held at ground; the whole pitch unless given."""
     dead: Dead | None = None
     """Segments held at ground, which neither sense nor push: 0 has its middle at theta = 0, the others follow counterclockwise."""
+    dead_belts: DeadBelts | None = None
+    """Single belts held at ground whole: 0 has its middle at z = 0, n at n times segment_pitch."""
+    dead_electrodes: DeadElectrodes | None = None
+    """Single segments of single belts held at ground, pairs of a belt and a segment such as [0, 3]."""
 
     @model_validator(mode="after")
     def _once_each(self) -> Self:

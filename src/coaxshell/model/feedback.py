@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, WithJsonSchema, model_validator
 from coaxshell.errors import InputError
 from coaxshell.model.base import Described, shown
 from coaxshell.model.control import CurrentLimit, End, PDControl, Transducers, _shells, require_current
-from coaxshell.model.segments import Count, Dead, Gap, Length, require_segments
+from coaxshell.model.segments import Count, Dead, DeadBelts, DeadElectrodes, Gap, Length, require_segments
 from coaxshell.model.units import DIMENSIONS, Delay, Frequency, quantity, to_si
 from coaxshell.numerics.scalars import plain
 
@@ -132,6 +132,10 @@ class Feedback(Described):
     """Of each electrode along the axis (m), what is left of the pitch held at ground; the whole pitch unless given."""
     dead: Dead | None = None
     """Segments held at ground, which neither sense nor push: 0 has its middle at theta = 0, the others follow counterclockwise."""
+    dead_belts: DeadBelts | None = None
+    """Single belts held at ground whole: 0 has its middle at z = 0, n at n times segment_pitch."""
+    dead_electrodes: DeadElectrodes | None = None
+    """Single segments of single belts held at ground, pairs of a belt and a segment such as [0, 3]."""
 
     @classmethod
     def from_zeros(cls, zeros: Sequence[complex], poles: Sequence[complex], gain: float, **others: Any) -> Self:
@@ -216,9 +220,10 @@ class Feedback(Described):
             raise InputError("shells", f"{list(self.shells)!r} is not allowed", "must name at least one shell, and each only once")
         require_segments(self)
         require_current(self)
-        if self.dead and self.weights is not None:
-            found = "a modal filter reads all segments, and some are dead"
-            raise InputError("weights", found, "leave weights out, which are those of orders, or dead")
+        for name in ("dead", "dead_electrodes"):
+            if getattr(self, name) and self.weights is not None:
+                found = "a modal filter reads all segments, and some are dead"
+                raise InputError("weights", found, f"leave weights out, which are those of orders, or {name}")
         if self.matrix is not None and self.transducers != "electrodes":
             raise InputError("matrix", "is not known to the paper's law", 'use transducers = "electrodes", or leave matrix out')
         if self.denominator == (0.0,):

@@ -12,6 +12,7 @@ cut, segment k of width alpha R has one voltage u_k and holds q_k, the mean of q
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -135,6 +136,8 @@ def _segments_at_station(solution: ModalSolution, shell: int, wall: SegmentedWal
     """Return the same of each segment, per length along the axis there."""
     cut, voltage = wall.segments, cut_voltage(solution, shell)
     assert voltage is not None
+    assert solution.along is not None
+    cut = replace(cut, dead=tuple(sorted({*cut.dead, *solution.along.dead})))
     strained, capacitance = _held_at_station(solution, shell, wall)
     width = 2.0 * np.pi * wall.radius * cut.covered / cut.count * solution.problem.scales.length
     return OfSegments(cut, width, voltage.voltage, *_charged(solution, cut.means(strained) + capacitance * voltage.voltage))

@@ -207,6 +207,10 @@ def _sampling(problem: Problem, settings: Settings, max_order: int) -> AxialSamp
     if belts is None:
         return AxialSampling(2.0 * np.pi * (_WAVES - 1) / highest, max_order, highest)
     require_seen(problem, belts, highest)
+    if belts.broken:
+        name = "dead_belts" if belts.dead_belts else "dead_electrodes"
+        told = f"leave {name} out for the margins of belts that are all alike; a run counts the poles with dead ones"
+        raise InputError(f"control.{name}", "leaves no two belts alike, and margins are those of classes of belts", told)
     return AxialSampling(2 * (_WAVES - 1) * belts.pitch, max_order, highest)
 
 

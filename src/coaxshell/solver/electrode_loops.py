@@ -74,21 +74,28 @@ class ElectrodeLoops:
 
     def voltages(self, readings: ComplexArray) -> ComplexArray:
         """Return u_q with dead segments at ground."""
+        return self.given(self._without_answers(readings))
+
+    def given(self, further: ComplexArray) -> ComplexArray:
+        """Return u_q under voltages of which no loop knows, (walls, patterns, nodes), with dead segments at ground."""
         inverse, dead = self.inverse, list(self.patterns.dead)
-        found = times(inverse, self._without_answers(readings))
+        found = times(inverse, further)
         if not dead:
             return found
         left = np.einsum("dq,iqk->kid", self.patterns.evaluate[dead], found)
-        further = -np.linalg.solve(self.between_dead(inverse), left.reshape(len(left), -1, 1)).reshape(left.shape)
-        return found + times(inverse, np.einsum("qd,kid->iqk", self.patterns.project[:, dead], further))
+        held = -np.linalg.solve(self.between_dead(inverse), left.reshape(len(left), -1, 1)).reshape(left.shape)
+        return found + times(inverse, np.einsum("qd,kid->iqk", self.patterns.project[:, dead], held))
 
     def between_dead(self, inverse: ComplexArray) -> ComplexArray:
         """Return the voltage on each dead segment per further volt on each, shape (nodes, n, n), n the dead segments of all walls."""
-        dead = list(self.patterns.dead)
-        held, amplitudes = self.patterns.evaluate[dead], self.patterns.project[:, dead]
-        found = np.einsum("dq,qkij,qe->kidje", held, inverse, amplitudes, optimize=True)
+        found = self.between(list(self.patterns.dead), inverse)
         size = found.shape[1] * found.shape[2]
         return np.asarray(found.reshape(len(found), size, size))
+
+    def between(self, points: list[int], inverse: ComplexArray) -> ComplexArray:
+        """Return the voltage on some points per further volt on each, (nodes, walls, points, walls, points), dead ones as if alive."""
+        held, amplitudes = self.patterns.evaluate[points], self.patterns.project[:, points]
+        return np.asarray(np.einsum("dq,qkij,qe->kidje", held, inverse, amplitudes, optimize=True))
 
     def factors(self) -> ComplexArray:
         """Return |1 - H K C_q|, (patterns, nodes), and where dead segments tie the patterns one row more, whose product is that of all.

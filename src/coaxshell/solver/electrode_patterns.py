@@ -185,4 +185,11 @@ def patterns_of(problem: Problem, shells: tuple[int, ...], orders: FloatArray, p
     cut = segments_of(problem, shells)
     if not cut:
         return OrderPatterns(orders, parities)
-    return CutPatterns(cut, orders, 2 if cut[0].dead else parities)
+    return CutPatterns(cut, orders, 2 if uneven(problem, shells) else parities)
+
+
+def uneven(problem: Problem, shells: tuple[int, ...]) -> bool:
+    """Return whether segments of some walls are dead, in every belt or in one, which excites both parities."""
+    cut = segments_of(problem, shells)
+    single = problem.belts is not None and bool(problem.belts.dead_electrodes)
+    return bool(cut) and (bool(cut[0].dead) or single)

@@ -315,7 +315,8 @@ def _belts(system: System, index: int, length: float) -> Belts | None:
     control = law_of(system, index)
     if control is None or control.segment_pitch is None:
         return None
-    return Belts(control.segment_pitch / length, (control.segment_length or control.segment_pitch) / length)
+    dead = (control.dead_belts or (), control.dead_electrodes or ())
+    return Belts(control.segment_pitch / length, (control.segment_length or control.segment_pitch) / length, *dead)
 
 
 def _solid(system: System, shell: Shell, index: int, scales: Scales, band: Band) -> ElasticWall:

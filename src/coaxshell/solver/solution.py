@@ -142,6 +142,8 @@ class AxialMotion(NamedTuple):
         Their derivatives by time, V per transit, where there is feedback; else none.
     stresses : dict of str to ndarray
         Those of elastic walls at their design depths, in rho_e c_e^2, by name; 0 of other walls, none where there is no elastic one.
+    dead : tuple of int
+        Segments that are dead in the belt over it alone.
     """
 
     u: FloatArray
@@ -152,6 +154,7 @@ class AxialMotion(NamedTuple):
     potentials: tuple[FloatArray, ...]
     potential_rates: tuple[FloatArray, ...] = ()
     stresses: dict[str, FloatArray] = {}  # noqa: RUF012 - nobody changes it
+    dead: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)

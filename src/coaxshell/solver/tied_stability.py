@@ -29,7 +29,7 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.texts import rounded
 from coaxshell.numerics.winding import turning
 from coaxshell.solver.electrode_loops import ElectrodeLoops, shares_of
-from coaxshell.solver.electrode_patterns import patterns_of
+from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import Contour, along_alone, fed_orders, few_of, remedy, turned
 from coaxshell.solver.tied import require_resolved
@@ -64,6 +64,15 @@ class Tied:
     def response(self, passive: Problem, controls: Problem, s: ComplexArray) -> VoltageResponse:
         """Return what voltages are read as at some nodes; ``passive`` is the problem ``controls`` without its feedback."""
         return VoltageResponse.at(passive, controls, self.modes, s)
+
+    @property
+    def whole(self) -> bool:
+        """Whether all patterns are one determinant, dead segments of all or not."""
+        return False
+
+    def factors(self, passive: Problem, controls: Problem, patterns: Patterns, s: ComplexArray) -> ComplexArray:
+        """Return the factors of the determinants over those without feedback, (rows, nodes): see :meth:`ElectrodeLoops.factors`."""
+        return ElectrodeLoops.of(controls, self.response(passive, controls, s), patterns, s).factors()
 
     @property
     def place(self) -> str:
@@ -142,8 +151,8 @@ def _factors(problem: Problem, passive: Problem, tied: Tied, nodes: ComplexArray
     patterns = patterns_of(problem, controlled(problem), tied.modes.orders, 1)
     for start in range(0, nodes.size, _BLOCK):
         s = nodes[start : start + _BLOCK]
-        found.append(ElectrodeLoops.of(problem, tied.response(passive, problem, s), patterns, s).factors())
-    return np.concatenate(found, axis=1), bool(patterns.dead)
+        found.append(tied.factors(passive, problem, patterns, s))
+    return np.concatenate(found, axis=1), tied.whole or bool(patterns.dead)
 
 
 def growing(problem: Problem, max_order: int, least: float, wavenumber: float = 0.0) -> PatternPoles | None:
@@ -282,7 +291,7 @@ def require_stable_tie(problem: Problem, tied: Tied, duration: float) -> float:
     fastest = fastest_growth_of(problem, tied, found, 1.0 / duration)
     turns = fastest.frequency if not fastest.frequency < 1e-9 * fastest.rate else 0.0  # rounding of a real pole
     hertz = turns / (2.0 * np.pi * problem.scales.time)
-    if laws[0].dead:
+    if laws[0].dead or tied.whole:
         where = f"{found.counts[0]:.0f} motions, of all orders together, grow without bound, the fastest"
     else:
         listed = ", ".join(f"{one:.0f}" for one in found.patterns[:5])

@@ -35,10 +35,38 @@ class Belts:
         p, from middle to middle, in a.
     length : float
         l, of each along the axis, in a.
+    dead_belts : tuple of int
+        Those that are held at ground whole.
+    dead_electrodes : tuple of (int, int)
+        Belt and segment of others that are.
     """
 
     pitch: float
     length: float
+    dead_belts: tuple[int, ...] = ()
+    dead_electrodes: tuple[tuple[int, int], ...] = ()
+
+    @property
+    def broken(self) -> bool:
+        """Whether single belts or electrodes of them are dead, which ties all classes of waves."""
+        return bool(self.dead_belts or self.dead_electrodes)
+
+    @property
+    def dead_ends(self) -> tuple[float, ...]:
+        """Where belts of which something is dead begin and end, in a, belt by belt."""
+        dead, half = sorted({*self.dead_belts, *(belt for belt, _ in self.dead_electrodes)}), 0.5 * self.length
+        return tuple(n * self.pitch + end for n in dead for end in (-half, half))
+
+    @property
+    def lopsided(self) -> bool:
+        """Whether what is dead is not even about z = 0."""
+        whole, single = set(self.dead_belts), set(self.dead_electrodes)
+        return whole != {-n for n in whole} or single != {(-n, segment) for n, segment in single}
+
+    def dead_at(self, z: float) -> tuple[int, ...]:
+        """Return the segments that are dead, alone, in the belt next to a place (in a)."""
+        nearest = round(z / self.pitch)
+        return tuple(segment for belt, segment in self.dead_electrodes if belt == nearest)
 
     @property
     def covered(self) -> float:
@@ -54,10 +82,10 @@ class Belts:
         return round(period / self.pitch)
 
     def over(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the number of the belt next to each place (in a), and 1 where it lies over it, else 0."""
+        """Return the number of the belt next to each place (in a), and 1 where it lies over it, else 0, as of dead belts."""
         nearest = np.rint(np.asarray(z) / self.pitch)
         beside = np.abs(z - nearest * self.pitch) > 0.5 * self.length * (1.0 + 1e-12)
-        return nearest, np.where(beside, 0.0, 1.0)
+        return nearest, np.where(beside | np.isin(nearest, self.dead_belts), 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.broken_belts import DeadElectrodes
 from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family, Named, WaveSet, wave_sets
 from coaxshell.solver.axial.forces import WallForces
@@ -92,7 +93,8 @@ def _families(problem: Problem, sampling: AxialSampling, stations: FloatArray, s
     phase = np.multiply.outer(stations, k)
     cosine, sine = np.cos(phase), np.sin(phase)
     voltages = [Family([], cosine, sine, np.where(k == 0.0, 1.0, 0.5), around, of_voltages=0)]
-    if any(family.origin for family in found):
+    assert problem.belts is not None
+    if any(family.origin for family in found) or problem.belts.lopsided:
         voltages.append(Family([], sine, -cosine, np.where(k == 0.0, 0.0, 0.5), around, of_voltages=1))
     return [*found, *voltages]
 
@@ -171,11 +173,23 @@ class BeltDriver:
 
     def voltages(self, number: int) -> ComplexArray:
         """Return U_c and U'_c of a class in orders, (1 or 2, walls, parities, M + 1, nodes), made once."""
-        if number not in self._voltages:
-            self._voltages[number] = self._solve(number)
+        if number in self._voltages:
+            return self._voltages[number]
+        if not self._classes.belts.broken:
+            loops, volts = self._healthy(number)
+            self._voltages[number] = self._in_orders(loops, volts)
+        else:  # which tie all classes
+            each = [self._healthy(one) for one in range(self._classes.classes)]
+            dead = DeadElectrodes(self._classes, each[0][0].patterns)
+            given = dead.voltages([loops for loops, _ in each], [volts for _, volts in each])
+            self._voltages = {one: self._in_orders(each[one][0], volts) for one, volts in enumerate(given)}
         return self._voltages[number]
 
-    def _solve(self, number: int) -> ComplexArray:
+    def _in_orders(self, loops: ElectrodeLoops, volts: ComplexArray) -> ComplexArray:
+        return np.stack([loops.patterns.in_orders(one) for one in volts])
+
+    def _healthy(self, number: int) -> tuple[ElectrodeLoops, ComplexArray]:
+        """Return the loops of a class and what they give with every belt alive, in patterns, (1 or 2, walls, patterns, nodes)."""
         s, walls = self._grid.nodes[self._block], len(self._shells)
         orders = np.arange(self._sampling.max_order + 1.0)
         patterns = self._patterns(orders)
@@ -190,7 +204,7 @@ class BeltDriver:
                     share = self._classes.read[parity, wave] * self._about_zero[place, parity, wave]
                     phi[parity, :, : seen.shape[1], :count] += share * seen
         loops = ElectrodeLoops.of(self._problem, VoltageResponse.of_faces(self._shells, read), patterns, s)
-        return np.stack([patterns.in_orders(loops.voltages(patterns.readings(one))) for one in phi])
+        return loops, np.stack([loops.voltages(patterns.readings(one)) for one in phi])
 
     @property
     def _along(self) -> int:

@@ -130,7 +130,7 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
     highest, length = settings.axial_modes or float(settings.modes), problem.scales.length
     fastest = fastest_wave(problem, highest)
     fronts = spherical_fronts(problem)
-    held = {one.z / length for one in problem.system.point_absorbers}
+    held = {one.z / length for one in problem.system.point_absorbers} | _reached(problem, settings, fronts, fastest)
     places = [*(z / length for z in settings.stations), *sorted(held)]
     fronts += [_from_point(problem, z, fronts, fastest) for z in sorted(held)]
     needed = least_period(settings.duration, places, fronts, fastest)
@@ -138,11 +138,14 @@ def axial_sampling(problem: Problem, settings: Settings) -> AxialSampling:
         needed = _of_belts(problem, settings, problem.belts, needed, fronts, fastest)
     given = None if settings.axial_period is None else settings.axial_period / length
     if given is not None and given < needed * (1.0 - 1e-12):
+        felt = "stations, or images of dead electrodes," if problem.belts is not None and problem.belts.broken else "stations"
         raise InputError(
             "axial_period",
-            f"{settings.axial_period:g} m is too short: images of the source, one period away, are felt at the stations within the run",
+            f"{settings.axial_period:g} m is too short: images of the source, one period away, are felt at the {felt} within the run",
             f"give at least {rounded_up(needed * length):g} m, or leave it out",
         )
+    if problem.belts is not None:
+        _require_in_period(problem.belts, given or needed, length)
     if not fronts and problem.belts is None:
         return AxialSampling(math.pi / highest, settings.modes, highest)  # the next wavenumber would be 2 k_max
     period = given or needed
@@ -171,6 +174,8 @@ def whole_length_sampling(problem: Problem, settings: Settings) -> AxialSampling
     highest, fronts = settings.axial_modes, spherical_fronts(problem)
     length = felt_length(settings.duration, fronts, fastest_wave(problem, highest))
     if problem.belts is not None:
+        if problem.belts.broken and settings.axial_period is not None:  # whose numbers are those of the period of the run
+            length = max(length, settings.axial_period / problem.scales.length / _BELTS)
         return AxialSampling(_whole_belts(problem.belts, _BELTS * length), settings.modes, highest)
     return AxialSampling(length or math.pi / highest, settings.modes, highest)
 
@@ -201,6 +206,18 @@ def _of_belts(problem: Problem, settings: Settings, belts: Belts, needed: float,
     return _whole_belts(belts, needed + 0.5 * felt_length(settings.duration, fronts, speed))
 
 
+def _require_in_period(belts: Belts, period: float, length: float) -> None:
+    """Raise InputError if a belt that is dead is none of an axial period (in a), half of whose belts are on either side of z = 0."""
+    most = belts.count(period) // 2
+    for name, numbers in (("dead_belts", belts.dead_belts), ("dead_electrodes", [belt for belt, _ in belts.dead_electrodes])):
+        far = [belt for belt in numbers if abs(belt) > most]
+        if far:
+            found = f"belt {far[0]} is outside the axial period of {belts.count(period)} belts, {period * length:.4g} m"
+            least = (2 * abs(far[0]) + 1) * belts.pitch * length
+            told = f"name belts from {-most} to {most}, or give axial_period={least:.10g} or more"
+            raise InputError(f"control.{name}", found, told)
+
+
 def require_seen(problem: Problem, belts: Belts, highest: float) -> None:
     """Raise InputError if axial wavenumbers (in 1/a) end before they see one of the electrodes that are cut along the axis."""
     length = problem.scales.length
@@ -218,8 +235,14 @@ def fastest_wave(problem: Problem, highest: float) -> float:
     return max(fluids + [wall.fastest_wave(highest) for wall in problem.shells])
 
 
+def _reached(problem: Problem, settings: Settings, fronts: list[Front], fastest: float) -> set[float]:
+    """Return the ends of dead belts that something reaches within a run, in a."""
+    ends = () if problem.belts is None else problem.belts.dead_ends
+    return {z for z in ends if _from_point(problem, z, fronts, fastest).delay < settings.duration}
+
+
 def _from_point(problem: Problem, z: float, fronts: list[Front], fastest: float) -> Front:
-    """Return what starts from a wall where an absorber holds it, from the first instant at which the wall can move there."""
+    """Return what starts from a wall that is held there, or where a dead belt ends, from the first instant at which it can move."""
     if len(fronts) < len(problem.sources):
         return Front(z, 0.0)  # other sources may reach it at once
     return Front(z, 0.0, min(front.delay + first_arrival(z - front.z, front.start, fastest) for front in fronts))

@@ -122,7 +122,9 @@ class SpatialSolution(JudgedLate):
         )
         given = control_voltage(self.problem, potentials, rates)
         stresses = {name: of[name] for name in SOLID_STRESSES if self.problem.two_faced}
-        motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates, stresses)
+        belts, z = self.problem.belts, self.stations[station] / self.problem.scales.length
+        dead = () if belts is None else belts.dead_at(float(z))
+        motion = AxialMotion(of["u"], of["w_z"], of["w_zz"], of["v_z"], of["u_z"], potentials, rates, stresses, dead)
         judged = "estimates" in vars(self)
         one = ModalSolution(
             self.problem,
@@ -135,22 +137,22 @@ class SpatialSolution(JudgedLate):
             self.timings,
             control_voltage=given,
             along=motion,
-            segment_voltage=None if given is None else on_segments(self.problem, given),
+            segment_voltage=None if given is None else on_segments(self.problem, given, motion.dead),
         )
         if not judged:
             one.judge_as(self)
         return one
 
 
-def on_segments(problem: Problem, given: FloatArray) -> FloatArray | None:
-    """Return the voltages of the segments of all shells, V, (shells, N, T), from those in orders; None where electrodes are whole."""
+def on_segments(problem: Problem, given: FloatArray, dead: tuple[int, ...] = ()) -> FloatArray | None:
+    """Return the voltages of the segments of all shells, (shells, N, T), from those in orders, 0 of *dead* ones; None of whole ones."""
     cut = segments_of(problem, controlled(problem))
     if not cut:
         return None
     found = np.zeros((len(problem.shells), cut[0].count, given.shape[-1]))
     for segments, i in zip(cut, controlled(problem), strict=True):
         found[i] = segments.values(given[i])
-        found[i, list(segments.dead)] = 0.0
+        found[i, [*segments.dead, *dead]] = 0.0
     return found
 
 

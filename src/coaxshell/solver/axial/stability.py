@@ -4,7 +4,7 @@ A wave (m, k) is a system by itself. Walls that stay passive with their feedback
 which is asked at a sample of wavenumbers; poles of those in doubt are counted at fewer, as they move with k as smoothly as with the order.
 So does the least |D/D0| on the contour, which a pole passes at 0: between wavenumbers where that is more than it changes none is counted.
 Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`), and where
-electrodes are cut along the axis a class of wavenumbers is (:mod:`coaxshell.solver.axial.belts`).
+electrodes are cut along the axis a class of wavenumbers is (:mod:`coaxshell.solver.axial.belts`), or all with single dead ones.
 
 Where one grows the fastest of them is told: each of the others is asked for poles beyond the fastest growth found so far alone.
 """
@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver.axial.belt_ties import ties_of_belts
+from coaxshell.solver.axial.belt_ties import tie_of_broken, ties_of_belts
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
@@ -55,6 +55,8 @@ def require_stable_waves(problem: Problem, sampling: AxialSampling, duration: fl
 
 def _ties(problem: Problem, sampling: AxialSampling) -> Sequence[Tied]:
     """Return what feedback ties: waves of some of the wavenumbers, or the classes of belts."""
+    if problem.belts is not None and problem.belts.broken:
+        return [tie_of_broken(problem, sampling)]
     if problem.belts is not None:
         return ties_of_belts(problem, sampling)
     return [Tied(Modes.up_to(modes.max_order, float(modes.wavenumber))) for modes in sample(sampling.modes)]

@@ -20,7 +20,7 @@ from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.electrode_loops import ElectrodeLoops
-from coaxshell.solver.electrode_patterns import patterns_of, segments_of
+from coaxshell.solver.electrode_patterns import patterns_of, uneven
 from coaxshell.solver.excitation import source_parities
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.voltage_response import VoltageResponse, controlled, of_all, sensed_of
@@ -39,8 +39,7 @@ class Driven(NamedTuple):
 
 def motion_parities(problem: Problem) -> int:
     """Return how many parities around the circle walls move in under their sources: both where dead segments tie them."""
-    dead = any(one.dead for one in segments_of(problem, controlled(problem)))
-    return 2 if dead else source_parities(problem)
+    return 2 if uneven(problem, controlled(problem)) else source_parities(problem)
 
 
 class OpenWave:

@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coaxshell.acoustics.basis import Modes
+from coaxshell.errors import InputError
 from coaxshell.model.absorbers import Absorber, linked_shells
 from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
@@ -46,13 +47,20 @@ class Properties(NamedTuple):
 
 
 def properties(absorbers: Sequence[Absorber], scales: Scales) -> Properties:
-    """Return the dimensionless properties of absorbers given in SI per metre of length."""
+    """Return the dimensionless properties of absorbers given in SI per metre of length; InputError if one is beyond double precision."""
     length, pressure, velocity = scales.length, scales.pressure, scales.velocity
     given = [(one.mass, one.damping, one.linear_stiffness, one.cubic_stiffness) for one in absorbers]
     mass, damping, linear, cubic = np.array(given, dtype=np.float64).reshape(-1, 4).T.copy()
-    mass = mass * velocity**2 / (pressure * length**2)
-    damping = damping * velocity / (pressure * length)
-    return Properties(mass, damping, linear / pressure, cubic * length**2 / pressure)
+    with np.errstate(over="ignore"):  # told below
+        mass = mass * velocity**2 / (pressure * length**2)
+        damping = damping * velocity / (pressure * length)
+        found = Properties(mass, damping, linear / pressure, cubic * length**2 / pressure)
+    for name, column, values in zip(
+        ("mass", "damping", "linear_stiffness", "cubic_stiffness"), zip(*given, strict=True), found, strict=False
+    ):
+        if not np.isfinite(values).all():
+            raise InputError(f"absorbers.{name}", f"{max(column):.3g} is more than can be computed with", "give a smaller one")
+    return found
 
 
 @dataclass(frozen=True)

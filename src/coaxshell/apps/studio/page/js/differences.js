@@ -3,7 +3,7 @@ import { join } from "./paths.js";
 import { show } from "./units.js";
 import { placeName } from "./words.js";
 
-const WHOLE = /(^|\.)(material|fluids\[\d+\]|time|pressure|numerator|denominator|weights|matrix|dead|proportional|derivative|shells|stations)$/; // told as one
+const WHOLE = /(^|\.)(material|fluids\[\d+\]|time|pressure|numerator|denominator|weights|matrix|dead|dead_belts|dead_electrodes|proportional|derivative|shells|stations)$/; // told as one
 let units = new Map(); // by the name of an entry: its unit on a line and, where there is another, at a point
 
 export function setUp(schema) {

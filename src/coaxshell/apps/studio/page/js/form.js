@@ -257,7 +257,8 @@ function union(schema, choices, path, name, value, bare) {
   if (numeric && choices.some((kind) => kind.type === "null")) return leaf({ ...numeric, optional: true, description: schema.description }, path, name, value);
   if (/^control.*\.shells$/.test(path)) return laws.shellBoxes(path, value, now().shells, change);
   if (/^control.*\.matrix$/.test(path)) return leaf({ type: "string", list: name, long: true, description: `${schema.description} Such as 1, 0.3; 0.6, 1.` }, path, name, (value ?? []).map((row) => row.join(", ")).join("; "));
-  if (/^control.*\.(weights|dead)$/.test(path)) return leaf({ type: "string", list: name, description: schema.description }, path, name, [value ?? []].flat().join(", "));
+  if (/^control.*\.dead_electrodes$/.test(path)) return leaf({ type: "string", list: name, description: `${schema.description} Such as 0, 3; -1, 5.` }, path, name, (value ?? []).map((pair) => pair.join(", ")).join("; "));
+  if (/^control.*\.(weights|dead|dead_belts)$/.test(path)) return leaf({ type: "string", list: name, description: schema.description }, path, name, [value ?? []].flat().join(", "));
   const id = `kind-${path}`;
   const none = Array.isArray(value) && !value.length && choices.some((kind) => kind.type === "array");
   const lacking = path === "control" && !Array.isArray(value) && laws.controllable(now().shells).length < 2; // one law each takes two shells that sense
@@ -357,7 +358,7 @@ function leaf(schema, path, name, value) {
 // One number alone is the highest order of a modal filter, none no filter; no dead segments are none.
 function listed(text, kind) {
   if (/dead|matrix/.test(kind) && text.trim() === "") return null;
-  if (kind === "matrix") return text.split(";").map((row) => row.split(",").map(numeral));
+  if (kind === "matrix" || kind === "dead_electrodes") return text.split(";").map((row) => row.split(",").map(numeral));
   if (kind === "weights" && !text.includes(",")) return text.trim() === "" ? null : numeral(text);
   return text.trim() === "all" ? "all" : text.split(",").map((part) => part.trim()).filter(Boolean).map((part) => (part !== "" && Number.isFinite(Number(part)) ? Number(part) : part));
 }

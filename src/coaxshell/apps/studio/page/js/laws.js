@@ -47,7 +47,7 @@ export function following(law, all, shells) {
 
 // All walls are cut alike: what one law says of its segments goes for all. Gives path and value of the change.
 export function together(path, value, control) {
-  const [, name] = path.match(/^control\[\d+\]\.(segments|dead|segment_pitch|segment_length)$/) ?? [];
+  const [, name] = path.match(/^control\[\d+\]\.(segments|dead|dead_belts|dead_electrodes|segment_pitch|segment_length)$/) ?? [];
   return name && Array.isArray(control) ? ["control", control.map((law) => ({ ...law, [name]: value }))] : [path, value];
 }
 
