@@ -26,7 +26,7 @@ for warning in free.warnings:
 # What the actuator can really do
 # -------------------------------
 #
-# The linear law asks for several times the field that the material stands. With saturation the voltage stops there.
+# The linear law asks for up to twice the field that the material stands. With saturation the voltage stops there.
 
 limited = simulate(active.with_overrides({"control.saturation": True}))
 voltage = limited.actuator_voltage("outer", angle=range(0, 360, 2))

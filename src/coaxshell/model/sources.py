@@ -161,7 +161,7 @@ class UnderwaterExplosion(_Placed, _Directed):
     bubble_pulses: Annotated[int, Field(ge=0, le=10), BeforeValidator(whole)] = 0
     """Pulses of the oscillating bubble that follow the shock wave; 0 leaves the bubble out. TNT, HBX-1 and PETN have the constants."""
     charge_depth: Length | None = None
-    """Depth of the charge below the surface (m), of which the bubble depends."""
+    """Depth of the charge below the surface (m), on which the bubble depends."""
 
     @model_validator(mode="after")
     def _bubble(self) -> Self:
