@@ -96,6 +96,7 @@ def relaxed_solution(solution: ModalSolution, factor: Relaxation | None, shell: 
 
     along = solution.along
     if along is not None:
-        moved = {name: of(getattr(along, name)) for name in ("u", "w_z", "w_zz", "v_z", "u_z")}
-        along = along._replace(**moved, potentials=tuple(of(x) for x in along.potentials), potential_rates=(), stresses=along.stresses)
+        u, w_z, w_zz, v_z, u_z = (of(field) for field in (along.u, along.w_z, along.w_zz, along.v_z, along.u_z))
+        potentials = tuple(of(x) for x in along.potentials)
+        along = along._replace(u=u, w_z=w_z, w_zz=w_zz, v_z=v_z, u_z=u_z, potentials=potentials, potential_rates=())
     return replace(solution, normal=of(solution.normal), tangential=of(solution.tangential), along=along)
