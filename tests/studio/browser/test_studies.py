@@ -18,8 +18,8 @@ ENTRIES = (
 )
 
 
-def start(page, **entries):
-    """Start a sweep and wait until it is listed, before what a test before has left; what that has come to is gone."""
+def start(page, *, refused=False, **entries):
+    """Start a sweep and wait until it is listed, unless it is refused, before those of earlier tests; what these have come to is gone."""
     page.locator("#tab-studies").click()
     page.get_by_role("radio", name="Sweep").check(force=True)
     page.locator("#sweep").wait_for()
@@ -27,7 +27,8 @@ def start(page, **entries):
     page.evaluate("document.getElementById('study-result').replaceChildren()")
     page.evaluate(ENTRIES, {name.rstrip("_"): str(value) for name, value in entries.items()})
     page.locator("#sweep button.main").click()
-    until(page, "before => document.getElementById('study-jobs').children.length > before", before)
+    if not refused:
+        until(page, "before => document.getElementById('study-jobs').children.length > before", before)
 
 
 def test_a_sweep_from_the_page_comes_to_the_library_s_numbers(linked_page):
@@ -97,6 +98,6 @@ def test_a_plot_drawn_while_another_tab_is_shown_fits(linked_page):
 
 def test_an_impossible_sweep_is_told_in_words(linked_page):
     page = linked_page()
-    start(page, path="absorbers.mass", from_=-5, to=10, count=3, scale="log", metric="inner.peak_stress")
+    start(page, path="absorbers.mass", from_=-5, to=10, count=3, scale="log", metric="inner.peak_stress", refused=True)
     page.locator("#sweep-problem").wait_for()
     assert page.locator("#sweep-problem").inner_text()
