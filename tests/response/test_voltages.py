@@ -9,8 +9,8 @@ import pytest
 
 from coaxshell.errors import InputError
 from coaxshell.model import PDControl
+from coaxshell.numerics.differences import time_derivative
 from coaxshell.response import Response
-from coaxshell.response.voltages import time_derivative
 from coaxshell.solver.solution import ModalSolution
 from coaxshell.structure.section import Section
 from coaxshell.structure.thin import potential_gain

@@ -81,6 +81,26 @@ def test_charges_grow_by_the_limit(held):
     assert 0.0 < held.spatial.estimates.march.max() < 0.05
 
 
+def test_a_run_ends_as_a_longer_one_goes_on(held):
+    short = cx.simulate(limited(), **{**RUN, "duration": 0.56}, axial_modes=12)  # with another period, which tells little
+    for station in (0, 1):
+        ended, longer = (of_segments(run.motions[station], 0) for run in (short, held))
+        size = np.abs(longer.voltage).max()
+        assert abs(longer.current[0, 28]) == 1.0
+        assert_allclose(ended.voltage, longer.voltage[:, :29], rtol=0, atol=0.04 * size)  # 0.19 where the lack is cut off
+        assert_allclose(ended.current, longer.current[:, :29], rtol=0, atol=0.35)
+
+
+@pytest.mark.parametrize("segments", [4, None])
+def test_a_limit_judges_what_is_asked_for_at_the_stations(segments):
+    run = cx.simulate(limited(stops=False, segments=segments), **{**RUN, "duration": 0.3})
+    (told,) = (text for text in run.warnings if "of its amplifier" in text)
+    most = max(one["outer"].current for one in run.control_effort().each)
+    assert told.startswith(f"outer shell: the control law asks for {most:.3f} A/m^2 (mean over ")
+    assert f"{most:.3g} times the 1.000 A/m^2 of its amplifier; " in told
+    assert ("set control.current_saturation = true" in told) == (segments is not None)  # whole electrodes know no limit of the current
+
+
 def test_energy_closes():
     cut = cx.simulate(limited(), **{**RUN, "duration": 0.24, "modes": 4, "stations": [0.0]})
     energy = cut.energy()

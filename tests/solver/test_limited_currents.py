@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.model import presets
+from coaxshell.response.electrical import of_segments
 from coaxshell.solver.electrode_patterns import CutPatterns
 from coaxshell.solver.limited_voltages import LimitedMarch
 from coaxshell.solver.recompute import spectra_of
@@ -66,6 +67,19 @@ def test_energy_closes_where_currents_are_cut(held, tmp_path):
     assert 0.0 < np.abs(held.solution.estimates.march).max() < 0.02
     kept = cx.load_response(held.save(tmp_path / "run.nc"))
     assert_allclose(spectra_of(kept.solution).voltage, held.solution.spectra.voltage, rtol=1e-9, atol=1e-12)
+
+
+def test_a_run_ends_as_a_longer_one_goes_on(held):
+    # The lack is not cut off while a limit holds: that jumped, and the band limit spread the jump over the last steps.
+    short = cx.simulate(limited(), **{**RUN, "duration": 0.55})
+    ended, longer = (of_segments(run.motion, 0) for run in (short, held))
+    volts, current = longer.voltage[:, :56], longer.current[:, :56]
+    assert abs(current[0, -1]) == 3.0
+    assert_allclose(ended.voltage, volts, rtol=0, atol=0.01 * np.abs(volts).max())  # 0.09 where it is
+    assert_allclose(ended.current, current, rtol=0, atol=0.2)  # 1.25 there
+    loud = PLANE.with_overrides({"control.segments": 6, "control.saturation": True, "control.field_limit": "5 V/mm"})
+    ended, longer = (of_segments(cx.simulate(loud, **{**RUN, "duration": end}).motion, 0).current for end in (0.6, 0.7))
+    assert_allclose(ended, longer[:, :61], rtol=0, atol=0.2 * np.abs(longer[:, :61]).max())  # 4.7 there
 
 
 def test_steps_converge(held):

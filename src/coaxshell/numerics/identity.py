@@ -10,7 +10,7 @@ from pathlib import Path
 
 from coaxshell._version import __version__
 
-NUMERICS_VERSION = 15
+NUMERICS_VERSION = 16
 """Raised whenever a change alters the numbers that a run gives, so that kept results of another version are told from ours."""
 
 NUMERICAL = ("errors.py", "limits.py", "numerics", "model", "structure", "acoustics", "solver", "response", "studies")

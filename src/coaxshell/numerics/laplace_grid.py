@@ -212,6 +212,33 @@ class LaplaceGrid:
         spectrum *= self.hat
         return spectrum
 
+    def continuation(self, histories: FloatArray) -> ComplexArray:
+        """Return the transforms of what follows histories after their last instant: value and slope, faded by cos^2 over half a run.
+
+        What acts after the end moves nothing before it; but what is cut off there jumps, and the band limit spreads half of the jump and
+        its overshoot over the last instants.
+        """
+        value, slope = self._beyond_end
+        rate = 3.0 * histories[..., -1:] - 4.0 * histories[..., -2:-1] + histories[..., -3:-2]
+        return np.asarray(histories[..., -1:] * value + rate / (2.0 * self.time_step) * slope)
+
+    def transform_continued(self, histories: FloatArray) -> ComplexArray:
+        """Return :meth:`transform_linear` of histories that go on after their last instant (:meth:`continuation`)."""
+        spectrum = self.transform_linear(histories)
+        spectrum += self.continuation(histories)
+        return spectrum
+
+    @cached_property
+    def _beyond_end(self) -> ComplexArray:
+        """The transforms of 1 and t - T after the last instant T, each faded over half a run and linear between the steps, (2, nodes)."""
+        count = max(1, min(self.samples - self.time.size, self.steps // 2))
+        later = np.arange(1, count + 1)
+        fade = np.cos(0.5 * np.pi * later / (count + 1)) ** 2
+        samples = np.zeros((2, self.samples))
+        samples[:, self.steps + later] = fade * np.stack([np.ones(count), self.time_step * later])
+        samples *= self.time_step * np.exp(-self.shift * self.time_step * np.arange(self.samples))
+        return np.asarray(self.hat * np.fft.rfft(samples, axis=-1))
+
 
 @lru_cache(maxsize=64)
 def _descent(nodes: int, roll_off: float) -> FloatArray:

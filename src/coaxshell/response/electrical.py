@@ -7,31 +7,35 @@ mid-surface; all actuators of a wall hang on one amplifier, so that their charge
 
 are the real and the apparent power per metre of length: what the amplifier gives, and what it must be built for. Where electrodes are
 cut, segment k of width alpha R has one voltage u_k and holds q_k, the mean of q under it, so that its amplifier gives alpha R u_k dq_k/dt.
+
+Where a limit holds at the end of a run q has a corner there, which transforms and differences of high order swing about: its last rate
+is that of a parabola through its last three values. No segment whose current stops at a limit is told to take more: single
+steps in which it begins to be held overshoot.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
+from coaxshell.model.gains import law_of, saturates
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.differences import time_derivative
 from coaxshell.response.energy.electrodes import on_segments
 from coaxshell.response.energy.motion import Motion
 from coaxshell.response.energy.solid_transducers import capacitances, strokes, volts_of
-from coaxshell.response.modal import amplitudes, orders
-from coaxshell.response.voltages import cut_voltage, given_voltage, time_derivative
+from coaxshell.response.voltages import cut_voltage, given_voltage
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.solver.recompute import marches, spectra_of
 from coaxshell.solver.solution import ModalSolution
+from coaxshell.solver.station_currents import strain_charge
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall
 from coaxshell.structure.segmented_wall import SegmentedWall
 from coaxshell.structure.segments import Segments
 from coaxshell.structure.solid_charges import free_capacity
-from coaxshell.structure.tied_wall import TiedWall
 
 
 class Electrical(NamedTuple):
@@ -100,7 +104,7 @@ def _segments_of_solids(motion: WallMotion, shell: int, wall: ElasticWall, cut: 
     charge = cut.means(charge - at_once * volts) + at_once * voltage
     voltage[list(cut.dead)] = 0.0
     metres = 2.0 * np.pi * wall.radius * cut.covered / cut.count * motion.solution.problem.scales.length
-    return OfSegments(cut, metres, *_inverted(motion, whole, voltage, charge))
+    return _stopped(motion.solution, shell, OfSegments(cut, metres, *_inverted(motion, whole, voltage, charge)))
 
 
 def _of_segments(motion: WallMotion, shell: int, wall: SegmentedWall) -> OfSegments:
@@ -114,7 +118,7 @@ def _of_segments(motion: WallMotion, shell: int, wall: SegmentedWall) -> OfSegme
     charge = sum((one + capacitance * voltage for one, (_, capacitance) in zip(strained, charges, strict=True)), np.zeros_like(voltage))
     voltage[0, list(wall.segments.dead)] = 0.0
     metres = float(width[0]) * motion.solution.problem.scales.length
-    return OfSegments(wall.segments, metres, *_inverted(motion, whole, voltage[0], charge[0]))
+    return _stopped(motion.solution, shell, OfSegments(wall.segments, metres, *_inverted(motion, whole, voltage[0], charge[0])))
 
 
 def _electrical(motion: WallMotion, shell: int) -> Electrical:
@@ -127,8 +131,9 @@ def _electrical(motion: WallMotion, shell: int) -> Electrical:
 
 def _at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> Electrical:
     """Return what actuators hold and take at a station along the axis, from the fields there; the current by differences."""
+    solution.need_every_instant("a current")
     voltage = given_voltage(solution, shell)
-    strained, capacitance = _held_at_station(solution, shell, wall)
+    strained, capacitance = strain_charge(solution, shell, wall)
     return Electrical(voltage, *_charged(solution, strained + capacitance * voltage))
 
 
@@ -138,26 +143,35 @@ def _segments_at_station(solution: ModalSolution, shell: int, wall: SegmentedWal
     assert voltage is not None
     assert solution.along is not None
     cut = replace(cut, dead=tuple(sorted({*cut.dead, *solution.along.dead})))
-    strained, capacitance = _held_at_station(solution, shell, wall)
-    width = 2.0 * np.pi * wall.radius * cut.covered / cut.count * solution.problem.scales.length
-    return OfSegments(cut, width, voltage.voltage, *_charged(solution, cut.means(strained) + capacitance * voltage.voltage))
-
-
-def _held_at_station(solution: ModalSolution, shell: int, wall: ElectrodedWall) -> tuple[FloatArray, float]:
-    """Return the charge of all actuators without that of their voltage, (parities, M + 1, T), and their capacitance, dimensionless."""
     solution.need_every_instant("a current")
-    if isinstance(wall, TiedWall) and wall.belts is not None:
-        assert solution.along is not None
-        return wall.capacitance * solution.along.potentials[wall.shown_potentials - 3][shell], wall.capacitance  # of the belt over it
-    held = wall.charges_of_fields(orders(solution))
-    return sum((amplitudes(solution, shell, moved) for moved, _ in held), np.zeros(1)), sum(capacitance for _, capacitance in held)
+    strained, capacitance = strain_charge(solution, shell, wall)
+    width = 2.0 * np.pi * wall.radius * cut.covered / cut.count * solution.problem.scales.length
+    charge, current = _charged(solution, cut.means(strained) + capacitance * voltage.voltage)
+    return _stopped(solution, shell, OfSegments(cut, width, voltage.voltage, charge, current))
 
 
 def _charged(solution: ModalSolution, charge: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a charge in C/m^2 and its current, A/m^2."""
     scales = solution.problem.scales
     charge = charge * (scales.pressure * scales.length)
-    return charge, time_derivative(charge, solution.settings.time_step * scales.time)
+    return charge, _ended(solution, charge, time_derivative(charge, solution.settings.time_step * scales.time))
+
+
+def _ended(solution: ModalSolution, charge: FloatArray, current: FloatArray) -> FloatArray:
+    """Return a current whose last value follows the charge's last three, where a limit may hold at the end."""
+    if saturates(solution.problem.system):
+        step = solution.settings.time_step * solution.problem.scales.time
+        before, last = np.moveaxis(np.diff(charge[..., -3:]), -1, 0) / step
+        current[..., -1] = 1.5 * last - 0.5 * before
+    return current
+
+
+def _stopped(solution: ModalSolution, shell: int, found: OfSegments) -> OfSegments:
+    """Return what segments take where their current stops at a limit."""
+    law = law_of(solution.problem.system, shell)
+    if law is None or not law.current_saturation or law.current_limit is None:
+        return found
+    return found._replace(current=np.clip(found.current, -law.current_limit, law.current_limit))
 
 
 def _whole(motion: WallMotion) -> Motion:
@@ -165,12 +179,13 @@ def _whole(motion: WallMotion) -> Motion:
     return Motion.of(solution, 1, spectra_of(solution, continued=True) if marches(solution) else motion.spectra)
 
 
-def _inverted(motion: WallMotion, whole: Motion, voltage: ComplexArray, charge: ComplexArray) -> Iterator[FloatArray]:
-    """Yield histories of voltage (V), charge (C/m^2) and current (A/m^2) from transforms of voltage and of the dimensionless charge."""
+def _inverted(motion: WallMotion, whole: Motion, voltage: ComplexArray, charge: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return histories of voltage (V), charge (C/m^2) and current (A/m^2) from transforms of voltage and of the dimensionless charge."""
     scales = motion.solution.problem.scales
     per_area, kept = scales.pressure * scales.length, slice(None, None, motion.solution.settings.refinement)
     current = charge * (whole.grid.nodes * (per_area / scales.time))
-    return (whole.grid.invert(x)[..., kept] for x in (voltage, charge * per_area, current))
+    volts, held, taken = (whole.grid.invert(x)[..., kept] for x in (voltage, charge * per_area, current))
+    return volts, held, _ended(motion.solution, held, taken)
 
 
 def power(motion: WallMotion, shell: int) -> Power:

@@ -13,10 +13,10 @@ from coaxshell.errors import InputError
 from coaxshell.model.control import PDControl
 from coaxshell.model.parts import laws_of
 from coaxshell.numerics.arrays import FloatArray
+from coaxshell.numerics.differences import time_derivative
 from coaxshell.numerics.scalars import plain
 from coaxshell.response import arguments
 from coaxshell.response.dataset import ARRAYS
-from coaxshell.response.voltages import time_derivative
 from coaxshell.solver.solution import ModalSolution
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from coaxshell.model.gains import law_of
 from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.circle import circle_angles
+from coaxshell.numerics.differences import time_derivative
 from coaxshell.numerics.renamed import renamed
 from coaxshell.response.modal import amplitudes, elastic_wall, orders, scaled, voltage_gain
 from coaxshell.response.peaks import Amplitudes, Peak, folded, made_once, peak_anywhere
@@ -50,25 +51,6 @@ def actuator_limit(solution: ModalSolution, shell: int) -> ActuatorLimit:
         raise InputError(f"shells[{shell}].layers", "there is no actuator", 'give a piezoelectric layer the role "actuator"')
     control = law_of(solution.problem.system, shell)
     return ActuatorLimit(voltage_limit(solution.problem, shell), control is not None and control.saturation)
-
-
-def time_derivative(values: FloatArray, step: float) -> FloatArray:
-    """Return the derivative along the last axis by differences of fourth order, one-sided at both ends.
-
-    Parameters
-    ----------
-    values : ndarray, shape (..., T)
-        T >= 5, which the settings guarantee.
-    step : float
-    """
-    f = values
-    rate = np.empty_like(f)
-    rate[..., 2:-2] = f[..., :-4] - 8 * f[..., 1:-3] + 8 * f[..., 3:-1] - f[..., 4:]
-    first, second = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]), np.array([-3.0, -10.0, 18.0, -6.0, 1.0])
-    rate[..., 0], rate[..., 1] = f[..., :5] @ first, f[..., :5] @ second
-    rate[..., -1], rate[..., -2] = -(f[..., :-6:-1] @ first), -(f[..., :-6:-1] @ second)
-    rate /= 12.0 * step
-    return rate
 
 
 def sensor_rate(solution: ModalSolution, shell: int) -> FloatArray:

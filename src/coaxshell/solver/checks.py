@@ -30,6 +30,7 @@ from coaxshell.solver.delay_margin import delay_margin
 from coaxshell.solver.electrodes import largest_demand
 from coaxshell.solver.interface.absorbers import InterfacePoints, PointsAlone
 from coaxshell.solver.interface.saturation import voltage_limit
+from coaxshell.solver.limited_voltages import may_stop
 from coaxshell.solver.rounds import rounds
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.settings import MAX_MODES, Settings
@@ -190,20 +191,14 @@ def actuators(*motions: ModalSolution) -> list[str]:
             remedy = "lower the gains to stay within what the actuator can do"
         else:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
-            see = "set control.saturation = true to see what it can really do, or " if _can_saturate(problem) else ""
+            see = (
+                "set control.saturation = true to see what it can really do, or "
+                if may_stop(problem) and not limits_currents(problem.system)
+                else ""
+            )
             remedy = f"{see}lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings
-
-
-def _can_saturate(problem: Problem) -> bool:
-    """Return whether a run with the same settings can stop voltages at their limit."""
-    if limits_currents(problem.system):
-        return False
-    if problem.dimensions == 2:
-        return True
-    inclined = any(getattr(geometry, "inclination", 0.0) for geometry in problem.sources)
-    return not (problem.belts or problem.system.absorber_list or problem.system.point_absorbers or inclined)
 
 
 def ideal_loop(problem: Problem, settings: Settings) -> list[str]:

@@ -169,7 +169,7 @@ def _cut(loops: TiedLoops, limits: _Voltages, points: InterfacePoints, forces: _
     pressure, free = points.project(forces.spectrum), _free(structure, points, forces)
     asked = loops.loops.asked(loops.patterns.readings(read_of(structure, free)))
     lack, iterations = limits.march.lack(limits.demanded(asked, free), progress)
-    lacking = grid.transform_linear(lack)
+    lacking = grid.transform_continued(lack)
     given = asked + times(loops.loops.inverse, lacking)
     voltage = of_all(structure.problem, loops.response, loops.patterns.in_orders(given))
     off = limits.off(given, lacking, lack, free)

@@ -36,7 +36,7 @@ from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.electrodes import segment_length, segment_mean
 from coaxshell.solver.faced_charges import charge_in_motion, charge_of, per_volt, per_volt_of_grid
 from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.limited_voltages import LimitedMarch, at_points, driven_alone, inverted_weights, require_fine
+from coaxshell.solver.limited_voltages import LimitedMarch, at_points, driven_alone, inverted_weights, may_stop, require_fine
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
@@ -82,6 +82,18 @@ def warnings_of_held(problem: Problem) -> list[str]:
     return [f"{shell_phrase(i, len(problem.shells))}: {_held(limit)}" for i, limit in limits if limit is not None]
 
 
+def warning_beyond(problem: Problem, shell: int, asked: float, length: float) -> list[str]:
+    """Return the warning of a shell whose amplifier is asked for a current (A/m^2, mean over a length in m) beyond its limit, if it is."""
+    law = law_of(problem.system, shell)
+    if law is None or law.current_limit is None or asked <= law.current_limit:
+        return []
+    told = f"the control law asks for {engineering(asked, 'A/m^2')} (mean over {engineering(length, 'm')} of the wall), "
+    told += f"{asked / law.current_limit:.3g} times the {engineering(law.current_limit, 'A/m^2')} of its amplifier; "
+    stops = law.segments is not None and not law.dead and not law.saturation and may_stop(problem)
+    see = "set control.current_saturation = true to see what it can really do, or " if stops else ""
+    return [f"{shell_phrase(shell, len(problem.shells))}: {told}{see}lower the gains"]
+
+
 def warnings_of(solved: SolvedSpectra) -> list[str]:
     """Return the warnings about amplifiers asked for more than their current, means over a segment."""
     problem, found = solved.problem, []
@@ -98,14 +110,9 @@ def warnings_of(solved: SolvedSpectra) -> list[str]:
         per_area = problem.scales.pressure * problem.scales.length / problem.scales.time
         asked = 0.0 if peak is None else abs(peak.value) * per_area
         if solved.iterations and law.current_saturation:
-            told = _held(law.current_limit)
-        elif asked > law.current_limit:
-            told = f"the control law asks for {engineering(asked, 'A/m^2')} (mean over {engineering(length, 'm')} of the wall), "
-            told += f"{asked / law.current_limit:.3g} times the {engineering(law.current_limit, 'A/m^2')} of its amplifier; "
-            told += "set control.current_saturation = true to see what it can really do, or lower the gains"
+            found.append(f"{shell_phrase(i, len(problem.shells))}: {_held(law.current_limit)}")
         else:
-            continue
-        found.append(f"{shell_phrase(i, len(problem.shells))}: {told}")
+            found += warning_beyond(problem, i, asked, length)
     return found
 
 
@@ -239,7 +246,7 @@ def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, 
     if not charges.reached(linear):
         return None
     lack, iterations = charges.march().lack(linear, progress)
-    given = free + times(loops.inverse, grid.transform_linear(lack))
+    given = free + times(loops.inverse, grid.transform_continued(lack))
     off = charges.off(grid.invert(charges.charged(given, sources)), lack)
     force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
     voltage = of_all(problem, response, patterns.in_orders(given))

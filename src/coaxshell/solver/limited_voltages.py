@@ -98,6 +98,14 @@ def limits_of(problem: Problem, patterns: Patterns) -> FloatArray:
     return limits
 
 
+def may_stop(problem: Problem) -> bool:
+    """Return whether voltages, or currents, can stop at a limit in runs of as many dimensions with the same sources and absorbers."""
+    if problem.dimensions == 2:
+        return True
+    inclined = any(getattr(geometry, "inclination", 0.0) for geometry in problem.sources)
+    return not (problem.belts or problem.system.absorber_list or problem.system.point_absorbers or inclined)
+
+
 def trapezoidal_nodes(grid: LaplaceGrid) -> tuple[ComplexArray, FloatArray]:
     """Return s = (2/dt)(1 - z)/(1 + z) at half a circle of z, and the growth of weights by the steps of it, (T,)."""
     steps = grid.steps + 1
@@ -160,7 +168,7 @@ def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress:
     require_fine(grid, march.weights)
     free = loops.asked(read)
     lack, iterations = march.lack(grid.invert(free), progress)
-    lacking = grid.transform_linear(lack)
+    lacking = grid.transform_continued(lack)
     given = free + times(loops.inverse, lacking)
     asked = given - lacking
     volts = at_points(patterns, grid.invert(asked))

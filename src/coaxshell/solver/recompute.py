@@ -14,7 +14,7 @@ import numpy as np
 
 from coaxshell.acoustics.basis import Modes
 from coaxshell.model.gains import limits_voltages
-from coaxshell.numerics.arrays import ComplexArray, FloatArray
+from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.actuation import pressure_given, saturated
 from coaxshell.solver.cost import require_room
@@ -96,22 +96,8 @@ def _of_forces(
         pressure = pressure + modal_pressure_of(structure, links, force)
     spectrum = grid.transform_linear(pressure) if laws is None else middles_transform(grid, pressure)
     if continued:
-        value, slope = _beyond_end(grid)
-        rate = 3.0 * pressure[..., -1:] - 4.0 * pressure[..., -2:-1] + pressure[..., -3:-2]
-        spectrum += pressure[..., -1:] * value + rate / (2.0 * grid.time_step) * slope
+        spectrum += grid.continuation(pressure)
     if structure.problem.tied:
         return under_forces(structure, links, spectrum, force, displacement, laws)
     moved = (structure if actuation is None else structure.open_loop).forced_spectra(spectrum)
     return SolvedSpectra(structure, links, *moved, force, displacement, actuation, laws=laws)
-
-
-def _beyond_end(grid: LaplaceGrid) -> tuple[ComplexArray, ComplexArray]:
-    """Return the transforms of 1 and t - T after the last instant T, each faded over half a run and linear between the steps."""
-    count = max(1, min(grid.samples - grid.time.size, grid.steps // 2))
-    later = np.arange(1, count + 1)
-    fade = np.cos(0.5 * np.pi * later / (count + 1)) ** 2
-    samples = np.zeros((2, grid.samples))
-    samples[:, grid.steps + later] = fade * np.stack([np.ones(count), grid.time_step * later])
-    samples *= grid.time_step * np.exp(-grid.shift * grid.time_step * np.arange(grid.samples))
-    value, slope = grid.hat * np.fft.rfft(samples, axis=-1)
-    return value, slope

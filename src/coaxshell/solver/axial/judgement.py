@@ -22,6 +22,7 @@ from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.limited_currents import warnings_of_held
 from coaxshell.solver.solution import KEPT_BYTES, Judgement
 from coaxshell.solver.spectral import Stopwatch
+from coaxshell.solver.station_currents import warnings_at
 
 
 class JudgedFrom(NamedTuple):
@@ -71,8 +72,8 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
         warnings += checks.swinging_on_laws(linked.laws.angle, given.grid.time_step, settings.refinement)
     if isinstance(linked, LimitedSolution):
         warnings += warnings_of_held(problem)
-    stations = range(len(settings.stations))
-    return Judgement(estimates, (*warnings, *checks.actuators(*(solution.at(i) for i in stations))))
+    stations = [solution.at(i) for i in range(len(settings.stations))]
+    return Judgement(estimates, (*warnings, *checks.actuators(*stations), *warnings_at(*stations)))
 
 
 def _softened(solution: SpatialSolution, given: JudgedFrom) -> Softened | None:

@@ -113,7 +113,7 @@ def solve_limited_waves(
     require_fine(grid, weights)
     step = SurfaceStep(surface, limits, weights[..., 0].copy())
     lack, iterations = _march(step, weights, asked, progress, moving=moving)
-    return LimitedSolution(problem, grid, lack_of(channels, grid.transform_linear(lack), origin), lack, iterations)
+    return LimitedSolution(problem, grid, lack_of(channels, grid.transform_continued(lack), origin), lack, iterations)
 
 
 def _surface(problem: Problem, grid: LaplaceGrid, channels: Channels, parities: int) -> tuple[WallSurface, FloatArray]:
