@@ -8,6 +8,7 @@ import pytest
 import coaxshell as cx
 from coaxshell.plotting import plot_wall_stress
 from coaxshell.response import stations
+from coaxshell.response.summary_text import depth_phrase
 from coaxshell.response.wall_stress import stress_through
 from coaxshell.solver.axial.through import stresses_through
 from coaxshell.studies.metrics import metrics_of
@@ -96,7 +97,8 @@ def test_margins_summary_metrics_and_window(layered):
     assert (whole.margin, whole.weakest) == (layers[1].margin, 1)
     summary = layered.summary()
     assert summary.shells[1].wall_stress == whole
-    assert "stress in the wall, outer" in str(summary)
+    assert "stress in the wall, outer: von Mises, in layer 1 (steel), " in str(summary)
+    assert f" {depth_phrase(whole.depth)}; strength" in str(summary)
     found = [metric(MetricSource(layered)) for metric in metrics_of(["outer.peak_wall_stress", "outer.strength_margin"], layered.system)]
     assert found == [pytest.approx(whole.value), pytest.approx(whole.margin)]
     early = layered.peak_stress("outer", window=(0.0, 0.4))

@@ -11,6 +11,7 @@ from coaxshell.model.places import shell_phrase
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.plotting.style import PAGE_WIDTH, literal, new_figure, style
 from coaxshell.response.arguments import time_window
+from coaxshell.response.components import component_words
 from coaxshell.response.wall_motion import WallMotion
 from coaxshell.response.wall_stress import WallPeak, stress_through
 
@@ -114,9 +115,9 @@ def _draw(drawn: MappedWall, ax: Axes, limit: float) -> Axes:
     ax.set_xlabel("angle from the source direction (degrees)")
     ax.set_ylabel("depth, outward (mm)")
     ax.grid(visible=False)
-    ax.set_title(f"{shell_phrase(drawn.shell, shells)}: largest {_words(peak.component)} stress over time")
+    ax.set_title(f"{shell_phrase(drawn.shell, shells)}: largest {component_words(peak.component)} stress over time")
     bar = ax.figure.colorbar(picture, ax=ax, pad=0.16)
-    bar.set_label(f"{_words(peak.component)} stress ({unit})")
+    bar.set_label(f"{component_words(peak.component)} stress ({unit})")
     bar.outline.set_linewidth(0.5)
     return ax
 
@@ -175,10 +176,6 @@ def draw_walls(maps: Mapping[str, Sequence[MappedWall]]) -> Figure:
                 if len(maps) > 1:
                     ax.set_xlabel("angle (degrees)")
     return figure
-
-
-def _words(component: str) -> str:
-    return {"von_mises": "von Mises", "radial_hoop": "radial-hoop shear"}.get(component, component)
 
 
 def described_layers(response: Response, shell: int) -> list[str]:

@@ -19,6 +19,13 @@ SIDES = {
     "radial_hoop": "tangential",
 }
 """What all stresses of walls go with around the shell."""
+WORDS = {"von_mises": "von Mises", "radial_hoop": "radial-hoop shear", "radial_axial": "radial-axial shear"}
+"""Names of components as a text says them, where that is another word."""
+
+
+def component_words(component: str) -> str:
+    """Return the name of a component of the stress as a text says it: "von Mises" for "von_mises"."""
+    return WORDS.get(component, component)
 
 
 def von_mises(hoop: FloatArray, axial: FloatArray, shear: FloatArray | float = 0.0) -> FloatArray:

@@ -7,6 +7,7 @@ from html import escape
 from typing import Any
 
 from coaxshell.model.prefixes import engineering
+from coaxshell.response.components import component_words
 from coaxshell.response.quantities import summary_rows
 
 _HEADING = ("shell", "largest magnitude", "value", "t [a/c_e]", "angle [deg]")
@@ -71,6 +72,13 @@ def when(peak: Mapping[str, Any]) -> str:
     return f"{peak['time']:.4g}" + (f", {GROWING}" if peak["growing"] else "")
 
 
+def depth_phrase(depth: float) -> str:
+    """Return in words how far (m) a place is outward from the middle of its wall: z would be taken for the axis in three dimensions."""
+    if abs(depth) < 1e-12:
+        return "at the middle of the wall"
+    return f"{engineering(abs(depth), 'm')} {'outside' if depth > 0 else 'inside'} its middle"
+
+
 def _absorbers(summary: Mapping[str, Any]) -> list[str]:
     found = (
         ("absorber_displacement", "largest absorber displacement", "m"),
@@ -86,9 +94,7 @@ def _walls(summary: Mapping[str, Any]) -> list[str]:
         peak = shell.get("wall_stress")
         if peak is None:
             continue
-        where = (
-            f"{peak['component'].replace('_', ' ')}, in layer {peak['layer']} ({peak['material']}) at z = {engineering(peak['depth'], 'm')}"
-        )
+        where = f"{component_words(peak['component'])}, in layer {peak['layer']} ({peak['material']}), {depth_phrase(peak['depth'])}"
         margin = "" if peak["margin"] is None else f"; strength of layer {peak['weakest']} over its stress: {peak['margin']:.3g}"
         found.append(f"stress in the wall, {shell['name']}: {where}{margin}")
     return found

@@ -11,9 +11,10 @@ from coaxshell.apps.report.parts import Columns, Item, Listed, Section, Subject,
 from coaxshell.errors import InputError
 from coaxshell.model.places import shell_name, shell_phrase
 from coaxshell.model.prefixes import against, engineering
+from coaxshell.response.components import component_words
 from coaxshell.response.quantities import summary_rows
 from coaxshell.response.run_comparison import comparison_rows
-from coaxshell.response.summary_text import when
+from coaxshell.response.summary_text import depth_phrase, when
 
 if TYPE_CHECKING:
     from coaxshell.plotting.wall_stress import MappedWall
@@ -54,8 +55,8 @@ def _findings(subject: Subject, summaries: Mapping[str, Any]) -> Iterator[str]:
             yield text + "."
             continue
         place = f"{peak.angle:.4g}°" + (f", z = {peak.station:g} m" if peak.station is not None else "")
-        text += f"; largest {_words(peak.component)} stress anywhere in the wall {engineering(peak.value, 'Pa')}"
-        text += f" (its layer of {peak.material}, {_depth(peak.depth)}, at {place}, t = {when(vars(peak))} transits)"
+        text += f"; largest {component_words(peak.component)} stress anywhere in the wall {engineering(peak.value, 'Pa')}"
+        text += f" (its layer of {peak.material}, {depth_phrase(peak.depth)}, at {place}, t = {when(vars(peak))} transits)"
         if len(peaks) > 1 and peaks[1] is not None:
             text += f", {_against(peak.value, peaks[1].value, others[0])}"
         if peak.margin is not None:
@@ -105,16 +106,6 @@ def _peak(response: Response, shell: int) -> WallPeak | None:
         return response.peak_stress(shell, usual_component(response.solution, shell))
     except InputError:
         return None
-
-
-def _depth(depth: float) -> str:
-    if abs(depth) < 1e-12:
-        return "at the middle of the wall"
-    return f"{engineering(abs(depth), 'm')} {'outside' if depth > 0 else 'inside'} its middle"
-
-
-def _words(component: str) -> str:
-    return component.replace("von_mises", "von Mises").replace("_", " ")
 
 
 def _peaks(response: Response, summary: Mapping[str, Any]) -> Table:
