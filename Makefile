@@ -19,7 +19,7 @@ MAKEFLAGS += -j2 --output-sync=target
 endif
 
 .DELETE_ON_ERROR:
-.PHONY: help demo chromium test test-all mutation lint types bench docs pictures clean
+.PHONY: help demo chromium test test-all mutation lint types bench docs pictures studies everything clean
 
 help:
 	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
@@ -30,7 +30,9 @@ help:
 	@echo "make types     static types"
 	@echo "make bench     time, memory and cost curves of the solver"
 	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
-	@echo "make pictures  the pictures of the pages anew, docs/figures: half an hour"
+	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: half an hour"
+	@echo "make studies   the searches and fronts of the design study anew, docs/studies/results: an hour"
+	@echo "make everything  every example, figure and table: demo, studies, pictures, the paper, bench and docs; two to three hours"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
 define ENVIRONMENT
@@ -133,6 +135,19 @@ docs: $(STAMP_DOCS) chromium
 pictures: export OPENBLAS_NUM_THREADS = 1
 pictures: $(STAMP) chromium
 	@$(BIN)/python docs/pictures
+
+# The systems, fronts and numbers that the design study's page tells, in the order in which one begins from another.
+studies: export OPENBLAS_NUM_THREADS = 1
+studies: $(STAMP)
+	@$(BIN)/python docs/studies
+
+# All that is shown anywhere, anew. Tables of time are printed, for they belong to the machine; the reproduction goes on in its folder.
+everything: demo
+	@$(MAKE) --no-print-directory studies
+	@$(MAKE) --no-print-directory pictures
+	@OPENBLAS_NUM_THREADS=1 $(BIN)/coaxshell reproduce --quiet
+	@$(MAKE) --no-print-directory bench
+	@$(MAKE) --no-print-directory docs
 
 clean:
 	@rm -rf $(VENV) $(DEMO) docs/built docs/generated docs/tutorials build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -102,4 +102,4 @@ def designs(target: Path) -> None:
             page.get_by_role("button", name="Keep this design").click()
         rest(page, "document.getElementById('designs-plot').data?.length === 3")
         page.wait_for_timeout(8000)  # until what was told of the last one is gone
-        photograph(page.locator("#designs"), target, height=1030)
+        photograph(page.locator("#designs"), target, height=1006)
