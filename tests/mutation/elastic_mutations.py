@@ -182,6 +182,14 @@ ELASTIC = (
         "solver/test_footprints.py",
     ),
     Mutation(
+        "orders-foretold",
+        "numerics/order_samples.py",
+        "<= FORETOLD *",
+        "<= 1e-3 *",
+        "few orders stand for all where they foretell others",
+        "numerics/test_order_samples.py",
+    ),
+    Mutation(
         "solid-electrodes-hoop",
         "structure/solid_transducers.py",
         "e[0, place] - e[0, RADIAL] * layer.stiffness[RADIAL][place] / c33",

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 
@@ -30,16 +31,23 @@ class Modes:
     sparse : bool
         Whether the orders are few of many: the recurrences of the Bessel functions then leave out what lies between (not to the last bit
         what they give at all orders).
+    whole : Modes or None
+        Modes in use of which these are some: what is kept of all of them need not be made again.
     """
 
     orders: FloatArray
     wavenumber: float | ComplexArray = 0.0
     sparse: bool = False
+    whole: Modes | None = None
 
     @classmethod
     def up_to(cls, max_order: int, wavenumber: float | ComplexArray = 0.0) -> Modes:
         """Return the orders 0, 1, ..., max_order."""
         return cls(np.arange(max_order + 1, dtype=np.float64), wavenumber)
+
+    def some(self, places: npt.NDArray[np.int64]) -> Modes:
+        """Return a sample of these modes, by ascending places among them."""
+        return Modes(self.orders[places], self.wavenumber, sparse=True, whole=self)
 
     @property
     def max_order(self) -> int:

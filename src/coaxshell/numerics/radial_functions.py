@@ -10,6 +10,7 @@ import numpy as np
 from coaxshell.numerics import bessel_ratios as br
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.bessel_samples import BesselSample, i_sample, k_sample
+from coaxshell.numerics.large_arguments import LargeArguments
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +26,8 @@ class RadialFunctions:
     orders : ndarray, shape (M,)
         Ascending circumferential orders to be kept, all or a sample; the recurrences run through all of them.
     sparse : bool
-        Whether they run by the functions themselves, of which the sample is kept, instead of by ratios of all orders.
+        Whether they run by the functions themselves, of which the sample is kept, instead of by ratios of all orders; where arguments are
+        large no recurrence runs at all.
     left : bool
         Whether arguments may lie to the left of the imaginary axis too, where a response rings (not of a sparse sample).
     """
@@ -71,8 +73,15 @@ class RadialFunctions:
         return k_sample(self.orders.astype(np.int64), self.argument)
 
     @cached_property
+    def large(self) -> LargeArguments | None:
+        """The functions by their expansions, of a sample of orders where the arguments are large."""
+        return LargeArguments.of(self.orders, self.argument) if self.sparse else None
+
+    @cached_property
     def i_slope(self) -> ComplexArray:
         """kr I_m'(kr)/I_m(kr) = m + kr R_m (DLMF 10.29.2), shape (M, n)."""
+        if self.large is not None:
+            return self.large.i_slope
         slope = self.argument * (self.i_sample.ratio if self.sparse else self.keep(self.i_ratios))
         slope += self.orders[:, None]
         return slope
@@ -80,6 +89,8 @@ class RadialFunctions:
     @cached_property
     def k_slope(self) -> ComplexArray:
         """kr K_m'(kr)/K_m(kr) = m - kr S_m (DLMF 10.29.2), shape (M, n)."""
+        if self.large is not None:
+            return self.large.k_slope
         slope = self.argument * (self.k_sample.ratio if self.sparse else self.keep(self.k_ratios))
         return np.subtract(self.orders[:, None], slope, out=slope)
 
@@ -97,6 +108,8 @@ class RadialFunctions:
 def i_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
     """Return I_m(kr)/I_m(k r1), the smaller of two radii over the larger, shape (M, n)."""
     za, zb = inner.argument, outer.argument
+    if inner.large is not None and outer.large is not None:
+        return inner.large.i_over(outer.large)
     if inner.sparse:
         return np.asarray(inner.i_sample.over(outer.i_sample) * np.exp(za.real - zb.real), dtype=np.complex128)
     return inner.keep(br.i_across(inner.i_ratios, outer.i_ratios, za, zb, left=inner.left))
@@ -105,6 +118,8 @@ def i_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
 def k_across(inner: RadialFunctions, outer: RadialFunctions) -> ComplexArray:
     """Return K_m(kr)/K_m(k r1), the larger of two radii over the smaller, shape (M, n)."""
     za, zb = inner.argument, outer.argument
+    if inner.large is not None and outer.large is not None:
+        return outer.large.k_over(inner.large)
     if inner.sparse:
         return np.asarray(outer.k_sample.over(inner.k_sample) * np.exp(za - zb), dtype=np.complex128)
     return inner.keep(br.k_across(inner.k_ratios, outer.k_ratios, za, zb, left=inner.left))

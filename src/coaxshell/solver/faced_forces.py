@@ -16,12 +16,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from coaxshell.acoustics.basis import Modes
-from coaxshell.numerics.arrays import ComplexArray, FloatArray, real_product
+from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.convolution import summed_weights
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.cascade import CascadeSystem, FaceMotion
+from coaxshell.solver.compliance_sums import ComplianceSums, Pair
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solid_spectra import FacedSystem, SolidSpectra, WallAnswer, band, make_shapes, nothing_moves
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
@@ -112,10 +113,6 @@ def moved_by_forces(
     return found
 
 
-Pair = tuple[int, int]
-"""Numbers of a surface and of one that is pressed on."""
-
-
 def march_weights(problem: Problem, grid: LaplaceGrid, modes: Modes, progress: Progress | None = None) -> FloatArray:
     """Return the step weights of modal pressures in the velocities of the surfaces, shape (surfaces, surfaces, orders, T).
 
@@ -147,13 +144,13 @@ def combined_march_weights(
     """
     fine, s = trapezoidal_nodes(grid)
     problem = problem.resolving(band(fine))
-    make_shapes(problem, modes, s)
+    sums = ComplianceSums(problem, modes, shares, surface_compliance)
+    sums.prepare(s)
     found = {pair: np.empty((len(rows), s.size), np.complex128) for pair, rows in shares.items()}
 
     def work(block: slice) -> None:
-        values = surface_compliance(problem, s[block], modes)
-        for pair, rows in shares.items():
-            found[pair][:, block] = real_product(rows, values[pair])
+        for pair, values in sums.at(s[block]).items():
+            found[pair][:, block] = values
 
     with one_blas_thread():
         map_node_blocks(node_blocks(fine, modes.count), work, progress, "frequencies")

@@ -84,6 +84,18 @@ class OrdersBasis:
         ]
 
 
+def some_of(whole: Sequence[OrdersBasis], orders: FloatArray) -> tuple[OrdersBasis, ...]:
+    """Return the shapes of some ascending orders of those of a basis."""
+    found, start = [], 0
+    for part in whole:
+        own = np.isin(part.orders, orders)
+        members = slice(start, start + int(np.count_nonzero(own)))
+        if members.stop > start:
+            found.append(OrdersBasis(members, part.orders[own], part.wavenumber, part.mesh, part.squares[own], part.shapes[own]))
+        start = members.stop
+    return tuple(found)
+
+
 def displacements(wavenumber: float) -> int:
     """Return how many displacements take part: two where nothing changes along the axis, where u_z goes by itself, else three."""
     return 2 if wavenumber == 0.0 else 3

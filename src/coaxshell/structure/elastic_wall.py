@@ -21,7 +21,7 @@ from coaxshell.model.layers import serves
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
 from coaxshell.structure.belts import Belts
-from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis
+from coaxshell.structure.elastic_basis import OrdersBasis, elastic_basis, some_of
 from coaxshell.structure.elastic_depth import DISPLACEMENTS, STRESSES, Shown, all_by_shapes, several_by_shapes, shown_by_shapes
 from coaxshell.structure.inclined_drive import InclinedAnswer, inclined_under_volts
 from coaxshell.structure.layered_wall import LayeredWall
@@ -110,7 +110,7 @@ class ElasticWall(LayeredWall):
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes, made once as long as these are in use; nobody may change them."""
-        found = self._shapes(modes)
+        found = self._shapes(modes) if modes.whole is None else some_of(self.basis(modes.whole), modes.orders)
         if self.silent is None:
             return found
         slow = (part.squares < np.interp(part.orders, *self.silent)[:, None] ** 2 for part in found)

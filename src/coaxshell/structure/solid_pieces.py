@@ -24,7 +24,7 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes, kept_with_modes
-from coaxshell.structure.elastic_basis import OrdersBasis, displacements, elastic_basis
+from coaxshell.structure.elastic_basis import OrdersBasis, displacements, elastic_basis, some_of
 from coaxshell.structure.elastic_depth import STRESSES, Shown, field_stress, shown_by_shapes
 from coaxshell.structure.elastic_mesh import degree
 from coaxshell.structure.losses import Relaxation
@@ -108,6 +108,8 @@ class Piece:
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes where its factor is 1."""
+        if modes.whole is not None:
+            return some_of(self.basis(modes.whole), modes.orders)
         return elastic_basis(self.layers, modes, self.frequency, self.meshed_as)
 
 
