@@ -30,7 +30,7 @@ help:
 	@echo "make types     static types"
 	@echo "make bench     time, memory and cost curves of the solver"
 	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
-	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: half an hour"
+	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: an hour and a half"
 	@echo "make studies   the searches and fronts of the design study anew, docs/studies/results: an hour"
 	@echo "make everything  every example, figure and table: demo, studies, pictures, the paper, bench and docs; two to three hours"
 	@echo "make clean     remove the environment, caches and the demonstration"

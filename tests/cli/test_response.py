@@ -28,7 +28,13 @@ def test_table_document_csv_and_pictures(run):
     assert [curve["place"] for curve in found["curves"]] == ["0°", "90°"]
     np.testing.assert_allclose([curve["magnitude"] for curve in found["curves"]], np.abs(stress.values.T))
     assert run("response", "bare", *FEW, *asked, "--resonances", "2", "-o", "stress.png").code == 0
-    assert run("response", "bare", *FEW, "--angle", "0:360:73", "--polar", "-o", "polar.png").code == 0
+    around = run("response", "bare", *FEW, "--angle", "0:360:73", "--polar", "-o", "polar.png").out
+    echo = cx.frequency_response("bare", [100.0, 400.0], angle=np.linspace(0.0, 360.0, 73), modes=8).values
+    assert "at (deg)" in around
+    for hertz, levels in zip((100, 400), echo, strict=True):  # a row a frequency, not one an angle
+        row = next(line.split() for line in around.splitlines() if line.startswith(f"{hertz} Hz"))
+        assert [row[2], row[4]] == [f"{levels.max():.4g}", f"{levels.min():.4g}"]
+    assert len(around.splitlines()) == 8
     assert Path("stress.png").read_bytes().startswith(b"\x89PNG")
     assert Path("polar.png").read_bytes().startswith(b"\x89PNG")
     told = run("response", "bare", *FEW, "--quantity", "receptance", "--line-force", "inner,30", "--compare", "bare")

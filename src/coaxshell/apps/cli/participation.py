@@ -80,6 +80,7 @@ def _document(found: xr.Dataset) -> dict[str, Any]:
 
 def _print(found: xr.Dataset) -> None:
     from coaxshell.model.prefixes import engineering
+    from coaxshell.numerics.texts import percent
     from coaxshell.response.participation import largest_modes
     from coaxshell.response.summary_text import aligned
 
@@ -91,12 +92,12 @@ def _print(found: xr.Dataset) -> None:
     rows = [("order", "frequency", "damping ratio", "carries", "share")]
     for row in largest_modes(found, least=_LEAST):
         shown = (engineering(row.frequency, "Hz"), f"{row.damping_ratio:.3f}", engineering(row.contribution, unit))
-        rows.append((str(row.order), *shown, f"{100.0 * row.share:.1f} %"))
+        rows.append((str(row.order), *shown, percent(row.share)))
     for line in aligned(rows, left=1):
         echo(line)
     echo("")
     orders = found["order"].values.tolist()
-    shares = [f"m = {m}: {100.0 * share:.1f} %" for m, share in zip(orders, found["order_share"].values.tolist(), strict=True)]
-    echo("orders: " + ", ".join(shares) + f"; all others {100.0 * told['other_orders']:.1f} %")
-    rest = 100.0 * float(found["rest_share"].sum())
-    echo(f"carried by no mode of these orders (memory of the fluids, translation, higher modes): {rest:.1f} %")
+    shares = [f"m = {m}: {percent(share)}" for m, share in zip(orders, found["order_share"].values.tolist(), strict=True)]
+    echo("orders: " + ", ".join(shares) + f"; all others {percent(told['other_orders'])}")
+    rest = percent(float(found["rest_share"].sum()))
+    echo(f"carried by no mode of these orders (memory of the fluids, translation, higher modes): {rest}")

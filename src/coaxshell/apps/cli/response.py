@@ -65,7 +65,8 @@ def response(
     """Compute what a system does at given frequencies.
 
     Echo, sound that gets in, motion and stress per incident pressure, without any time step: with feedback, losses and linear absorbers.
-    Prints the largest and the smallest value of each curve; a .csv holds all of them, a figure draws them.
+    Prints the largest and the smallest value of each curve, over the angle where there are many; a .csv holds all of them, a figure draws
+    them.
     """
     from coaxshell.apps.cli.documents import frequency_document
     from coaxshell.apps.cli.running import load_system
@@ -95,7 +96,7 @@ def response(
     if as_json:
         print_document(frequency_document(found))
     else:
-        _print(found)
+        _print(found, polar=polar)
     if target is not None:
         echo(f"wrote {target}", aside=as_json)
 
@@ -134,25 +135,27 @@ def _write(found: Mapping[str, xr.DataArray], systems: list[System], target: Pat
         write_figure(figure_frequency_response(found if len(found) > 1 else first, marks), target, "--output")
 
 
-def _print(found: Mapping[str, xr.DataArray]) -> None:
-    """Print the largest and the smallest value of each curve, with their frequencies."""
+def _print(found: Mapping[str, xr.DataArray], *, polar: bool) -> None:
+    """Print the largest and the smallest value of each curve, with their frequencies; over the angle those of each frequency."""
     import numpy as np
 
     from coaxshell.response.frequency.curves import curves_of
     from coaxshell.response.summary_text import aligned
 
     for name, answer in found.items():
-        unit, hertz = answer.attrs["units"], answer["frequency"].to_numpy()
+        unit, hertz, angles = answer.attrs["units"], answer["frequency"].to_numpy(), answer.sizes.get("angle", 1)
+        over = "angle" if angles > 1 and (polar or angles > max(_SHOWN, hertz.size)) else "frequency"
+        at, where = answer[over].to_numpy(), f"at ({'Hz' if over == 'frequency' else 'deg'})"
         shown = "" if unit == "1" else f" ({unit})"
         echo(f"{answer.attrs['long_name']}{shown} of {name}, {hertz.size} frequencies, orders up to {answer.attrs['modes']}\n")
-        rows = [["", "largest", "at (Hz)", "smallest", "at (Hz)"]]
-        for curve in curves_of(answer):
+        rows = [["", "largest", where, "smallest", where]]
+        for curve in curves_of(answer, over):
             values = np.abs(curve.values) if np.iscomplexobj(curve.values) else np.asarray(curve.values)
             if not np.any(np.isfinite(values)):
                 rows.append([curve.label, "no fluid there", "", "", ""])
                 continue
             top, low = int(np.nanargmax(values)), int(np.nanargmin(values))
-            rows.append([curve.label, f"{values[top]:.4g}", f"{hertz[top]:.4g}", f"{values[low]:.4g}", f"{hertz[low]:.4g}"])
+            rows.append([curve.label, f"{values[top]:.4g}", f"{at[top]:.4g}", f"{values[low]:.4g}", f"{at[low]:.4g}"])
         for line in aligned(rows[: _SHOWN + 1]):
             echo(line)
         if len(rows) > _SHOWN + 1:

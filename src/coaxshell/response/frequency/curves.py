@@ -1,4 +1,4 @@
-"""The curves over the frequency that an answer consists of, with their names: for figures, tables and files."""
+"""The curves over the frequency, or over the angle, that an answer consists of, with their names: for figures, tables and files."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from coaxshell.numerics.late import xarray as xr
 
 
 class Curve(NamedTuple):
-    """Values over the frequency at one place; the label tells which, empty where there is only one."""
+    """Values over the frequency at one place, or over the angle at one frequency; the label tells which, empty where there is only one."""
 
     label: str
     values: ComplexArray | FloatArray
 
 
-def curves_of(found: xr.DataArray) -> Iterator[Curve]:
-    """Yield the curves of an answer at several frequencies, in the order of its dims.
+def curves_of(found: xr.DataArray, over: str = "frequency") -> Iterator[Curve]:
+    """Yield the curves of an answer at several frequencies, over these or over another of its dims, in the order of the others.
 
     Raises
     ------
@@ -31,13 +31,15 @@ def curves_of(found: xr.DataArray) -> Iterator[Curve]:
     """
     if not isinstance(found, xr.DataArray) or "frequency" not in found.dims:
         raise InputError("found", f"{shown(type(found).__name__)} has no frequencies to draw", "ask for a list of them")
-    rest = [str(dim) for dim in found.dims if dim != "frequency"]
-    ordered = found.transpose(*rest, "frequency").to_numpy()
+    rest = [str(dim) for dim in found.dims if dim != over]
+    ordered = found.transpose(*rest, over).to_numpy()
     for index in product(*(range(found.sizes[dim]) for dim in rest)):
         yield Curve(", ".join(_place(found, dim, i) for dim, i in zip(rest, index, strict=True)), ordered[index])
 
 
 def _place(found: xr.DataArray, dim: str, index: int) -> str:
+    if dim == "frequency":
+        return f"{float(found['frequency'][index]):g} Hz"
     if dim == "angle":
         return f"{float(found['angle'][index]):g}°"
     if dim == "radius":

@@ -22,6 +22,7 @@ from coaxshell.model.units import to_si
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.late import xarray as xr
 from coaxshell.numerics.progress import Progress
+from coaxshell.numerics.texts import percent
 from coaxshell.response import Response, simulate
 from coaxshell.response.effort import ControlEffort
 from coaxshell.response.margins import stability_margins
@@ -147,14 +148,14 @@ class ControlDesign:
         rows: list[tuple[str, ...]] = [("shell", "core without", "with", "change", "ceramics without", "with")]
         for one in self.reductions:
             core, ceramic = ([engineering(x, "Pa") for x in pair] for pair in (one.core, one.ceramic))
-            rows.append((one.shell, *core, f"{-100.0 * one.share:+.0f} %", *ceramic))
+            rows.append((one.shell, *core, percent(-one.share, 0, signed=True), *ceramic))
         return aligned(rows)
 
     def _others(self) -> list[str]:
         rows = [("kind", "stress left", "gain margin", "phase margin", "limits")]
         for one in self.alternatives:
             gain, phase = (f"{x:.3g}" if math.isfinite(x) else "any" for x in (one.gain_margin, one.phase_margin))
-            rows.append((one.kind, f"{100.0 * one.left:.0f} %" if one.kept else "", gain, phase, "kept" if one.kept else "not kept"))
+            rows.append((one.kind, percent(one.left, 0) if one.kept else "", gain, phase, "kept" if one.kept else "not kept"))
         return aligned(rows)
 
 

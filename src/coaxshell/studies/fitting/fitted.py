@@ -17,6 +17,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.files import replacing_folder
 from coaxshell.numerics.identity import numerics
 from coaxshell.numerics.late import xarray as xr
+from coaxshell.numerics.texts import percent
 from coaxshell.response.summary_text import aligned
 from coaxshell.solver.settings import Settings
 
@@ -206,9 +207,7 @@ class Fit:
         records: list[tuple[str, ...]] = [("record", "what", "where", "samples", "left (RMS)", "explained")]
         for each in self.records:
             left = f"{each.residual:.3g} {each.unit}".removesuffix(" 1")
-            records.append(
-                (each.name, each.quantity.replace("_", " "), each.place, str(each.time.size), left, f"{100 * each.explained:.2f} %")
-            )
+            records.append((each.name, each.quantity.replace("_", " "), each.place, str(each.time.size), left, percent(each.explained, 2)))
         lines = [*aligned(rows, left=1), "", *aligned(records, left=3)]
         lines += (
             ["", *(f"not identified: {text}" for text in self.unidentified), *self.remarks] if self.unidentified or self.remarks else []

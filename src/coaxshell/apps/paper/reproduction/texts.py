@@ -11,6 +11,7 @@ from coaxshell.apps.paper.known_runs import CORRECTED
 from coaxshell.apps.paper.reproduction.plan import VARIANTS
 from coaxshell.apps.paper.reproduction.results import VERDICTS, DrawnFigure, Estimate, Results
 from coaxshell.apps.paper.slips import SLIPS
+from coaxshell.numerics.texts import percent
 from coaxshell.solver.settings import Settings
 
 TITLE = "coaxshell: the paper, computed again"
@@ -107,7 +108,7 @@ def _effect(effect: Mapping[str, Any]) -> tuple[str, ...]:
     if slipped is None:
         told = f"grows as exp({grows['rate']:.3g} t)" if grows else "grows"
         return name, effect["case"], _mega(plain["inner"]), "unbounded", told, _mega(plain["outer"]), "unbounded", ""
-    change = f"{100 * (slipped['inner'] / plain['inner'] - 1):+.1f} %"
+    change = percent(slipped["inner"] / plain["inner"] - 1, signed=True)
     moved = f"{100 * effect['inner_change']:.3g} %"
     return (
         name,
