@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 
 import coaxshell as cx
 from coaxshell.plotting import plot_convergence, plot_parallel
+from coaxshell.plotting.units import raised
 
 
 def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
@@ -24,7 +25,11 @@ def test_name_range_and_unit_of_a_variable_stand_on_lines_of_their_own():
     plot_parallel(found, ax)
     labels = [label.get_text() for label in ax.get_xticklabels()]
     plt.close(figure)
-    assert labels == ["absorbers.\ndamping\n1e+04 to 1e+08\nN s/m²", "absorbers.\ncount\n5 to 10"]
+    assert labels == ["absorbers.\ndamping\n10⁴ to 10⁸\nN s/m²", "absorbers.\ncount\n5 to 10"]
+
+
+def test_powers_of_ten_are_raised():
+    assert [raised(value) for value in (350.0, 2.5e-7, 1e10, -1e-6, 0.02)] == ["350", "2.5×10⁻⁷", "10¹⁰", "-10⁻⁶", "0.02"]
 
 
 def test_designs_are_drawn_where_none_keeps_the_limits():

@@ -9,7 +9,7 @@ import numpy as np
 
 from coaxshell.errors import InputError
 from coaxshell.plotting.style import COLOURS, PAGE_WIDTH, literal, new_figure, style
-from coaxshell.plotting.units import pretty, scale
+from coaxshell.plotting.units import pretty, raised, scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -150,7 +150,7 @@ def _legend(ax: Axes) -> None:
 
 def _interval(variable: Variable) -> str:
     """Return name and range of a variable on lines short enough to stand beside others."""
-    ends = [str(variable.levels[i]) for i in (0, -1)] if variable.levels else [f"{variable.low:.3g}", f"{variable.high:.3g}"]
+    ends = [str(variable.levels[i]) for i in (0, -1)] if variable.levels else [raised(variable.low), raised(variable.high)]
     place, _, name = variable.name.rpartition(".")
     lines = [f"{place}." if place else "", name, f"{ends[0]} to {ends[1]}", "" if variable.units == "1" else pretty(variable.units)]
     return "\n".join(literal(line) for line in lines if line)

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from coaxshell.model.prefixes import PREFIXES, exponent_of
 
 _PREFIXED = ("Pa", "m", "V", "V/m", "N/m", "J/m", "s")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def pretty(unit: str) -> str:
@@ -15,6 +16,15 @@ def pretty(unit: str) -> str:
     for plain, drawn in (("*", " "), ("^2", "²"), ("^3", "³"), ("^4", "⁴")):
         unit = unit.replace(plain, drawn)
     return unit
+
+
+def raised(value: float) -> str:
+    """Return a number with three digits and raised powers of ten: ``10⁴``, ``2.5×10⁻⁷``, ``350``."""
+    mantissa, _, exponent = f"{value:.3g}".partition("e")
+    if not exponent:
+        return mantissa
+    power = "10" + str(int(exponent)).translate(_RAISED)
+    return {"1": power, "-1": f"-{power}"}.get(mantissa, f"{mantissa}×{power}")
 
 
 def scale(values: npt.ArrayLike, unit: str) -> tuple[float, str]:
