@@ -152,7 +152,7 @@ def test_feedback_along_the_axis_runs_ahead_of_the_front_as_foreseen() -> None:
     source, slowness = cx.PlaneWave(pulse=PULSE.replace(centre=2.0 * TIME), inclination=8.0), float(np.sin(np.radians(8.0)))
     damped = {theory: system("electrodes", theory, source=source) for theory in ("thin", "elastic")}
     damped = {theory: one.replace(control=one.control.replace(derivative=8.0)) for theory, one in damped.items()}
-    rates = [least_rate(dimensionless(one, 3).resolving(60.0), slowness, 150.0) for one in damped.values()]
+    rates = [least_rate(dimensionless(one, 3).resolving(60.0), slowness, 150.0, 1) for one in damped.values()]
     assert rates[1] == pytest.approx(rates[0], rel=1e-2)
     response = cx.simulate(damped["thin"], **{**RUN, "duration": 0.3})
     stress = np.asarray(response.stress("inner", 0.0, depth="inner", component="axial")).reshape(-1)
@@ -161,6 +161,36 @@ def test_feedback_along_the_axis_runs_ahead_of_the_front_as_foreseen() -> None:
     with pytest.raises(cx.InputError, match=r"source\.inclination: 8 degrees: feedback damps the walls along the axis"):
         cx.simulate(system("electrodes", control=damped["thin"].control.replace(derivative=30.0)), **{**RUN, "duration": 0.1})
     assert not any("damps" in one for one in run("paper").warnings)
+
+
+MATRIX = cx.Feedback(numerator=[8.0 * TIME, 0.0], transducers="electrodes", matrix=[[1.0, 0.3], [0.6, 1.0]])
+SEGMENTS = cx.PDControl(proportional=0.0, derivative=8.0, transducers="electrodes", segments=2)
+
+
+@pytest.mark.parametrize(("control", "order"), [(SEGMENTS, 2), (MATRIX, 1)], ids=["segments", "matrix"])
+def test_loops_that_tie_run_ahead_too(control, order) -> None:
+    source, slowness = cx.PlaneWave(pulse=PULSE.replace(centre=2.0 * TIME), inclination=8.0), float(np.sin(np.radians(8.0)))
+    thin = system("electrodes", "thin", source=source, control=control)
+    rate = least_rate(dimensionless(thin, 3), slowness, 150.0, order)
+    response = cx.simulate(thin, **{**RUN, "duration": 0.3, "modes": order})
+    stress = np.asarray(response.stress("inner", 0.0, depth="inner", component="axial")).reshape(-1)
+    assert np.log(stress[8] / stress[0]) / 0.16 == pytest.approx(rate, rel=0.01)
+    assert any("stretches them ahead of the front" in one for one in response.warnings)
+    mixed = thin.replace(shells=[thin.shells[0], thin.shells[1].replace(theory="elastic", wetted="mid-surface")])
+    assert least_rate(dimensionless(mixed, 3).resolving(60.0), slowness, 150.0, order) == pytest.approx(rate, rel=0.06)
+
+
+def test_what_grows_along_the_axis_alone_is_refused() -> None:
+    """A loop of order 0 with a delay: the section is stable, waves as short as the trace has them are not, in a run or at a frequency."""
+    late = cx.Feedback(numerator=[2.0 * TIME, 0.0], transducers="electrodes", delay=2.5e-6, weights=0)
+    across, inclined = (system("electrodes", "thin", inclination=each, control=late) for each in (0.0, 8.0))
+    few = {**RUN, "duration": 0.1, "modes": 20}
+    assert cx.simulate(across, **few).spatial.fields["w"].any()
+    told = r"control\.delay: 2\.500 µs makes the closed loop unstable: order 0 at the axial wavenumber 20/a grows without bound"
+    with pytest.raises(cx.InputError, match=told):
+        cx.simulate(inclined, **few)
+    with pytest.raises(cx.InputError, match=r"unstable: order 0 at the axial wavenumber"):
+        cx.frequency_response(inclined, ["40 kHz"], "stress", shell="inner", dimensions=3, modes=20)
 
 
 @pytest.mark.slow

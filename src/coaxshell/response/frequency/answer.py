@@ -26,6 +26,7 @@ from coaxshell.response.frequency import along, fields, remarks, walls
 from coaxshell.response.frequency.request import WIDTHS, Asked, SteadyOptions, asked, frequencies
 from coaxshell.response.frequency.steady import Steady, Tail
 from coaxshell.response.labels import angle_coordinate
+from coaxshell.solver.axial.stability import require_stable_waves, up_to
 from coaxshell.solver.dimensions import require_loops_alone, require_two_dimensions
 from coaxshell.solver.excitation import SourceGroup, source_groups, source_parities
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -154,7 +155,11 @@ def _solve(system: System, frequency: Any, what: Asked, modes: int | None, dimen
     problem = _directed(_problem(system, dimensions, band), what).resolving(float(omega.max()))
     orders = _orders(problem, what, float(omega.max()), modes)
     _require(problem, what)
-    require_stable(problem, orders, _WATCHED)
+    highest = _highest_along(problem, float(omega.max()))
+    if highest:
+        require_stable_waves(problem, up_to(orders, highest), _WATCHED)
+    else:
+        require_stable(problem, orders, _WATCHED)
     tail, told = Tail(), list[str]()
     if what.force is None and dimensions == 3 and any(isinstance(one, SphericalFrontGeometry) for one in problem.sources):
         values, apart = along.of_point_source(problem, omega, orders, what, tail, _read)
@@ -196,6 +201,15 @@ def _directed(problem: Problem, what: Asked) -> Problem:
     if what.quantity.kind == "target" and geometry.distance is not None:
         geometry = PlaneGeometry(head=problem.head)
     return replace(problem, system=problem.system.replace(source=source), sources=(geometry,))
+
+
+def _highest_along(problem: Problem, omega: float) -> float:
+    """Return the highest axial wavenumber of waves that travel: of the trace of inclined waves, of point sources along the axis itself."""
+    if problem.dimensions == 2:
+        return 0.0
+    traces = (abs(one.trace_slowness) for one in problem.sources if isinstance(one, PlaneGeometry))
+    points = any(isinstance(one, SphericalFrontGeometry) for one in problem.sources)
+    return omega * max(*traces, float(points), 0.0)
 
 
 def _trace(problem: Problem, dimensions: int) -> float:

@@ -66,7 +66,7 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
     )
     stopwatch.lap("error estimates")
     warnings = [*given.notes, *checks.before(problem, given.grid, solution.sampling.max_order)]
-    warnings += moved_ahead(problem, given.grid)
+    warnings += moved_ahead(problem, given.grid, solution.sampling.max_order)
     warnings += checks.after(problem, estimates, settings) + checks.ideal_loop(problem, settings)
     if linked is not None and linked.laws is not None:
         warnings += checks.swinging_on_laws(linked.laws.angle, given.grid.time_step, settings.refinement)

@@ -28,7 +28,7 @@ from coaxshell.solver.axial.mode_choice import resolved_sampling
 from coaxshell.solver.axial.points import point_layout
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
-from coaxshell.solver.axial.stability import require_stable_waves
+from coaxshell.solver.axial.stability import require_stable_waves, waves_asked
 from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
 from coaxshell.solver.scaling import Problem, dimensionless
@@ -76,8 +76,8 @@ def solve_spatial(
     period = sampling.period * problem.scales.length
     settings = replace(settings, modes=sampling.max_order, axial_modes=sampling.highest, axial_period=period)
     require_room(problem, settings)
-    require_stable_waves(problem, sampling, settings.duration)
-    require_fronts_before_feedback(problem, grid)
+    require_stable_waves(problem, waves_asked(problem, grid, sampling), settings.duration)
+    require_fronts_before_feedback(problem, grid, sampling.max_order)
     stopwatch.lap("stability of the feedback")
     run = {"scenario": system.canonical(), "resolution": settings.arguments()}
     with nullcontext(on_threads) if workplace is None else workplace.mapping(run) as on:

@@ -6,6 +6,9 @@ So does the least |D/D0| on the contour, which a pole passes at 0: between waven
 Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`), and where
 electrodes are cut along the axis a class of wavenumbers is (:mod:`coaxshell.solver.axial.belts`), or all with single dead ones.
 
+Inclined plane waves have wavenumbers up to k = omega sin alpha of the highest frequency, and answers at frequencies those that travel:
+these are asked at real k, as a wall that grows there does so whatever k Laplace's s has in the run.
+
 Where one grows the fastest of them is told: each of the others is asked for poles beyond the fastest growth found so far alone.
 """
 
@@ -16,6 +19,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from coaxshell.acoustics.sources import PlaneGeometry
+from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.belt_ties import tie_of_broken, ties_of_belts
 from coaxshell.solver.axial.sampling import AxialSampling
@@ -27,6 +32,18 @@ from coaxshell.solver.tied_stability import Tied, growth_of_tie_beyond, nearest_
 
 ASKED, CHECKED, FIRST = 24, 16, 5
 """Wavenumbers at which passivity is asked, and at which poles are counted: at most, and where no zero can be near at least."""
+
+
+def waves_asked(problem: Problem, grid: LaplaceGrid, sampling: AxialSampling) -> AxialSampling:
+    """Return the waves whose stability a run asks for: its own, or as far as the trace of an inclined wave has them, to k_max at most."""
+    slowness = [abs(one.trace_slowness) for one in problem.sources if isinstance(one, PlaneGeometry)]
+    highest = min(max(slowness, default=0.0) * grid.nyquist, sampling.highest)
+    return up_to(sampling.max_order, highest) if highest and len(sampling.modes) == 1 else sampling
+
+
+def up_to(max_order: int, highest: float) -> AxialSampling:
+    """Return a sample of all waves up to an order and an axial wavenumber above 0."""
+    return AxialSampling(2.0 * np.pi * (CHECKED - 1) / highest, max_order, highest)
 
 
 def require_stable_waves(problem: Problem, sampling: AxialSampling, duration: float) -> None:
