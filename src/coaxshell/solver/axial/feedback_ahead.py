@@ -33,9 +33,9 @@ from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import determinant_ratio, fed_orders
 from coaxshell.solver.tied_stability import determinants
 from coaxshell.structure.elastic_wall import ElasticWall
-from coaxshell.structure.electroded_wall import ElectrodedWall
+from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
 from coaxshell.structure.shell_model import ShellModel
-from coaxshell.structure.tied_wall import LossyElectrodedWall, TiedWall
+from coaxshell.structure.tied_wall import TiedWall
 
 _LOWEST = 2
 """Orders that are looked at: those that bend least are stretched furthest ahead."""
