@@ -10,6 +10,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.interface import march as marching
 from coaxshell.solver.interface.absorbers import absorber_set
+from coaxshell.solver.interface.clipping import SHARE, settle
 from coaxshell.solver.interface.saturation import CircleSums, LimitedVoltages, circle, voltage_limit
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
@@ -39,6 +40,22 @@ def test_sums_by_symmetries_are_the_same(parities: int) -> None:
     np.testing.assert_allclose(fast.at_points(given), values, rtol=0, atol=1e-13)
     cut = np.clip(values, -1.0, 1.0)
     np.testing.assert_allclose(fast.amplitudes(cut.copy()).reshape(2, -1), cut @ project.T, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("parities", [1, 2])
+def test_points_that_cannot_be_held_are_left_out(parities: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """u = known + Z clip(u) in the end, by fewer looks at all points than iterations."""
+    circle_sums, own = CircleSums(12, parities), -np.linspace(0.5, 6.0, 12)
+    known = np.random.default_rng(5).normal(size=(2, parities, 12)) * 0.6
+    known[:, 1:, 0] = 0.0
+    looks, whole = [], circle_sums.at_points
+    monkeypatch.setattr(circle_sums, "at_points", lambda volts: looks.append(1) or whole(volts))
+    found = settle(circle_sums, lambda rest: (known + own * rest) / (1.0 - SHARE * own), np.zeros_like(known))
+    volts = whole(found.asked)
+    assert 0 < np.count_nonzero(np.abs(volts) > 1.0) < 0.3 * volts.size
+    np.testing.assert_allclose(found.given, circle_sums.amplitudes(np.clip(volts, -1.0, 1.0)), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(found.asked, known + own * found.given, rtol=0, atol=1e-9)
+    assert len(looks) < 0.7 * found.iterations
 
 
 @pytest.mark.parametrize(("angle", "limit", "gains"), [(0.0, 1e5, 1.0), (30.0, 1e4, 1.0), (0.0, 1e5, 300.0)])

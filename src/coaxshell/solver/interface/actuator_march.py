@@ -16,7 +16,8 @@ at most the part
 
 of an error, which is below 1 wherever feedback damps (-Z has a positive real part) and grows with the length of a block: the longest
 block whose rho is small enough is taken, and where none is, the march of any interface (:mod:`coaxshell.solver.interface.march`) is
-left to do it, by Newton's method. Steps that no limit touches are linear, sigma = 1, and solved at once.
+left to do it, by Newton's method. Steps that no limit touches are linear, sigma = 1, and solved at once; elsewhere only points that may
+be held are summed over (:mod:`coaxshell.solver.interface.clipping`).
 """
 
 from __future__ import annotations
@@ -30,18 +31,16 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet
+from coaxshell.solver.interface.clipping import SHARE, Settled, settle
 from coaxshell.solver.interface.plan import Actuators, actuators_of, demanded_voltage
 from coaxshell.solver.interface.saturation import CircleSums
 from coaxshell.solver.structure_spectra import StructureSpectra
 
-_SHARE = 0.55
-"""sigma: 1/2 contracts most where all is held, 1 where nothing is."""
 _LENGTHS = (8, 4, 2, 1)
-_SLOWEST = 0.95
+_SLOWEST = 0.97
 """The largest rho of a block: longer ones take more iterations than they save."""
-_TOLERANCE = 1e-10
-"""Error of the voltages, in units of the limits, or of the largest of them."""
-_MOST_ITERATIONS = 1000
+_SLOWEST_ALONE = 0.95
+"""The same of a single step, beyond which Newton's method is faster."""
 
 
 class ActuatorHistories(NamedTuple):
@@ -85,9 +84,9 @@ class ActuatorPlan:
         for length in _LENGTHS:
             toeplitz = _toeplitz(weights, length)
             own = np.eye(toeplitz.shape[-1])
-            known = np.asarray(np.linalg.inv(own - _SHARE * toeplitz), dtype=np.float64)
+            known = np.asarray(np.linalg.inv(own - SHARE * toeplitz), dtype=np.float64)
             given = known @ toeplitz
-            if _SHARE * float(np.linalg.norm(given, 2, axis=(1, 2)).max()) <= _SLOWEST:
+            if SHARE * float(np.linalg.norm(given, 2, axis=(1, 2)).max()) <= (_SLOWEST if length > 1 else _SLOWEST_ALONE):
                 linear = np.asarray(np.linalg.inv(own - toeplitz), dtype=np.float64)
                 return cls(weights, length, linear, known, given, circle)
         return None
@@ -113,26 +112,17 @@ class ActuatorPlan:
                 progress(block.stop / steps, "interface march")
         return ActuatorHistories(found, saturated, iterations)
 
-    def _block(self, excited: FloatArray, before: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+    def _block(self, excited: FloatArray, before: FloatArray) -> Settled:
         """Return the voltages asked for and given in a block, (controlled, steps, parities, M + 1), and the iterations, 0 below all limits.
 
         ``excited`` is b, ``before`` what the block before asked for: its last step is where the iteration begins.
         """
         linear = _times(self.linear, excited)
         if np.abs(linear).sum(axis=(-2, -1)).max() <= 1.0 or np.abs(self.circle.at_points(linear)).max() <= 1.0:
-            return linear, linear, 0
-        known, asked = _times(self.known, excited), np.broadcast_to(before[:, -1:], before.shape)
-        for iteration in range(1, _MOST_ITERATIONS + 1):  # noqa: B007 - how many there were is told
-            volts = self.circle.at_points(asked)
-            rest = np.clip(volts, -1.0, 1.0)
-            volts *= _SHARE
-            rest -= volts
-            after = _times(self.given, self.circle.amplitudes(rest))
-            after += known
-            change, asked = float(np.abs(after - asked).max()), after
-            if change <= _TOLERANCE * max(1.0, float(np.abs(asked).max())):
-                break
-        return asked, self.circle.amplitudes(np.clip(self.circle.at_points(asked), -1.0, 1.0)), iteration
+            return Settled(linear, linear, 0)
+        known = _times(self.known, excited)
+        start = np.broadcast_to(before[:, -1:], before.shape)
+        return settle(self.circle, lambda rest: _times(self.given, rest) + known, start)
 
 
 def march_actuators(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> ActuatorHistories | None:
@@ -151,17 +141,17 @@ def march_actuators(structure: StructureSpectra, absorbers: AbsorberSet, progres
 
 
 def _toeplitz(weights: FloatArray, length: int) -> FloatArray:
-    """Return Z of a block, shape (M + 1, controlled * length, controlled * length), from weights (controlled, controlled, M + 1, T)."""
-    walls, _, modes, steps = weights.shape
-    head = np.zeros((walls, walls, modes, length))
+    """Return what convolves a block, shape (M + 1, rows * length, columns * length), with weights (rows, columns, M + 1, T)."""
+    rows, columns, modes, steps = weights.shape
+    head = np.zeros((rows, columns, modes, length))
     head[..., : min(length, steps)] = weights[..., :length]
     lags = np.arange(length)[:, None] - np.arange(length)
     blocks = np.where(lags >= 0, head[..., np.maximum(lags, 0)], 0.0)
-    return np.ascontiguousarray(blocks.transpose(2, 0, 3, 1, 4).reshape(modes, walls * length, walls * length))
+    return np.ascontiguousarray(blocks.transpose(2, 0, 3, 1, 4).reshape(modes, rows * length, columns * length))
 
 
-def _times(matrices: FloatArray, voltages: FloatArray) -> FloatArray:
-    """Return matrices (M + 1, controlled * length, controlled * length) times voltages (controlled, length, parities, M + 1)."""
-    walls, length, parities, modes = voltages.shape
-    columns = np.ascontiguousarray(voltages.reshape(walls * length, parities, modes).transpose(2, 0, 1))
-    return np.ascontiguousarray((matrices @ columns).transpose(1, 2, 0)).reshape(voltages.shape)
+def _times(matrices: FloatArray, modal: FloatArray) -> FloatArray:
+    """Return matrices (M + 1, rows * length, columns * length) times modal values (columns, length, parities, M + 1)."""
+    groups, length, parities, modes = modal.shape
+    columns = np.ascontiguousarray(modal.reshape(groups * length, parities, modes).transpose(2, 0, 1))
+    return np.ascontiguousarray((matrices @ columns).transpose(1, 2, 0)).reshape(-1, length, parities, modes)

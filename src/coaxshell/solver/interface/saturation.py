@@ -14,6 +14,7 @@ system (1 + B) delta = clip - u_known, whose set is corrected until it reproduce
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.acoustics.operators import all_orders
 from coaxshell.model.gains import law_of
@@ -61,6 +62,12 @@ class CircleSums:
         parts = [slice(p * modes + odd, (p + 1) * modes, 2) for p in range(parities) for odd in (0, 1)]
         self._evaluate = [np.ascontiguousarray(evaluate[:quarter, part].T) for part in parts]
         self._project = [np.ascontiguousarray(project[part, :quarter].T) for part in parts]
+        self._whole = evaluate, np.ascontiguousarray(project.T)
+
+    def some(self, points: npt.NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:
+        """Return the matrices from amplitudes in a row (parities * (M + 1)) to values at some points, and back for values 0 elsewhere."""
+        evaluate, project = self._whole
+        return np.ascontiguousarray(evaluate[points].T), project[points]
 
     def at_points(self, amplitudes: FloatArray) -> FloatArray:
         """Return values at the points, shape (..., points), of amplitudes (..., parities, M + 1)."""
