@@ -19,7 +19,7 @@ MAKEFLAGS += -j2 --output-sync=target
 endif
 
 .DELETE_ON_ERROR:
-.PHONY: help demo chromium test test-all mutation lint types bench docs pictures studies everything clean
+.PHONY: help demo chromium test test-all mutation lint types bench docs pictures studies tables everything clean
 
 help:
 	@echo "make demo      hybrid against bare: reductions, stresses, pressure fields and a film into $(DEMO)/"
@@ -32,7 +32,8 @@ help:
 	@echo "make docs      the documentation as a site, docs/built/index.html, every example run"
 	@echo "make pictures  the pictures of the pages anew, docs/figures, and the pages kept with their numbers: an hour and a half"
 	@echo "make studies   the searches and fronts of the design study anew, docs/studies/results: an hour"
-	@echo "make everything  every example, figure and table: demo, studies, pictures, the paper, bench and docs; two to three hours"
+	@echo "make tables    what the package holds of slice and sphere, thin and exact walls, and the table of slips: a third of an hour"
+	@echo "make everything  every example, figure and table: demo, tables, studies, pictures, the paper, bench, docs; three hours"
 	@echo "make clean     remove the environment, caches and the demonstration"
 
 define ENVIRONMENT
@@ -141,8 +142,18 @@ studies: export OPENBLAS_NUM_THREADS = 1
 studies: $(STAMP)
 	@$(BIN)/python docs/studies
 
+# What took too long for every build and is read by the package itself; the table of docs/slips.md is printed.
+tables: export OPENBLAS_NUM_THREADS = 1
+tables: $(STAMP)
+	@$(BIN)/python -m coaxshell.apps.paper.sphere map
+	@$(BIN)/python -m coaxshell.apps.paper.sphere claims
+	@$(BIN)/python -m coaxshell.apps.paper.thickness map
+	@$(BIN)/python -m coaxshell.apps.paper.thickness claims
+	@$(BIN)/python -m coaxshell.apps.paper.slips
+
 # All that is shown anywhere, anew. Tables of time are printed, for they belong to the machine; the reproduction goes on in its folder.
 everything: demo
+	@$(MAKE) --no-print-directory tables
 	@$(MAKE) --no-print-directory studies
 	@$(MAKE) --no-print-directory pictures
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/coaxshell reproduce --quiet
