@@ -114,7 +114,7 @@ lint: $(STAMP)
 types: $(STAMP) | $(if $(filter docs,$(MAKECMDGOALS)),$(STAMP_DOCS))
 	@$(BIN)/mypy
 
-bench: $(STAMP)
+bench: $(STAMP) chromium
 	@$(BIN)/python -m benchmarks
 
 $(STAMP_DOCS): $(STAMP)

@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
-from benchmarks import absorbers, bare, engines, gradient, limits, march, retuned, scaling, spatial, spatial_growth, spectra, studio, sweep
+from benchmarks import (
+    absorbers,
+    bare,
+    engines,
+    gradient,
+    limits,
+    march,
+    retuned,
+    scaling,
+    spatial,
+    spatial_cluster,
+    spatial_growth,
+    spectra,
+    studio,
+    studio_page,
+    sweep,
+)
+
+SOLVER = (bare, scaling, spatial, spatial_growth, absorbers, march, limits, retuned, sweep, gradient, spectra, engines)
+OTHERS = (studio, studio_page, spatial_cluster)
+"""Of the studio, and of a cluster last: its blocks are smaller, for all that follows in the process."""
 
 
 def main() -> None:
     """Run them one after another."""
-    for benchmark in (bare, scaling, spatial, spatial_growth, absorbers, march, limits, retuned, sweep, gradient, spectra, engines, studio):
+    for benchmark in (*SOLVER, *OTHERS):
         benchmark.main()
 
 
