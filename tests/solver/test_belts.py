@@ -20,11 +20,11 @@ from coaxshell.solver.axial.belt_ties import TiedClass, tie_of_broken, ties_of_b
 from coaxshell.solver.axial.belts import classes_of, driven_sets
 from coaxshell.solver.axial.sampling import FAR, AxialSampling
 from coaxshell.solver.axial.stability import require_stable_waves
+from coaxshell.solver.contour import Contour, highest_frequency
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.electrode_patterns import patterns_of
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.segmented_margins import segmented_loops
-from coaxshell.solver.stability import Contour, highest_frequency
 from coaxshell.solver.tied_stability import fastest_growth_of, growing_of
 from coaxshell.solver.voltage_response import VoltageResponse
 from coaxshell.structure.axial import ENTRIES, U, V, W

@@ -15,9 +15,9 @@ from coaxshell.numerics.modes import Modes
 from coaxshell.response import load_response
 from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.tied_faces import TiedFaces
+from coaxshell.solver.contour import along_alone
 from coaxshell.solver.faced_voltages import readings_per_volt
 from coaxshell.solver.scaling import dimensionless
-from coaxshell.solver.stability import along_alone
 from coaxshell.solver.tied_stability import determinants, fastest_growth, growing
 from coaxshell.structure.axial import ENTRIES, U, V, W
 from coaxshell.structure.elastic_wall import ElasticWall

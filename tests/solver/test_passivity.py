@@ -10,10 +10,11 @@ from electrode_pairs import pairs
 
 import coaxshell as cx
 from coaxshell.numerics.modes import Modes
-from coaxshell.solver import passivity, stability
+from coaxshell.solver import contour, passivity, stability
+from coaxshell.solver.contour import along_alone
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import FluidRegion, dimensionless
-from coaxshell.solver.stability import along_alone, unstable_poles
+from coaxshell.solver.stability import unstable_poles
 
 BARE = cx.presets.load("bare")
 TIME = BARE.transit_time
@@ -119,7 +120,7 @@ def test_fluids_that_may_give_energy_are_not_trusted():
 def test_the_contour_reaches_a_membrane_above_where_feedback_fades():
     # A weak push of the wrong sign grows at the membrane's frequency, far above |k_d| |P||S|/M of the paper's law.
     problem = dimensionless(paper(0.0, 2e-3))
-    fades = stability.highest_frequency(problem, 10)
+    fades = contour.highest_frequency(problem, 10)
     assert fades < problem.shells[0].highest_frequency(MODES).max()
-    contour = stability.Contour.of(problem, MODES, 0.25)
-    assert contour.even[-1] > problem.shells[0].highest_frequency(MODES).max()
+    walked = contour.Contour.of(problem, MODES, 0.25)
+    assert walked.even[-1] > problem.shells[0].highest_frequency(MODES).max()

@@ -20,10 +20,11 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import ShareDone
 from coaxshell.numerics.winding import turning
+from coaxshell.solver.contour import SPACING, Contour, along_alone, fed_orders, few_of
 from coaxshell.solver.electrode_loops import ElectrodeLoops, determinant_of
 from coaxshell.solver.electrode_patterns import OrderPatterns
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import SPACING, Contour, along_alone, fed_orders, few_of, opened
+from coaxshell.solver.stability import opened
 from coaxshell.solver.tied_stability import Tied
 from coaxshell.solver.voltage_response import controlled
 

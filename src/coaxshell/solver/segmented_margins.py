@@ -17,11 +17,11 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import ShareDone
+from coaxshell.solver.contour import Contour, along_alone
 from coaxshell.solver.electrode_loops import ElectrodeLoops, determinant_of
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of, segments_of
 from coaxshell.solver.margins import FURTHER, Loop, LoopMargins, followed, margins_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour, along_alone
 from coaxshell.solver.tied_stability import Tied
 from coaxshell.solver.voltage_response import controlled
 

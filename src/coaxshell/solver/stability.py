@@ -2,7 +2,8 @@
 
 The modal determinants with and without feedback, D_m and D0_m, have the same leading behaviour, and D0_m has no zero in the
 right half plane. By the argument principle the number of unstable poles of order m is minus the change of arg(D_m/D0_m) along
-s = sigma_0 + i omega, omega from 0 to infinity, divided by pi. Orders whose walls stay passive with their feedback need no count.
+s = sigma_0 + i omega, omega from 0 to infinity, divided by pi. Orders whose walls stay passive with their feedback need no count, nor
+does any other where laws take energy alone (:mod:`coaxshell.solver.taking_bands`).
 
 D_m is that of V and W of all shells. Where V is eliminated first, of a shell with feedback H P S' (:mod:`.electroded_wall`) its entry of
 the tridiagonal matrix of W, times the relative stiffness along the hoop that feedback leaves, 1 - H P_v S_v/A_vv, is
@@ -16,7 +17,7 @@ An unstable loop cannot be seen in its answer: the inverse transform of poles ri
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
@@ -33,25 +34,20 @@ from coaxshell.model.shells import Shell
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.texts import rounded
-from coaxshell.numerics.winding import turning
 from coaxshell.solver.cascade import CascadeSystem, FluidOperator
+from coaxshell.solver.contour import Contour, along_alone, fed_orders, few_of, turned
 from coaxshell.solver.coupling import ModalSystem, determinant
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
+from coaxshell.solver.taking_bands import taking_bands
 from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel
 
-_MAX_NODES = 8192
-SPACING = 0.8
-"""Node spacing over sigma_0: the phase of a pole on the imaginary axis turns by less than a radian between nodes."""
-_BLOCK = 512
 _ROUGHLY = 1.15
 """How far apart rates may be between which the fastest growth is, before Newton's method takes over."""
 _ITERATIONS = 40
-_HALVINGS = 8
-"""Times that the distance of nodes is halved where the ratio turns by more than SPACING radians, beyond the resonances."""
 _STARTS = 12
 """Places that Newton's method is started from until one leads to a pole that grows."""
 
@@ -169,63 +165,6 @@ def with_gains(problem: Problem, proportional: float, derivative: float) -> Prob
     return replace(problem, shells=tuple(shells))
 
 
-def highest_frequency(problem: Problem, max_order: int, wavenumber: float | ComplexArray = 0.0) -> float:
-    """Return a power of two above which feedback is less than half of every controlled shell's inertia."""
-    highest = max(1.0, *(wall.feedback_frequency(Modes.up_to(max_order, wavenumber)) for wall in problem.shells))
-    return float(2.0 ** np.ceil(np.log2(highest)))  # the same for gains that differ little, whose nodes can be shared
-
-
-def along_alone(problem: Problem, modes: Modes) -> Problem:
-    """Return the problem whose elastic walls bend and stretch along themselves alone, each order as fast as it resonates.
-
-    Voltages find no inertia in motions through the thickness (:func:`coaxshell.structure.solid_transducers.along_wall`).
-    """
-    if not problem.two_faced:
-        return problem
-    first = Modes(np.ones(1), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
-    highest = ((modes.orders, 1.1 * np.hypot(wall.highest_frequency(modes), wall.highest_frequency(first))) for wall in problem.shells)
-    return replace(problem, shells=tuple(wall.along_alone(np.stack(own)) for wall, own in zip(problem.shells, highest, strict=True)))
-
-
-class Contour(NamedTuple):
-    """Where Re s = shift is walked: at an even step as far as each order resonates, then by a growing one to where feedback fades."""
-
-    shift: float
-    even: FloatArray
-    limits: FloatArray
-    fades: float
-    delay: float
-
-    @classmethod
-    def of(cls, problem: Problem, modes: Modes, least: float) -> Contour:
-        """Return it for some orders; the shift is the *least* growth that counts, or more where as many nodes cannot tell it from none."""
-        first = Modes(np.ones(1), modes.wavenumber)  # all low orders breathe as fast as order 1 stretches
-        limits = np.stack([1.2 * np.hypot(wall.highest_frequency(modes), wall.highest_frequency(first)) for wall in problem.shells])
-        limits = limits.max(axis=0)
-        shift = max(least, float(limits.max()) / (SPACING * _MAX_NODES))
-        even = np.arange(0.0, limits.max() + SPACING * shift, SPACING * shift)
-        delay = max((wall.gains.delay for wall in problem.shells if wall.gains is not None), default=0.0)
-        return cls(shift, even, limits, highest_frequency(problem, modes.max_order, modes.wavenumber), delay)
-
-    @property
-    def nodes(self) -> ComplexArray:
-        """All nodes, ascending, an even step as far as any order resonates."""
-        return np.concatenate([self.shift + 1j * self.even[:-1], self.beyond(float(self.even[-1]))])
-
-    def blocks(self) -> Iterator[ComplexArray]:
-        """Yield the nodes with an even step by blocks, each of which shares a node with the next."""
-        for start in range(0, self.even.size - 1, _BLOCK):
-            yield np.asarray(self.shift + 1j * self.even[start : start + _BLOCK + 1], dtype=np.complex128)
-
-    def beyond(self, *starts: float) -> ComplexArray:
-        """Return the nodes from the lowest of some frequencies, all among them, to where feedback fades; a delay turns it in 2 pi/delay."""
-        last = max(self.fades, 1.02 * max(starts))
-        nodes = np.union1d(starts, np.geomspace(min(starts), last, 200)[1:])
-        if self.delay > 0.0:
-            nodes = np.union1d(nodes, np.arange(min(starts), last, SPACING / self.delay))
-        return np.asarray(self.shift + 1j * nodes, dtype=np.complex128)
-
-
 def unstable_poles(
     problem: Problem, max_order: int, duration: float, shared: SharedParts | None = None, wavenumber: float = 0.0
 ) -> UnstablePoles:
@@ -237,62 +176,26 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
     """Return the orders with poles that grow by more than a rate per transit.
 
     Those are counted that are fed back and whose walls it may make give energy (:mod:`coaxshell.solver.passivity`); no other has any.
+    What laws take energy in is not followed (:mod:`coaxshell.solver.taking_bands`).
     """
-    slow = along_alone(problem, modes)
-    doubtful = modes.orders[~passive_orders(slow, modes, least)]
-    if problem.two_faced:
-        doubtful = np.intersect1d(doubtful, fed_orders(problem, modes))
-    if not doubtful.size:
-        return UnstablePoles(doubtful, np.zeros(0))
-    some = few_of(modes, doubtful)
-    turn, nearest = turned(slow, some, Contour.of(problem, some, least), partial(_ratio, slow, shared, slow.open_loop))
+    none = UnstablePoles(np.zeros(0), np.zeros(0))
+    fed = few_of(modes, fed_orders(problem, modes))
+    if not fed.count:
+        return none
+    contour, slow = Contour.of(problem, fed, least), along_alone(problem, fed)
+    bands = taking_bands(slow, fed, contour)
+    if bands.hold_all(contour):
+        return none
+    some = few_of(fed, fed.orders[~passive_orders(slow, fed, least)])
+    if not some.count:
+        return none
+    if some.count < fed.count:
+        contour = Contour.of(problem, some, least)
+        bands = taking_bands(slow, some, contour)
+    known = slow, shared, slow.open_loop
+    turn, nearest = turned(slow, some, contour, partial(_ratio, *known), bands, partial(_angle, *known))
     counts = np.rint(-turn / np.pi)
-    return UnstablePoles(doubtful[counts > 0], counts[counts > 0], nearest)
-
-
-def fed_orders(problem: Problem, modes: Modes) -> FloatArray:
-    """Return the orders that some law weighs at all: of any other D_m is D0_m."""
-    weights = [wall.gains.weight(modes.orders) for wall in problem.shells if wall.gains is not None]
-    return modes.orders[np.any([np.broadcast_to(one, modes.count) != 0.0 for one in weights], axis=0)]
-
-
-def few_of(modes: Modes, orders: FloatArray) -> Modes:
-    """Return some of the orders of modes."""
-    return modes if orders.size == modes.count else Modes(orders, modes.wavenumber, modes.sparse or 2 * orders.size < modes.count)
-
-
-def turned(
-    problem: Problem, modes: Modes, contour: Contour, ratio_at: Callable[[ComplexArray, Modes], ComplexArray]
-) -> tuple[FloatArray, float]:
-    """Return how far D_m/D0_m, given at nodes and orders, turns along a contour, of each order, and how near the nearest comes to 0."""
-    nearest = np.inf
-    turns, reached, left = np.zeros(modes.count), np.zeros(modes.count), np.arange(modes.count)
-    faced = problem.two_faced
-    limits = np.full(modes.count, contour.limits.max()) if faced else contour.limits  # shapes of all orders are made once
-    for block in contour.blocks():
-        some = modes if faced else Modes(modes.orders[left], modes.wavenumber, modes.sparse)
-        ratio = ratio_at(block, some)
-        turns[left] += turning(ratio)
-        nearest = min(nearest, float(np.abs(ratio).min()))
-        reached[left] = block[-1].imag
-        left = left[limits[left] > block[-1].imag]
-        if not left.size:
-            break
-    ends = np.unique(reached)
-    nodes = contour.beyond(*ends.tolist())
-    ratio = ratio_at(nodes, modes)
-    for _ in range(_HALVINGS):  # a pole of strong feedback may lie there, close to the contour
-        turns_on = (np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])) > SPACING) & (nodes.imag[:-1] >= reached[:, None])
-        quick = turns_on.any(axis=0)  # of orders whose even nodes end there
-        if not quick.any():
-            break
-        between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
-        nodes, ratio = np.append(nodes, between), np.append(ratio, ratio_at(between, modes), axis=1)
-        ascending = np.argsort(nodes.imag)
-        nodes, ratio = nodes[ascending], ratio[:, ascending]
-    for end in ends:
-        turns[reached == end] += turning(ratio[reached == end, int(np.searchsorted(nodes.imag, end)) :])
-    return turns + np.angle(1.0 / ratio[:, -1]), min(nearest, float(np.abs(ratio).min()))  # beyond the last node it tends to 1
+    return UnstablePoles(some.orders[counts > 0], counts[counts > 0], nearest)
 
 
 def _ratio(problem: Problem, shared: SharedParts | None, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
@@ -300,13 +203,30 @@ def _ratio(problem: Problem, shared: SharedParts | None, passive: Problem, nodes
 
     ``passive`` is the problem without feedback.
     """
+    return _opened(problem, shared, passive, nodes, modes).closed(problem, nodes, modes)
+
+
+def _angle(problem: Problem, shared: SharedParts | None, passive: Problem, nodes: ComplexArray, modes: Modes) -> FloatArray:
+    """Return the argument of D_m/D0_m as it is followed from no feedback, where the law of every wall takes energy alone: one by one."""
+    open_loop = _opened(problem, shared, passive, nodes, modes)
+    angle, before, shells = np.zeros((modes.count, nodes.size)), np.ones(1, np.complex128), passive.shells
+    for i, wall in enumerate(problem.shells):
+        if wall.gains is not None:
+            shells = (*shells[:i], wall, *shells[i + 1 :])
+            closed = open_loop.closed(replace(problem, shells=shells), nodes, modes)
+            angle += np.angle(closed / before)
+            before = closed
+    return angle
+
+
+def _opened(problem: Problem, shared: SharedParts | None, passive: Problem, nodes: ComplexArray, modes: Modes) -> OpenLoop | FacedLoop:
     make = partial(opened, problem, passive, nodes, modes, shared)
     if shared is None:
-        return make().closed(problem, nodes, modes)
+        return make()
     controlled = tuple(shell.gains is not None for shell in problem.shells)
     known = (passive.shells, controlled, problem.fluids, problem.scales, modes.key)
-    open_loop: OpenLoop | FacedLoop = shared.get_or_make(("open loop", *known, nodes.tobytes()), make)
-    return open_loop.closed(problem, nodes, modes)
+    found: OpenLoop | FacedLoop = shared.get_or_make(("open loop", *known, nodes.tobytes()), make)
+    return found
 
 
 def determinant_ratio(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:

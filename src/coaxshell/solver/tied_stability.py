@@ -5,9 +5,8 @@ walls; of all patterns together, and with dead segments of that between these,
 
     D/D0 = product over patterns of |1 - H K C_q|, times |[(1 - H K C)^-1] on the dead segments|,
 
-the complementary minor: what is left of the loops of the live ones. Where every wall pushes with what it reads, of the same layers, by -c
-times its reading, A c K with A the circumferences is symmetric without negative eigenvalues and the law never gives energy, Re H/s >= 0 on
-the contour, any number of segments takes energy alone, dead ones or not: nothing is counted.
+the complementary minor: what is left of the loops of the live ones. Where laws take energy alone (:mod:`coaxshell.solver.taking_bands`) any
+number of segments does, dead ones or not: nothing is counted where that is all of the contour, and without dead ones nothing there.
 """
 
 from __future__ import annotations
@@ -27,14 +26,14 @@ from coaxshell.model.prefixes import engineering
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.texts import rounded
-from coaxshell.numerics.winding import turning
-from coaxshell.solver.electrode_loops import ElectrodeLoops, shares_of
+from coaxshell.solver.contour import NOWHERE, Bands, Contour, along_alone, fed_orders, few_of, turned, turned_outside
+from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import Contour, along_alone, fed_orders, few_of, remedy, turned
+from coaxshell.solver.stability import remedy
+from coaxshell.solver.taking_bands import taking_bands
 from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.voltage_response import VoltageResponse, controlled
-from coaxshell.structure.shell_model import Gain
 
 _BLOCK = 513  # a block of a contour shares a node with the next one
 _SPACING = 0.8
@@ -90,51 +89,6 @@ class PatternPoles(NamedTuple):
     ratio: ComplexArray
 
 
-def collocated(problem: Problem, max_order: int, wavenumber: float = 0.0) -> bool:
-    """Return whether no motion of the walls can take energy from their laws' gains.
-
-    Every wall is pushed by what it reads, its drive is its reading times -c in all orders, and with A its circumference c A K is symmetric
-    without negative eigenvalues.
-    """
-    if problem.two_faced:
-        return False  # what an elastic wall reads of the strain along it is its push but for parts of h/R
-    modes, shells, factors = Modes.up_to(max_order, wavenumber), controlled(problem), []
-    shares = shares_of(problem, shells)
-    for i in shells:
-        wall = problem.shells[i]
-        push, read = (_parts(gain, modes) for gain in (wall.drive(modes), wall.sensor_gain(modes)))
-        factor = float((push * read).sum() / max((read * read).sum(), 1e-300))
-        if factor >= 0.0 or not np.allclose(push, factor * read, rtol=1e-9, atol=1e-9 * np.abs(push).max()):
-            return False
-        factors.append(-factor * wall.radius)
-    weighted = np.array(factors)[:, None] * shares
-    if not np.allclose(weighted, weighted.T, rtol=1e-9, atol=0.0):
-        return False
-    lowest = np.linalg.eigvalsh(weighted)[0]
-    return bool(lowest >= -1e-12 * np.abs(weighted).max())
-
-
-def _parts(gain: Gain, modes: Modes) -> FloatArray:
-    """Return a gain per unit V, W and U, where there is an axial wavenumber, (2 or 3, orders)."""
-    axial = [] if modes.two_dimensional else [np.zeros_like(gain.w) if gain.u is None else gain.u]
-    return np.stack([gain.v, gain.w, *axial])
-
-
-def never_gives(problem: Problem, contour: Contour, max_order: int) -> bool:
-    """Return whether Re H/s >= 0 on the contour, for the law of every wall and order: seen at its nodes and beside its own poles."""
-    for i in controlled(problem):
-        law = problem.shells[i].gains
-        assert law is not None
-        beside = np.sinh(np.linspace(-12.0, 12.0, 97))
-        own = [np.abs(frequency + max(width, contour.shift) * beside) for frequency, width in law.resonances]
-        far = np.geomspace(1e-3, 1e3 * contour.fades, 400)
-        s = np.concatenate([contour.nodes, *(contour.shift + 1j * x for x in (*own, far))])
-        backwards = bool(np.any(np.asarray(law.weight(np.arange(max_order + 1.0))) < 0.0))
-        if law.delay or backwards or bool((law.at(s, Modes(np.zeros(1))) / s).real.min() < 0.0):
-            return False
-    return True
-
-
 def determinants(problem: Problem, passive: Problem, modes: Modes, nodes: ComplexArray) -> ComplexArray:
     """Return D/D0 of each pattern, shape (patterns, nodes), or, where dead segments tie them, of all together, (1, nodes)."""
     return _determinants(problem, passive, Tied(modes), nodes)
@@ -164,21 +118,46 @@ def growing_of(problem: Problem, tied: Tied, least: float) -> tuple[PatternPoles
     """Return them of what is tied, and the least ratio of determinants on the contour, infinite where nothing had to be counted."""
     modes = tied.modes
     contour = Contour.of(problem, modes, least)
-    if collocated(problem, modes.max_order, float(modes.wavenumber)) and never_gives(problem, contour, modes.max_order):
+    slow = along_alone(problem, modes)
+    bands = taking_bands(slow, modes, contour)
+    if bands.hold_all(contour):
         return None, np.inf
     if tied.alone and segments_of(problem.system) is None:  # orders stand alone: those that are fed back, each as far as it resonates
         some = few_of(modes, fed_orders(problem, modes))
         if not some.count:
             return None, np.inf
-        slow = along_alone(problem, some)
-        turns, nearest = turned(slow, some, Contour.of(problem, some, least), partial(_ratio, slow, slow.open_loop))
+        turns, nearest = _alone(problem, some, least)
         if not (np.rint(-turns / np.pi) > 0.0).any():
             return None, nearest
-    return _counted(along_alone(problem, modes), tied, contour)
+    elif bands.lows.size and not _in_one(slow, tied):
+        found, nearest = _counted(slow, tied, contour, bands)
+        if found is None:
+            return None, nearest
+    return _counted(slow, tied, contour)
+
+
+def _alone(problem: Problem, modes: Modes, least: float) -> tuple[FloatArray, float]:
+    """Return how far the determinants of orders that stand alone turn, and the least of them."""
+    slow, contour = along_alone(problem, modes), Contour.of(problem, modes, least)
+    passive, bands = slow.open_loop, taking_bands(slow, modes, contour)
+    return turned(slow, modes, contour, partial(_ratio, slow, passive), bands, partial(_angle, slow, passive, Tied(modes)))
 
 
 def _ratio(problem: Problem, passive: Problem, nodes: ComplexArray, modes: Modes) -> ComplexArray:
     return determinants(problem, passive, modes, nodes)
+
+
+def _angle(problem: Problem, passive: Problem, tied: Tied, nodes: ComplexArray, modes: Modes | None = None) -> FloatArray:
+    """Return the argument of D/D0 of each pattern as it is followed from no feedback, where laws take energy alone: of 1 + lambda each."""
+    own = tied if modes is None else Tied(modes)
+    patterns = patterns_of(problem, controlled(problem), own.modes.orders, 1)
+    loops = ElectrodeLoops.of(problem, own.response(passive, problem, nodes), patterns, nodes)
+    return np.asarray(np.angle(np.linalg.eigvals(loops.matrix)).sum(axis=-1))
+
+
+def _in_one(problem: Problem, tied: Tied) -> bool:
+    """Return whether all patterns are one determinant."""
+    return tied.whole or bool(patterns_of(problem, controlled(problem), tied.modes.orders, 1).dead)
 
 
 def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | None:
@@ -186,12 +165,15 @@ def counted(problem: Problem, modes: Modes, contour: Contour) -> PatternPoles | 
     return _counted(problem, Tied(modes), contour)[0]
 
 
-def _counted(problem: Problem, tied: Tied, contour: Contour) -> tuple[PatternPoles | None, float]:
-    """Return them, and the least ratio of determinants on the contour."""
-    passive, nodes = problem.open_loop, contour.nodes
+def _counted(problem: Problem, tied: Tied, contour: Contour, bands: Bands = NOWHERE) -> tuple[PatternPoles | None, float]:
+    """Return them, and the least ratio of determinants on the contour, followed outside of bands where laws take energy alone."""
+    passive, runs = problem.open_loop, bands.left(contour.nodes.imag)
+    if not runs:
+        return None, np.inf
+    nodes = np.asarray(contour.shift + 1j * np.unique(np.concatenate(runs)), dtype=np.complex128)
     ratio, one = _factors(problem, passive, tied, nodes)
     for _ in range(_HALVINGS):
-        quick = np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING
+        quick = (np.abs(np.angle(ratio[:, 1:] / ratio[:, :-1])).max(axis=0) > _SPACING) & ~bands.between(nodes)
         if not quick.any():
             break
         between = 0.5 * (nodes[1:] + nodes[:-1])[quick]
@@ -199,7 +181,7 @@ def _counted(problem: Problem, tied: Tied, contour: Contour) -> tuple[PatternPol
         ratio = np.append(ratio, _factors(problem, passive, tied, between)[0], axis=1)
         ascending = np.argsort(nodes.imag)
         nodes, ratio = nodes[ascending], ratio[:, ascending]
-    turned, nearest = turning(ratio) + np.angle(1.0 / ratio[:, -1]), float(np.abs(ratio).min())
+    turned, nearest = turned_outside(nodes, ratio, bands, partial(_angle, problem, passive, tied)), float(np.abs(ratio).min())
     if one:  # the product of many turns too far between nodes
         turned, ratio = turned.sum(keepdims=True), ratio.prod(axis=0, keepdims=True)
     counts = np.rint(-turned / np.pi)

@@ -1,8 +1,9 @@
 """Stability of feedback in three dimensions: of every order at every axial wavenumber, by passivity where that proves it, else by counting.
 
-A wave (m, k) is a system by itself. Walls that stay passive with their feedback cannot make one grow (:mod:`coaxshell.solver.passivity`),
-which is asked at a sample of wavenumbers; poles of those in doubt are counted at fewer, as they move with k as smoothly as with the order.
-So does the least |D/D0| on the contour, which a pole passes at 0: between wavenumbers where that is more than it changes none is counted.
+A wave (m, k) is a system by itself. Laws that take energy alone (:mod:`coaxshell.solver.taking_bands`) cannot make one grow, nor can walls
+that stay passive with their feedback (:mod:`coaxshell.solver.passivity`), which is asked at a sample of wavenumbers; poles of those in
+doubt are counted at fewer, as they move with k as smoothly as with the order. So does the least |D/D0| on the contour, which a pole passes
+at 0: between wavenumbers where that is more than it changes none is counted.
 Where feedback ties walls or orders a wavenumber is a system of all that is tied (:mod:`coaxshell.solver.tied_stability`), and where
 electrodes are cut along the axis a class of wavenumbers is (:mod:`coaxshell.solver.axial.belts`), or all with single dead ones.
 
@@ -27,6 +28,7 @@ from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.stability import growth_beyond, nearest_ratio, require_stable
+from coaxshell.solver.taking_bands import all_taken_in_waves
 from coaxshell.solver.tied import require_resolved
 from coaxshell.solver.tied_stability import Tied, growth_of_tie_beyond, nearest_ratio_of_tie, require_stable_tie
 
@@ -128,6 +130,8 @@ def doubtful_waves(problem: Problem, waves: Sequence[Modes], least: float) -> li
     """Return the wavenumbers at which some order is not proven to grow by no more than a rate per transit."""
     if problem.two_faced:
         return list(waves)
+    if all_taken_in_waves(problem, waves, least):
+        return []
     return [modes for modes in waves if not passive_orders(problem, modes, least).all()]
 
 

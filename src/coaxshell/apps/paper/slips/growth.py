@@ -18,9 +18,9 @@ from coaxshell.acoustics.operators import all_orders
 from coaxshell.apps.paper.slips.switches import slipped
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.winding import turning
+from coaxshell.solver.contour import highest_frequency
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem, dimensionless
-from coaxshell.solver.stability import highest_frequency
 
 if TYPE_CHECKING:
     from coaxshell.model import System
