@@ -29,8 +29,9 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.causality import rounded_up
+from coaxshell.solver.contour import fed_orders
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.stability import determinant_ratio, fed_orders
+from coaxshell.solver.stability import determinant_ratio
 from coaxshell.solver.tied_stability import determinants
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall, LossyElectrodedWall
