@@ -78,6 +78,29 @@ def test_actuators_alone_are_marched_as_with_newton_s_method(
     np.testing.assert_allclose(found.modal_pressure, expected.modal_pressure, rtol=0, atol=1e-8 * abs(expected.modal_pressure).max())
 
 
+@pytest.mark.parametrize(("angle", "limit"), [(0.0, 2e5), (30.0, 2e5), (0.0, 1e3)])
+def test_actuators_beside_absorbers_are_marched_as_with_newton_s_method(
+    angle: float, limit: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the points held and the springs, or, where most points are held, by Newton's method of all unknowns itself."""
+    control = cx.PDControl(proportional=-2e4, derivative=-150, saturation=True, field_limit=limit)
+    shock = cx.SphericalShock(distance=5.0, peak_pressure=2.5e4, decay_time=1.314e-4, angle=angle)
+    system = cx.presets.load("hybrid").replace(control=control, source=shock).with_overrides({"absorbers.count": 5})
+    problem = dimensionless(system)
+    structure = StructureSpectra(problem, LaplaceGrid(1e-2, 110), Modes.up_to(12))
+    links = absorber_set(problem, system.absorber_list, 1 if angle == 0.0 else 2)
+    found = marching.march(structure, links, saturate=True)
+    done = []
+    monkeypatch.setattr(marching, "march_beside", lambda *_: done.append(True))
+    expected = marching.march(structure, links, saturate=True)
+    assert done
+    assert found.saturated
+    assert (found.iterations < 0.5 * expected.iterations) == (limit == 2e5)
+    for name in ("force", "mass_displacement", "modal_pressure", "actuation"):
+        other = getattr(expected, name)
+        np.testing.assert_allclose(getattr(found, name), other, rtol=0, atol=1e-8 * np.abs(other).max())
+
+
 @pytest.mark.parametrize("parities", [1, 2])
 def test_what_limited_voltages_give(parities: int) -> None:
     given = amplitudes(parities)

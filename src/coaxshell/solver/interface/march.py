@@ -29,6 +29,8 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.interface.absorbers import AbsorberSet
 from coaxshell.solver.interface.actuator_march import march_actuators
+from coaxshell.solver.interface.actuators_beside import march_beside
+from coaxshell.solver.interface.held_step import NotSettledError
 from coaxshell.solver.interface.newton import ConvergenceError, NewtonState
 from coaxshell.solver.interface.plan import MarchPlan, MotionWithout, actuators_of, march_plan, motion_without
 from coaxshell.solver.interface.ring_march import RingPlan, TooStiffError, march_ring
@@ -103,11 +105,11 @@ def march(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate: bool
     InputError
         If a step does not converge.
     """
-    without_newton = _actuators_alone if saturate and not absorbers.count else None if saturate else _as_ring
-    if without_newton is not None and (found_so := without_newton(structure, absorbers, progress)) is not None:
+    without_newton = _as_ring if not saturate else _actuators_beside if absorbers.count else _actuators_alone
+    if (found_so := without_newton(structure, absorbers, progress)) is not None:
         return found_so
     plan = march_plan(structure, absorbers, saturate=saturate)
-    motion = motion_without(structure, absorbers, plan)
+    motion = motion_without(structure, absorbers, plan.points, plan.actuators)
     steps, n = motion.steps, plan.count
     force, mass, volts = np.zeros((steps, 2, n)), np.zeros((steps, n)), np.zeros((steps, plan.actuators.amplitudes))
     pressure = np.zeros((plan.points.surfaces, plan.points.parities, plan.points.modes, steps))
@@ -145,6 +147,20 @@ def _actuators_alone(structure: StructureSpectra, absorbers: AbsorberSet, progre
     actuators = actuators_of(structure, structure.points(absorbers), structure.controlled)
     pressure, none = actuators.pressure(found.given.reshape(-1, steps)), np.zeros((0, steps))
     return MarchResult(none, none, pressure, pressure, found.saturated, found.iterations)
+
+
+def _actuators_beside(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None) -> MarchResult | None:
+    """Return the march of saturating actuators beside absorbers by blocks, None if that does not converge."""
+    try:
+        found = march_beside(structure, absorbers, progress)
+    except NotSettledError:
+        return None
+    if found is None:
+        return None
+    steps, points = structure.grid.time.size, structure.points(absorbers)
+    force = found.force.reshape(steps, -1).T
+    actuation = actuators_of(structure, points, structure.controlled).pressure(found.given.T)
+    return MarchResult(force, found.mass_displacement.T, points.project(force) + actuation, actuation, found.saturated, found.iterations)
 
 
 def march_block(plan: MarchPlan, state: MarchState, motion: MotionWithout) -> tuple[MarchState, BlockOutput]:

@@ -161,7 +161,7 @@ def march_plan(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate:
     actuation = actuators.pressure(np.eye(actuators.amplitudes))
     moved = np.zeros((length, points.count, actuators.amplitudes))
     for lag in range(length if actuators.controlled else 0):
-        moved[lag] = points.evaluate(_answer(kernels[..., lag], actuation))
+        moved[lag] = points.evaluate(answer_of(kernels[..., lag], actuation))
     response = block_response(links, of_forces, moved)
     unknowns = np.concatenate([response.stretch, _voltages(points, actuators, table, response.force, actuation)], axis=1)
     rows, size = block_toeplitz(unknowns), unknowns.shape[1]
@@ -186,9 +186,10 @@ def march_plan(structure: StructureSpectra, absorbers: AbsorberSet, *, saturate:
     )
 
 
-def motion_without(structure: StructureSpectra, absorbers: AbsorberSet, plan: MarchPlan) -> MotionWithout:
-    """Return the motion of a structure that the forces of a march by this plan are added to: without feedback if actuators saturate."""
-    actuators, points = plan.actuators, plan.points
+def motion_without(
+    structure: StructureSpectra, absorbers: AbsorberSet, points: InterfacePoints | PointsAlone, actuators: Actuators
+) -> MotionWithout:
+    """Return the motion of a structure that the forces of a march are added to: without feedback if actuators saturate."""
     moved = structure.open_loop if actuators.controlled else structure
     steps = structure.grid.time.size
     displacement, velocity = (np.ascontiguousarray(x.T).reshape(steps, 2, absorbers.count) for x in moved.motion_at(points))
@@ -230,11 +231,11 @@ def _voltages(
     pressures = [points.project(f) for f in force]
     pressures[0][..., columns - actuation.shape[-1] :] += actuation
     for lag in range(lags):
-        volts = sum(_answer(table.kernels[points.surfaces :, ..., k], pressures[lag - k]) for k in range(lag + 1))
+        volts = sum(answer_of(table.kernels[points.surfaces :, ..., k], pressures[lag - k]) for k in range(lag + 1))
         found[lag] = actuators.of_limits(np.asarray(volts)).reshape(-1, columns)
     return found
 
 
-def _answer(kernels: FloatArray, pressure: FloatArray) -> FloatArray:
+def answer_of(kernels: FloatArray, pressure: FloatArray) -> FloatArray:
     """Return what modal pressures (shells, parities, M + 1, ...) cause through one weight per mode, (outputs, shells, M + 1)."""
     return np.asarray(np.einsum("ijm,jhm...->ihm...", kernels, pressure))

@@ -57,8 +57,8 @@ class CircleSums:
     def __init__(self, modes: int, parities: int) -> None:
         self._modes, self._parities = modes, parities
         evaluate, project = circle(modes, parities)
-        self._points = len(evaluate)
-        quarter = self._points // (2 * parities)  # of the circle: half the points that cosines alone have
+        self.points = len(evaluate)
+        quarter = self.points // (2 * parities)  # of the circle: half the points that cosines alone have
         parts = [slice(p * modes + odd, (p + 1) * modes, 2) for p in range(parities) for odd in (0, 1)]
         self._evaluate = [np.ascontiguousarray(evaluate[:quarter, part].T) for part in parts]
         self._project = [np.ascontiguousarray(project[part, :quarter].T) for part in parts]
@@ -78,11 +78,11 @@ class CircleSums:
             even, odd = (rows[:, 1, k::2] @ self._evaluate[2 + k] for k in (0, 1))
             sines = _mirrored(even + odd, odd - even)
             values = _mirrored(values + sines, values - sines)
-        return values.reshape(*amplitudes.shape[:-2], self._points)
+        return values.reshape(*amplitudes.shape[:-2], self.points)
 
     def amplitudes(self, values: FloatArray) -> FloatArray:
         """Return the amplitudes (..., parities, M + 1) of values at the points."""
-        rows = values.reshape(-1, self._points)
+        rows = values.reshape(-1, self.points)
         found = np.empty((len(rows), self._parities, self._modes))
         if self._parities == 2:
             there, mirrored = _halves(rows)

@@ -79,7 +79,7 @@ def march_links(
     response, cubic = linear.rows[: 2 * n, : 2 * n], np.tile(absorbers.cubic, 2) * absorbers.elements.present
     laws = assembled(absorbers.elements.elements, step, cubic, compliance(response))
     plan = _Plan(linear, laws, LawSolver(response, laws, np.tile(linear.links.auxiliary_stiffness, 2)))
-    motion = _means(motion_without(structure, absorbers, linear), step)
+    motion = _means(motion_without(structure, absorbers, linear.points, linear.actuators), step)
     force, added, stretch, stored = np.zeros((4, motion.steps, 2 * n))
     velocity = np.zeros((motion.steps, n))
     pressure = np.zeros((linear.points.surfaces, linear.points.parities, linear.points.modes, motion.steps))
