@@ -73,7 +73,13 @@ def test_faces_of_one_gap() -> None:
     """Two equations give what the way through all walls does."""
     found = problem()
     cascade = CascadeSystem(found, GRID.nodes, MODES)
-    columns = [moved_surfaces(found, cascade.solve(one.shell, 1.0, one.side)) for one in found.surfaces]
+    moved = [cascade.solve(one.shell, 1.0, one.side) for one in found.surfaces]
+    columns, answers = [moved_surfaces(found, one) for one in moved], cascade.gap_answers()
+    for (inner, outer), (q_a, q_b), column in zip(moved, answers.loads, columns, strict=True):
+        (y_a, y_b), (behind_a, behind_b) = answers.receptances, answers.behind
+        every = [inner.load_inner, inner.load_outer, outer.load_inner, outer.load_outer, *column]
+        for expected, told in zip(every, [behind_a * q_a, q_a, q_b, behind_b * q_b, y_a * q_a, y_b * q_b], strict=True):
+            np.testing.assert_allclose(told, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
     for i, row in enumerate(cascade.gap_compliance()):
         for j, entry in enumerate(row):
             np.testing.assert_allclose(entry, columns[j][i], rtol=1e-11)

@@ -64,6 +64,24 @@ class FluidOperator(NamedTuple):
     bb: Entry = 0.0
 
 
+class GapAnswers(NamedTuple):
+    """What inward pressures on the two faces of the one gap of two walls do, each (orders, nodes).
+
+    Attributes
+    ----------
+    loads : tuple of tuple
+        q_a and q_b, on the outer face of the inner wall and on the inner face of the outer one, by the face that is pressed on.
+    receptances : tuple
+        y_a and y_b, displacements of these faces per load on them with all behind.
+    behind : tuple
+        Loads on the inner face of the inner wall and on the outer face of the outer one, per q_a and per q_b.
+    """
+
+    loads: tuple[tuple[ComplexArray, ComplexArray], tuple[ComplexArray, ComplexArray]]
+    receptances: tuple[ComplexArray, ComplexArray]
+    behind: tuple[Entry, Entry]
+
+
 def fluid_operators(problem: Problem, radial: RadialBasis, s: ComplexArray) -> list[FluidOperator]:
     """Return the operators of all fluids on their faces, from the inside out."""
     wetted = [wall.wetted for wall in problem.shells]
@@ -206,15 +224,28 @@ class CascadeSystem:
         Each face seen with all behind it is a receptance, w_a = y_a q_a and w_b = y_b q_b, and the gap ties both to each other,
         q_a = p_a + g (aa w_a + ab w_b), q_b = p_b - g (ba w_a + bb w_b): two equations instead of two ways through all walls.
         """
-        h, gap, sea = self.walls[1], self.fluids[1], self.fluids[2]
-        y_a, (r_i, r_o) = self._seen[0], self._radii[1]
-        divisor = 1.0 - h.outer * (r_o * sea.aa)
-        y_b = (h.inner + h.across * h.back * (r_o * sea.aa) / divisor) * r_i
+        gap, y_a, (y_b, _) = self.fluids[1], self._seen[0], self._seen_from_gap()
         alone_a, alone_b = self._gap_divisor[0], 1.0 + y_b * gap.bb
         across = y_a * y_b
         inverse = 1.0 / (alone_a * alone_b + across * gap.ab * gap.ba)
         across *= inverse
         return (y_a * alone_b * inverse, across * gap.ab), (-across * gap.ba, y_b * alone_a * inverse)
+
+    def gap_answers(self) -> GapAnswers:
+        """Return what these pressures do by the loads on both faces, which tell the loads on the faces behind."""
+        (h, _), (_, outer), gap, y_a = self.walls, self._radii[0], self.fluids[1], self._seen[0]
+        y_b, onto_outer = self._seen_from_gap()
+        alone_a, alone_b = self._gap_divisor[0], 1.0 + y_b * gap.bb
+        inverse = 1.0 / (alone_a * alone_b + (y_a * y_b) * gap.ab * gap.ba)
+        alone_a, alone_b = alone_a * inverse, alone_b * inverse
+        loads = (alone_b, -gap.ba * y_a * inverse), (gap.ab * y_b * inverse, alone_a)
+        return GapAnswers(loads, (y_a, y_b), (-self._within[0] * h.across * outer / self._wall_divisor[0], onto_outer))
+
+    def _seen_from_gap(self) -> tuple[ComplexArray, Entry]:
+        """Return y_b of the outer of two walls with the sea behind it, and the load on its outer face per load on its inner one."""
+        h, sea, (r_i, r_o) = self.walls[1], self.fluids[2], self._radii[1]
+        through = h.back * (r_i * sea.aa) / (1.0 - h.outer * (r_o * sea.aa))
+        return h.inner * r_i + h.across * r_o * through, through
 
     def _driven(self, wall: int, inner: Entry, outer: Entry, pressure: Entry) -> Entry:
         """Return e of a wall: its faces would move by *inner* under P of what lies within, and by *outer* under all else; P: *pressure*."""

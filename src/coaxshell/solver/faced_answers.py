@@ -19,11 +19,11 @@ from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.blas_threads import one_blas_thread
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.progress import Progress
-from coaxshell.solver.cascade import CascadeSystem, FaceMotion
+from coaxshell.solver.cascade import CascadeSystem, FaceMotion, GapAnswers
 from coaxshell.solver.excitation import SurfaceLoads
-from coaxshell.solver.faced_forces import moved_surfaces
+from coaxshell.solver.faced_forces import held_at_one_gap, moved_surfaces
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.solid_spectra import SolidSpectra, make_shapes, port, read, room_for
+from coaxshell.solver.solid_spectra import SolidSpectra, make_shapes, read, reading_of, room_for
 from coaxshell.solver.spectral import map_node_blocks, node_blocks
 
 
@@ -40,6 +40,14 @@ class UnitFaces(NamedTuple):
 
     compliance: ComplexArray
     loads: tuple[ComplexArray, ...]
+
+    def put_gap(self, nodes: slice, found: GapAnswers) -> None:
+        """Put down what pressures on the two faces of the one gap do at a slice of the nodes."""
+        for j, (faces, loads) in enumerate(zip(self.loads, found.loads, strict=True)):
+            for shell, (load, receptance, behind) in enumerate(zip(loads, found.receptances, found.behind, strict=True)):
+                faces[1 - shell, shell, :, nodes] = load
+                np.multiply(behind, load, out=faces[shell, shell, :, nodes])
+                np.multiply(receptance, load, out=self.compliance[shell, j, :, nodes])
 
     @property
     def nbytes(self) -> int:
@@ -90,6 +98,9 @@ def answers_of_faces(
             for parity, load in enumerate(sources(cascade.radial, block)):
                 moved = cascade.solve_outside(load)
                 _put(under.loads[:, :, parity, :, block], under.surfaces[:, parity, :, block], problem, moved)
+        if held_at_one_gap(problem):
+            unit.put_gap(block, cascade.gap_answers())
+            return
         for j, surface in enumerate(problem.surfaces):
             moved = cascade.solve(surface.shell, 1.0, surface.side)
             _put(unit.loads[j][..., block], unit.compliance[:, j, :, block], problem, moved)
@@ -140,7 +151,7 @@ def read_within(problem: Problem, grid: LaplaceGrid, modes: Modes, moved: UnderS
 
     def work(block: slice) -> None:
         for shell, wall in enumerate(problem.shells):
-            reading = port(wall, modes, grid.nodes[block], read_now)[1]
+            reading = reading_of(wall, modes, grid.nodes[block], read_now)
             for parity in range(moved.loads.shape[2]):
                 inner, outer = moved.loads[:, shell, parity, :, block]
                 w = moved.surfaces[surface[shell], parity, :, block] if shell in surface else inner

@@ -55,6 +55,11 @@ def moved_surfaces(problem: Problem, faces: list[FaceMotion]) -> list[ComplexArr
     return [faces[i].inner if side == 0 else faces[i].outer for i, side, _ in problem.surfaces]
 
 
+def held_at_one_gap(problem: Problem) -> bool:
+    """Return whether the surfaces are the two faces of the one gap of two walls."""
+    return [(one.shell, one.side) for one in problem.surfaces] == [(0, 1), (1, 0)] and len(problem.shells) == 2
+
+
 def surface_compliance(problem: Problem, s: ComplexArray, modes: Modes) -> ComplexArray:
     """Return the displacement of every surface per modal pressure on every other, shape (surfaces, surfaces, orders, nodes).
 
@@ -67,7 +72,7 @@ def surface_compliance(problem: Problem, s: ComplexArray, modes: Modes) -> Compl
     modes : Modes
     """
     cascade = CascadeSystem(problem, s, modes)  # what walls show beside their faces is not asked for
-    if [(one.shell, one.side) for one in problem.surfaces] == [(0, 1), (1, 0)]:
+    if held_at_one_gap(problem):
         return np.array(cascade.gap_compliance())
     columns = [moved_surfaces(problem, cascade.solve(surface.shell, 1.0, surface.side)) for surface in problem.surfaces]
     return np.stack([np.stack([column[i] for column in columns]) for i in range(len(columns))])

@@ -168,6 +168,13 @@ def port(wall: ShellModel, modes: Modes, s: ComplexArray, some: slice = slice(No
     return wall.two_port(modes, s, some, gives=some == MOTION and wall.gains is not None)
 
 
+def reading_of(wall: ShellModel, modes: Modes, s: ComplexArray, some: slice = slice(None)) -> ComplexArray | WallOperator:
+    """Return what a wall shows by :func:`port` without how it answers."""
+    if not isinstance(wall, ElasticWall):
+        return wall.operator(modes, s)
+    return wall.reading(modes, s, some, gives=some == MOTION and wall.gains is not None)
+
+
 MOTION, STRESS, POTENTIALS = slice(0, 2), slice(2, 3), slice(3, None)
 """Places of what a wall shows: W and V, the hoop stress at its design depth, and potentials."""
 
@@ -227,7 +234,7 @@ class Unread:
         found = np.zeros((count, *self._normal.shape), np.complex128)
 
         def work(wall: ElasticWall, shell: int, block: slice) -> None:
-            per_load = wall.two_port(self._modes, self._grid.nodes[block], some)[1]
+            per_load = wall.reading(self._modes, self._grid.nodes[block], some)
             inner, outer = self._loads[:, shell, ..., block]
             for row, (by_inner, by_outer) in zip(found, per_load, strict=False):  # a wall may have fewer layers
                 row[shell, ..., block] = by_inner * inner + by_outer * outer

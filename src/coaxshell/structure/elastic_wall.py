@@ -5,8 +5,7 @@ within it by the loads on both: with u_r = phi_a at face a of a shape of its eig
 
     x = -sum over shapes of (shape) sum_a phi_a r_a q_a/(omega^2 + s^2),      H_ab = sum phi_a phi_b/(omega^2 + s^2).
 
-All of it is a matrix product for each order (:func:`coaxshell.structure.shape_sums.modal_sums`), so that it costs hardly more than a
-thin wall. The reference surface, whose motion stands for the wall's, is its middle.
+All of it is a matrix product for each order (:func:`coaxshell.structure.shape_sums.modal_sums`). Its middle is the reference surface.
 """
 
 from __future__ import annotations
@@ -105,8 +104,6 @@ class ElasticWall(LayeredWall):
         """Return the wall whose shapes above a frequency of each order do not answer: it bends and stretches along itself alone."""
         return replace(self, silent=highest)
 
-    # Answers
-
     @kept_with_modes
     def basis(self, modes: Modes) -> tuple[OrdersBasis, ...]:
         """Return the shapes of some modes, made once as long as these are in use; nobody may change them."""
@@ -157,6 +154,14 @@ class ElasticWall(LayeredWall):
         shown += self.signs_of(self.asked_of_port[asked]) * added
         told = [loop.sensed, law * loop.sensed]
         return self._under_loop(receptance, loop), np.concatenate([shown, *(told[one][None] for one in self._told(some, gives))])
+
+    def reading(self, modes: Modes, s: ComplexArray, some: slice = slice(None), *, gives: bool = False) -> ComplexArray:
+        """Return what :meth:`two_port` shows, without how the faces answer where that is not needed for it."""
+        if self.transducers is not None:
+            return self.two_port(modes, s, some, gives=gives)[1]
+        first, stop, _ = some.indices(len(self.asked_of_port))
+        found = self._summed(modes, s, [weights[:, 3 + 2 * first : 3 + 2 * stop] for weights in self._of_port(modes)])
+        return found.reshape(-1, 2, *found.shape[1:])
 
     def _told(self, some: slice, gives: bool) -> list[int]:
         """Return which of what the law reads and gives is among what :meth:`two_port` shows, where it comes last."""
@@ -228,8 +233,6 @@ class ElasticWall(LayeredWall):
         each, given = np.concatenate([loop.moved, self._shown_per_volt(modes, s, volts)]), loop.given[:, None]
         found = under_volts(each, given)[:, 0]
         return UnderVoltage(found[:2], found[2:], loop.heard)
-
-    # Control
 
     @property
     def electrode_segments(self) -> Segments | None:

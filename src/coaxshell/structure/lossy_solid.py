@@ -121,6 +121,10 @@ class LossySolidWall(ElasticWall):
         shown *= self.signs_of(asked)  # of potentials, as without losses
         return _receptance(chain), self._per_load(shown)
 
+    def reading(self, modes: Modes, s: ComplexArray, some: slice = slice(None), *, gives: bool = False) -> ComplexArray:
+        """Return what :meth:`two_port` shows; the pieces' ports give both."""
+        return self.two_port(modes, s, some, gives=gives)[1]
+
     def station_port(self, modes: Modes, s: ComplexArray, *, reads: bool = True) -> tuple[FaceReceptance, ComplexArray]:
         """Return the same of what stations along the axis read, shape (9 + layers, 2, orders, nodes), or nothing of it."""
         if np.ndim(modes.wavenumber):
