@@ -213,6 +213,11 @@ def test_pressure_on_a_cut_knows_them():
     found, bare = run(cx.absorber_ring(4, **CUBIC), **settings), run((), **settings)
     near, plain = (one.pressure(x=[-0.9], y=[0.1], z=0.3, time=[0.8]) for one in (found, bare))
     assert abs(float(near[0, 0, 0]) / float(plain[0, 0, 0]) - 1.0) > 1e-3
+    # a run with a station there has the waves that the cut asks for: forces are those of these, not of the nearest of the run's
+    long, there = run(cx.absorber_ring(4, **CUBIC), stations=[0.9]), {"x": [-0.9], "y": [0.1], "z": 0.9, "time": [RUN["duration"]]}
+    assert found.spatial.sampling.period < long.spatial.sampling.period
+    np.testing.assert_allclose(found.pressure(**there), long.pressure(**there), rtol=1e-9)
+    assert [forces.sampling.period for forces in found.spatial.forces] == [one.spatial.sampling.period for one in (found, long)]
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from coaxshell.response.fields.mirrored import Mirrored, flow_back, in_water, mi
 from coaxshell.response.fields.request import FieldRequest, Tell
 from coaxshell.response.fields.scattered import Points, raster_radii
 from coaxshell.response.fields.spatial_incident import SpatialIncident
-from coaxshell.response.fields.spatial_waves import SpatialQuantity, SpatialWaves, cut_waves
+from coaxshell.response.fields.spatial_waves import SpatialQuantity, SpatialWaves, cut_waves, with_own_forces
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import laplace_grid, require_known
 from coaxshell.solver.scaling import Problem
@@ -134,6 +134,7 @@ class CutField:
         what = f"the field at {radii:,} radii of {len(waves.sampling.modes):,} axial wavenumbers and {times.size:,} instants"
         cost = cut_cost(waves, cut, radii, times.size, len(quantities))
         cost.require(what, "ask for fewer points, for some instants at a time, or for a coarser time_resolution")
+        waves = with_own_forces(waves, spatial)
         tell: Tell = (lambda _: None) if asked.progress is None else (lambda share: asked.progress(share, "field"))  # type: ignore[misc]
         if cut.kind == "along":
             lines = lines_of(waves, asked, cut.grid, times)

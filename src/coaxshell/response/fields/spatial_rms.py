@@ -20,7 +20,7 @@ from coaxshell.response.fields.request import Domain, FieldRequest, axis, defaul
 from coaxshell.response.fields.rms import labelled_rms, on_circles, points_around, with_incident
 from coaxshell.response.fields.spatial_incident import SpatialIncident
 from coaxshell.response.fields.spatial_pressure import spatial_request
-from coaxshell.response.fields.spatial_waves import cut_waves
+from coaxshell.response.fields.spatial_waves import cut_waves, with_own_forces
 from coaxshell.response.synthesis import mean_square
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import laplace_grid
@@ -110,6 +110,7 @@ def _mean_square(spatial: SpatialSolution, asked: FieldRequest, domain: Domain, 
     if waves is not None and domain.region.fluid is not None:
         what = f"the mean square pressure of orders 0 to {waves.sampling.max_order} at {radii.size:,} radii and {times.size:,} instants"
         cut_cost(waves, cut, radii.size, times.size).require(what, "ask for some instants at a time")
+        waves = with_own_forces(waves, spatial)
         modal = np.zeros((radii.size, waves.parities, waves.sampling.max_order + 1, times.size))
         for _, at in reached(waves, asked, radii, times):
             modal[at] = modal_histories(waves, [Circles(domain.region, radii[at])], times, ("pressure",), tell)[0]["pressure"]

@@ -1,7 +1,8 @@
 """The fields of three dimensions, wave by wave: what drives the fluids at each axial wavenumber, in a second pass over those of a run.
 
 A run keeps the motion of the walls at its stations alone. A field solves the same waves again, at the nodes of the band that it needs and
-with the axial period that its own place and instants ask for: often a smaller one than that of the run.
+with the axial period that its own place and instants ask for: often a smaller one than that of the run. Forces that are known at the
+wavenumbers of the run alone make it take those, or are solved again where these are too few.
 """
 
 from __future__ import annotations
@@ -29,7 +30,6 @@ from coaxshell.solver.axial.faced import make_shapes
 from coaxshell.solver.axial.faced_motion import faces_of
 from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
-from coaxshell.solver.axial.lack import lacks
 from coaxshell.solver.axial.sampling import AxialSampling, axial_sampling, fastest_wave, spherical_fronts
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import forces_of
@@ -191,7 +191,7 @@ def cut_waves(
     Returns
     -------
     tuple
-        (waves, positions); no waves where no position is reached.
+        (waves, positions); no waves where no position is reached. Forces of the run, see :func:`with_own_forces`.
     """
     problem, settings = spatial.problem, spatial.settings
     until = latest + SMEAR * asked.resolution
@@ -203,12 +203,23 @@ def cut_waves(
     if not felt.size:
         return None, felt
     ends = sorted({float(z[felt].min()) * problem.scales.length, float(z[felt].max()) * problem.scales.length})
-    sampling = axial_sampling(problem, replace(settings, stations=tuple(ends), duration=until, axial_period=None))
     forces = forces_of(spatial)
-    if lacks(forces) and spatial.sampling.period >= sampling.period:
-        sampling = spatial.sampling  # at whose wavenumbers it is known what amplifiers lack
+    known = None if forces is None else forces.sampling
+    if known is not None:
+        until = min(until, settings.duration)  # after which no force is known
+    sampling = axial_sampling(problem, replace(settings, stations=tuple(ends), duration=until, axial_period=None))
+    if known is not None and known.period >= sampling.period * (1.0 - 1e-12):
+        sampling = known
     make_shapes(problem, sampling.modes)
     return SpatialWaves(problem, sampling, grid, z[felt], asked.part, asked.filter, forces), felt
+
+
+def with_own_forces(waves: SpatialWaves, spatial: SpatialSolution) -> SpatialWaves:
+    """Return waves whose forces are known at their own wavenumbers: solved again where those of the run are too few.
+
+    A force that is felt at z turns with k as cos kz does: in the nearest wave of the run it is another one.
+    """
+    return waves if waves.forces is None else replace(waves, forces=forces_of(spatial, waves.sampling))
 
 
 def each_block(waves: SpatialWaves, radii: int, work: Callable[[slice], Found], tell: Tell) -> Iterator[Found]:

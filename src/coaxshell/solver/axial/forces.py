@@ -6,6 +6,7 @@ from typing import Protocol
 
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.modes import Modes
+from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 
 
@@ -25,6 +26,11 @@ class WallForces(Protocol):
     @property
     def axial_parities(self) -> int:
         """1 where everything is even about the origin, else 2."""
+        ...
+
+    @property
+    def sampling(self) -> AxialSampling | None:
+        """The waves at whose wavenumbers alone they are known; None of those that are known at any."""
         ...
 
     def at(self, nodes: slice) -> WallForces:

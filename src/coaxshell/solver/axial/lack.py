@@ -105,6 +105,11 @@ class VoltageLack:
         """1 where everything is even about the origin, else 2."""
         return int(self.lack.shape[1])
 
+    @property
+    def sampling(self) -> AxialSampling:
+        """The waves at whose wavenumbers it is known."""
+        return self.channels.sampling
+
     def at(self, nodes: slice) -> VoltageLack:
         """Return it at a slice of its nodes."""
         return replace(self, lack=self.lack[..., nodes])

@@ -16,6 +16,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.lines import LineLayout
+from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.scaling import Problem
 
 
@@ -47,6 +48,11 @@ class LineForces:
     def axial_parities(self) -> int:
         """1 where everything is even about the origin, else 2."""
         return self.layout.axial_parities
+
+    @property
+    def sampling(self) -> AxialSampling:
+        """The waves at whose wavenumbers they are known."""
+        return self.layout.sampling
 
     def at(self, nodes: slice) -> LineForces:
         """Return the forces at a slice of their nodes."""

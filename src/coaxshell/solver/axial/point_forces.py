@@ -89,6 +89,7 @@ class PointForces:
     parities: int
     origin = 0.0
     axial_parities = 2
+    sampling = None
 
     def at(self, nodes: slice) -> PointForces:
         """Return the forces at a slice of their nodes."""

@@ -156,16 +156,30 @@ def histories_within(solution: SpatialSolution, shell: int, depth: float) -> dic
     return {name: grid.invert(spectra[name][:, shell])[..., keep] for name in READ if name in spectra}
 
 
-def forces_of(solution: SpatialSolution) -> WallForces | None:
-    """Return the transforms of the forces of a finished run's absorbers, solved again if it was loaded; None without absorbers."""
-    if not solution.forces:
-        waves = with_shapes(solution.problem, solution.sampling, on_threads)
-        linked = _linked(solution.problem, laplace_grid(solution.settings), waves, None, on_threads)
-        if linked is None:
-            return None
-        linked = linked.with_waves(solution.sampling) if isinstance(linked, LineSolution | LimitedSolution) else linked
-        solution.forces.append(linked.forces)
-    return solution.forces[0]
+def forces_of(solution: SpatialSolution, sampling: AxialSampling | None = None) -> WallForces | None:
+    """Return the transforms of what absorbers, or amplifiers at their limit, do in a finished run; None without any.
+
+    Solved again if the run was loaded, or where they are known at its wavenumbers alone and those of another *sampling* are wanted, whose
+    forces the run keeps too: the last ones asked for.
+
+    Raises
+    ------
+    InputError
+        If there is no room for them.
+    """
+    problem, settings, wanted = solution.problem, solution.settings, sampling or solution.sampling
+    for kept in solution.forces:
+        if kept.sampling is None or kept.sampling.period == wanted.period:
+            return kept
+    if solution.forces:
+        require_room(problem, replace(settings, axial_period=wanted.period * problem.scales.length))
+    linked = _linked(problem, laplace_grid(settings), with_shapes(problem, wanted, on_threads), None, on_threads)
+    if linked is None:
+        return None
+    linked = linked.with_waves(wanted) if isinstance(linked, LineSolution | LimitedSolution) else linked
+    del solution.forces[1:]
+    solution.forces.append(linked.forces)
+    return linked.forces
 
 
 def laplace_grid(settings: Settings) -> LaplaceGrid:
