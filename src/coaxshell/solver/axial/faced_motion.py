@@ -12,7 +12,7 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.faced import READ, FacedWave
 from coaxshell.solver.axial.families import WaveSet
-from coaxshell.solver.axial.limited_wave import limited_faces
+from coaxshell.solver.axial.limited_wave import lacking, limited_faces
 from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
 from coaxshell.solver.scaling import Problem
 
@@ -45,7 +45,7 @@ def closed_motions(wave: FacedWave, waves: WaveSet, j: int, grid: LaplaceGrid, b
         yield from waves.belts.closed(j)
         return
     if waves.limited:
-        yield from (closed for closed, _ in limited_faces(wave, waves, grid, block))
+        yield from limited_faces(wave, waves, grid, block)
         return
     none = np.zeros((0, 0, wave.modes.count, wave.s.size), np.complex128)
     loops = TiedFaces(wave, max(family.parities for family in waves.families)) if wave.problem.tied else None
@@ -55,23 +55,17 @@ def closed_motions(wave: FacedWave, waves: WaveSet, j: int, grid: LaplaceGrid, b
 
 
 def faced_amplitudes(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice, layers: int) -> list[ComplexArray]:
-    """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes)."""
-    wave = wave_at(problem, waves, j, grid, block)
-    if waves.limited:
-        return [_limited(wave, closed, lack, layers) for closed, lack in limited_faces(wave, waves, grid, block)]
-    found = []
-    for faces, voltage in closed_motions(wave, waves, j, grid, block):
-        given = [voltage[:, parity] if voltage.size else None for parity in range(len(faces))]
-        found.append(np.stack([wave.read(one, layers, volts) for one, volts in zip(faces, given, strict=True)], axis=2))
-    return found
+    """Return what walls are read for in wave j under each family's loads, (9 + layers, shells, parities, orders, nodes).
 
-
-def _limited(wave: FacedWave, closed: Closed, lack: ComplexArray | float, layers: int) -> ComplexArray:
-    """Return the same of one family whose amplifiers stop at a limit: in the place of what walls give stands what their law asks for."""
-    found = np.stack([wave.read(one, layers, closed.voltage[:, parity]) for parity, one in enumerate(closed.faces)], axis=2)
-    for i, wall in enumerate(wave.problem.shells):
-        if not isinstance(lack, float) and wall.gains is not None and wall.shows_control:
-            found[len(READ) + wall.shown_potentials - 1, i] -= lack[i]
+    Where amplifiers stop at a limit what laws ask for stands in the place of the voltages that walls give.
+    """
+    wave, found = wave_at(problem, waves, j, grid, block), []
+    for family, closed in zip(waves.families, closed_motions(wave, waves, j, grid, block), strict=True):
+        shown, lack = closed.read(wave, layers), lacking(problem, family, wave.modes)
+        for i, wall in enumerate(problem.shells):
+            if not isinstance(lack, float) and wall.gains is not None and wall.shows_control:
+                shown[len(READ) + wall.shown_potentials - 1, i] -= lack[i]
+        found.append(shown)
     return found
 
 

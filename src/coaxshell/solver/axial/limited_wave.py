@@ -15,13 +15,13 @@ from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family, WaveSet, wave_sets
 from coaxshell.solver.axial.lack import Channels, VoltageLack, wave_patterns
 from coaxshell.solver.axial.limited_charges import WaveCharges
-from coaxshell.solver.axial.normals import normals_of, piezoelectric_layers, potentials_of
+from coaxshell.solver.axial.normals import shown_of, stacked_normals
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_faces import Closed, TiedFaces
 from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
 from coaxshell.solver.electrode_loops import ElectrodeLoops, times
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.voltage_response import controlled
+from coaxshell.solver.voltage_response import controlled, of_all
 
 
 def limited_motions(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, block: slice) -> list[ComplexArray]:
@@ -34,22 +34,18 @@ def limited_motions(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid,
     for family in waves.families:
         normal = read = None
         if not isinstance(family.forces, VoltageLack):
-            normal = np.stack([np.stack(each) for each in normals_of(problem, wave.bare, family, grid, block)], axis=1)
+            normal = stacked_normals(problem, wave.bare, family, grid, block)
             read, normal = patterns.readings(wave.readings(normal)), _widened(normal, motion_parities(problem))
         asked, given = limited_voltages(wave.loops, family, waves.modes[j], read)
         moved = wave.moved(patterns.in_orders(given), normal)
-        motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
-        potentials = np.array(potentials_of(problem, wave.bare, piezoelectric_layers(problem), *motion))
-        shown = given if limits_currents(problem.system) else asked
-        for volts, i in zip(patterns.in_orders(shown), wave.response.shells, strict=True):
-            if problem.shells[i].shows_control:
-                potentials[problem.shells[i].shown_potentials - 1, i] = volts
-        found.append(np.concatenate([np.stack(moved[:3]), potentials]))
+        if not limits_currents(problem.system):
+            moved = moved._replace(voltage=of_all(problem, wave.response, patterns.in_orders(asked)))
+        found.append(shown_of(problem, wave, moved))
     return found
 
 
-def limited_faces(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: slice) -> Iterator[tuple[Closed, ComplexArray | float]]:
-    """Yield what the faces of all walls do under each family, with what is lacking of what their laws ask for, (shells, ...), 0 if nothing.
+def limited_faces(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: slice) -> Iterator[Closed]:
+    """Yield what the faces of all walls do under each family.
 
     ``wave`` is without feedback, where some walls have two faces.
     """
@@ -59,7 +55,7 @@ def limited_faces(wave: FacedWave, waves: WaveSet, grid: LaplaceGrid, block: sli
         free = None if isinstance(family.forces, VoltageLack) else wave.faces(family, grid, block)
         read = None if free is None else patterns.readings(tied.readings(free))
         _, given = limited_voltages(tied.loops, family, wave.modes, read)
-        yield tied.moved(patterns.in_orders(given), free), lacking(wave.problem, family, wave.modes)
+        yield tied.moved(patterns.in_orders(given), free)
 
 
 def lacking(problem: Problem, family: Family, modes: Modes) -> ComplexArray | float:
@@ -96,7 +92,7 @@ def _readings(
     if isinstance(wave, TiedFaces):
         free = wave.wave.faces(family, grid, block)
         return wave.loops.patterns.readings(wave.readings(free)), 0.0 if charges is None else charges.of_faces(free)
-    normal = np.stack([np.stack(each) for each in normals_of(problem, wave.bare, family, grid, block)], axis=1)
+    normal = stacked_normals(problem, wave.bare, family, grid, block)
     return wave.loops.patterns.readings(wave.readings(normal)), 0.0 if charges is None else charges.of_normal(normal)
 
 

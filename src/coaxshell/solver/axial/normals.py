@@ -7,6 +7,7 @@ import numpy as np
 from coaxshell.numerics.arrays import ComplexArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.axial.families import Family, outside_loads
+from coaxshell.solver.axial.tied_wave import Driven, OpenWave
 from coaxshell.solver.coupling import ModalSystem
 from coaxshell.solver.scaling import Problem
 
@@ -30,6 +31,21 @@ def normals_of(problem: Problem, system: ModalSystem, family: Family, grid: Lapl
         each += [system.solve(surface, pressures[parity]) for surface, pressures in forces.items()]
         found.append([np.sum(moved, axis=0) if len(each) > 1 else moved[0] for moved in zip(*each, strict=True)])
     return found
+
+
+def stacked_normals(problem: Problem, system: ModalSystem, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
+    """Return the same as :func:`normals_of`, (shells, parities, orders, nodes)."""
+    return np.stack([np.stack(each) for each in normals_of(problem, system, family, grid, block)], axis=1)
+
+
+def shown_of(problem: Problem, wave: OpenWave, moved: Driven) -> ComplexArray:
+    """Return what walls are read for that move so, as :func:`motions_of` does; of those that show what they give its voltage."""
+    motion = [list(each) for each in (moved.normal, moved.tangential, moved.axial)]
+    potentials = np.array(potentials_of(problem, wave.bare, piezoelectric_layers(problem), *motion))
+    for i, wall in enumerate(problem.shells):
+        if wall.shows_control:
+            potentials[wall.shown_potentials - 1, i] = moved.voltage[i]
+    return np.concatenate([np.stack(moved[:3]), potentials])
 
 
 def piezoelectric_layers(problem: Problem) -> int:

@@ -16,12 +16,11 @@ from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver.axial.faced import FacedWave
 from coaxshell.solver.axial.families import Family
-from coaxshell.solver.axial.normals import motions_of, piezoelectric_layers, potentials_of
+from coaxshell.solver.axial.normals import motions_of, piezoelectric_layers, shown_of
 from coaxshell.solver.axial.tied_faces import Closed, OpenFaces
 from coaxshell.solver.axial.tied_wave import OpenWave
 from coaxshell.solver.cascade import FaceMotion
 from coaxshell.solver.scaling import Problem
-from coaxshell.solver.voltage_response import controlled
 
 Motion = TypeVar("Motion")
 
@@ -90,12 +89,7 @@ class ThinAnswers(Answers[ComplexArray]):
 
     def under(self, voltage: ComplexArray) -> ComplexArray:
         """Return W, V, U and potentials, the voltage itself last."""
-        moved = self._wave.moved(voltage)
-        motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
-        potentials = np.array(potentials_of(self._problem, self._wave.bare, piezoelectric_layers(self._problem), *motion))
-        for i in controlled(self._problem):
-            potentials[self._problem.shells[i].shown_potentials - 1, i] = moved.voltage[i]
-        return np.concatenate([np.stack(moved[:3]), potentials])
+        return shown_of(self._problem, self._wave, self._wave.moved(voltage))
 
     def shown(self, motion: ComplexArray) -> ComplexArray:
         """Return it as it is."""
@@ -142,6 +136,4 @@ class FacedAnswers(Answers[Closed]):
 
     def shown(self, motion: Closed) -> ComplexArray:
         """Return what :meth:`FacedWave.read` does, with all potentials."""
-        layers = piezoelectric_layers(self._problem)
-        each = [self.wave.read(faces, layers, motion.voltage[:, parity]) for parity, faces in enumerate(motion.faces)]
-        return np.stack(each, axis=2)
+        return motion.read(self.wave, piezoelectric_layers(self._problem))

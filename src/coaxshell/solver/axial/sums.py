@@ -20,7 +20,7 @@ from coaxshell.solver.axial.faced_motion import faced_amplitudes
 from coaxshell.solver.axial.families import Family, WaveSet
 from coaxshell.solver.axial.forces import WallForces
 from coaxshell.solver.axial.limited_wave import limited_motions
-from coaxshell.solver.axial.normals import motions_of, normals_of, piezoelectric_layers, potentials_of
+from coaxshell.solver.axial.normals import motions_of, piezoelectric_layers, shown_of, stacked_normals
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.tied_wave import TiedWave, motion_parities
 from coaxshell.solver.coupling import ModalSystem
@@ -103,21 +103,10 @@ def amplitudes_of(problem: Problem, waves: WaveSet, j: int, grid: LaplaceGrid, b
         return limited_motions(problem, waves, j, grid, block)
     if problem.tied:
         tied = TiedWave(problem, grid.nodes[block], waves.modes[j], max(family.parities for family in waves.families))
-        return [_tied_motions(problem, tied, family, grid, block) for family in waves.families]
+        free = (stacked_normals(problem, tied.bare, family, grid, block) for family in waves.families)
+        return [shown_of(problem, tied, tied.driven(normal)) for normal in free]
     system = ModalSystem(problem, grid.nodes[block], waves.modes[j], shared=waves.fluids)
     return [motions_of(problem, system, family, grid, block) for family in waves.families]
-
-
-def _tied_motions(problem: Problem, tied: TiedWave, family: Family, grid: LaplaceGrid, block: slice) -> ComplexArray:
-    """Return the same as :func:`motions_of` where feedback ties walls or orders to each other."""
-    free = np.stack([np.stack(each) for each in normals_of(problem, tied.bare, family, grid, block)], axis=1)
-    moved = tied.driven(free)
-    motion = [list(moved.normal), list(moved.tangential), list(moved.axial)]
-    potentials = np.array(potentials_of(problem, tied.bare, piezoelectric_layers(problem), *motion))
-    for i, wall in enumerate(problem.shells):
-        if wall.shows_control:
-            potentials[wall.shown_potentials - 1, i] = moved.voltage[i]
-    return np.concatenate([np.stack(moved[:3]), potentials])
 
 
 def given_voltages(problem: Problem, modes: Modes, s: ComplexArray, amplitudes: ComplexArray) -> ComplexArray:

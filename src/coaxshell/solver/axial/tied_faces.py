@@ -30,6 +30,11 @@ class Closed(NamedTuple):
     faces: list[list[FaceMotion]]
     voltage: ComplexArray
 
+    def read(self, wave: FacedWave, layers: int) -> ComplexArray:
+        """Return what all walls are read for, (9 + layers, shells, parities, orders, nodes), see :meth:`FacedWave.read`."""
+        given = [self.voltage[:, parity] if self.voltage.size else None for parity in range(len(self.faces))]
+        return np.stack([wave.read(faces, layers, volts) for faces, volts in zip(self.faces, given, strict=True)], axis=2)
+
 
 class OpenFaces:
     """What voltages do in one wave, and what is read of its motion, without feedback.
