@@ -15,8 +15,10 @@ from coaxshell.solver.limited_voltages import LimitedMarch
 from coaxshell.solver.recompute import spectra_of
 from coaxshell.structure.segments import Segments
 
-PLANE = presets.load("electrodes").replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4))
+PAIRS = presets.load("electrodes")
+PLANE = PAIRS.replace(source=cx.PlaneShock(peak_pressure=25e3, decay_time=1.314e-4))
 RUN = {"duration": 0.6, "time_step": 0.01, "modes": 8}
+BRIEF = {**RUN, "time_step": 0.02}
 
 
 def limited(limit="3 A/m^2", stops: bool = True, **control) -> cx.System:
@@ -96,6 +98,21 @@ def test_a_limit_judges_what_is_asked_for():
     assert effort["outer"].limits["current"] == 3.0
     assert not effort.within
     assert any("times the 3.000 A/m^2 of its amplifier; set control.current_saturation = true" in text for text in run.warnings)
+
+
+def test_a_wall_that_reaches_no_limit_is_not_told_of_one():
+    small = {"segments": 4, "derivative": [0.5, 10.0], "proportional": 0.0}
+    for where in ({}, {"dimensions": 3, "stations": [0.0]}):
+        run = cx.simulate(limited(**small), **{**BRIEF, "modes": 4}, **where)
+        assert [text.split(":")[0] for text in run.warnings if "current was held" in text] == ["outer shell"]
+    # at 6 A/m^2 means over a step stay within what an instant exceeds: there is nothing to switch on
+    brief = cx.simulate(
+        PAIRS.with_overrides({"control.segments": 8, "control.current_limit": 6.0, "control.current_saturation": True}), **BRIEF
+    )
+    told = [text for text in brief.warnings if "A/m^2" in text]
+    assert len(told) == 1
+    assert "outer shell: the control law asks for 6.589 A/m^2" in told[0]
+    assert told[0].endswith("means over a time step stay within it: use a shorter time_step")
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ from coaxshell.solver.electrode_loops import times
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import forces_at
 from coaxshell.solver.interface.march import MarchResult
-from coaxshell.solver.limited_currents import ChargedLoops, charge_per_volt, charge_without
+from coaxshell.solver.limited_currents import ChargedLoops, charge_per_volt, charge_without, walls_held
 from coaxshell.solver.limited_voltages import LimitedMarch, at_points, beyond, driven_alone, limits_of, require_fine, step_weights
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
@@ -209,6 +209,7 @@ def _answer(
         iterations=cut.iterations + (0 if marched is None else marched.iterations),
         exact=None if forces.masses is None else (forces.spectrum, forces.masses),
         laws=None if marched is None else marched.laws,
+        held=walls_held(structure.problem, cut.lack),
         voltage=of_all(structure.problem, loops.response, patterns.in_orders(cut.given)),
         asked=of_all(structure.problem, loops.response, patterns.in_orders(shown)),
         segments=of_all(structure.problem, loops.response, volts) if patterns.cut else None,

@@ -17,6 +17,7 @@ orders differ in and what holds the thickness.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import NamedTuple
@@ -45,7 +46,6 @@ from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid_charges import free_capacity
 
-
 def capacities(problem: Problem) -> FloatArray:
     """Return C of each wall under control, charge per area and volt; 1 of one without actuators, whose voltage is 0."""
     found = []
@@ -71,13 +71,18 @@ def _acts(wall: ShellModel) -> bool:
     return bool(wall.transducers and wall.transducers.actuators) if isinstance(wall, ElasticWall) else bool(wall.charges(Modes.up_to(0)))
 
 
+def walls_held(problem: Problem, lack: FloatArray) -> tuple[int, ...]:
+    """Return the walls whose amplifiers were held at their limit, by number, from what each lacks, (walls under control, ...)."""
+    return tuple(i for i, own in zip(controlled(problem), lack, strict=True) if own.any() and _acts(problem.shells[i]))
+
+
 def _held(limit: float) -> str:
     return f"the current was held at {engineering(limit, 'A/m^2')}; lower the gains to stay within it"
 
 
-def warnings_of_held(problem: Problem) -> list[str]:
-    """Return the warnings of a run whose currents stop at their limit and reached it, none where voltages stop."""
-    laws = [(i, law_of(problem.system, i)) for i in controlled(problem) if _acts(problem.shells[i])]
+def warnings_of_held(problem: Problem, held: Sequence[int]) -> list[str]:
+    """Return the warnings of a run in which some walls were held at a limit: where it is that of the current."""
+    laws = [(i, law_of(problem.system, i)) for i in held]
     limits = [(i, law.current_limit) for i, law in laws if law is not None and law.current_saturation]
     return [f"{shell_phrase(i, len(problem.shells))}: {_held(limit)}" for i, limit in limits if limit is not None]
 
@@ -91,7 +96,8 @@ def warning_beyond(problem: Problem, shell: int, asked: float, length: float) ->
     told += f"{asked / law.current_limit:.3g} times the {engineering(law.current_limit, 'A/m^2')} of its amplifier; "
     stops = law.segments is not None and not law.dead and not law.saturation and may_stop(problem)
     see = "set control.current_saturation = true to see what it can really do, or " if stops else ""
-    return [f"{shell_phrase(shell, len(problem.shells))}: {told}{see}lower the gains"]
+    remedy = "means over a time step stay within it: use a shorter time_step" if law.current_saturation else f"{see}lower the gains"
+    return [f"{shell_phrase(shell, len(problem.shells))}: {told}{remedy}"]
 
 
 def warnings_of(solved: SolvedSpectra) -> list[str]:
@@ -109,7 +115,7 @@ def warnings_of(solved: SolvedSpectra) -> list[str]:
         peak = peak_on_circle(solved.grid.invert(share * charge * solved.grid.nodes))
         per_area = problem.scales.pressure * problem.scales.length / problem.scales.time
         asked = 0.0 if peak is None else abs(peak.value) * per_area
-        if solved.iterations and law.current_saturation:
+        if law.current_saturation and i in solved.held:
             found.append(f"{shell_phrase(i, len(problem.shells))}: {_held(law.current_limit)}")
         else:
             found += warning_beyond(problem, i, asked, length)
@@ -257,6 +263,7 @@ def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, 
         force,
         displacement,
         iterations=iterations,
+        held=walls_held(problem, lack),
         voltage=voltage,
         segments=of_all(problem, response, at_points(patterns, grid.invert(given))),
         defect=driven_alone(structure, response, patterns, times(loops.inverse, grid.transform_linear(off))),

@@ -58,6 +58,8 @@ class SolvedSpectra:
         Voltages of the segments of electrodes as they are asked for, where these are cut.
     defect : tuple of ndarray, or None
         Transforms of W and V, of what the march of limited voltages leaves unsolved.
+    held : tuple of int
+        Walls whose amplifiers were held at the limit of their current.
     seen : StructureSpectra or None
         What marched, where anything did: the structure, or what its absorbers see of it (:mod:`coaxshell.solver.interface.seen`).
     """
@@ -77,6 +79,7 @@ class SolvedSpectra:
     asked: ComplexArray | None = None
     segments: FloatArray | None = None
     defect: tuple[ComplexArray, ComplexArray] | None = None
+    held: tuple[int, ...] = ()
     seen: StructureSpectra | None = None
 
     @property

@@ -19,7 +19,7 @@ from coaxshell.solver.axial.line_solve import LineSolution
 from coaxshell.solver.axial.linked import PointSolution
 from coaxshell.solver.axial.softened import Softened, softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
-from coaxshell.solver.limited_currents import warnings_of_held
+from coaxshell.solver.limited_currents import walls_held, warnings_of_held
 from coaxshell.solver.solution import KEPT_BYTES, Judgement
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.station_currents import warnings_at
@@ -71,7 +71,7 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
     if linked is not None and linked.laws is not None:
         warnings += checks.swinging_on_laws(linked.laws.angle, given.grid.time_step, settings.refinement)
     if isinstance(linked, LimitedSolution):
-        warnings += warnings_of_held(problem)
+        warnings += warnings_of_held(problem, walls_held(problem, linked.lack))
     stations = [solution.at(i) for i in range(len(settings.stations))]
     return Judgement(estimates, (*warnings, *checks.actuators(*stations), *warnings_at(*stations)))
 
