@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dense_limits import DensePoints
 from electrode_pairs import pairs
 from numpy.testing import assert_allclose
 
@@ -117,16 +118,10 @@ def test_steps_converge(cut):
 
 
 def test_waves_agree_with_a_dense_march(monkeypatch):
-    """Every point and every past step of its own, without transforms or conjugate gradients."""
     rng, problem = np.random.default_rng(3), dimensionless(limited(), dimensions=3)
     channels, walls, steps, parities = Channels.of(problem, AxialSampling(2.0, 3, 3 * np.pi)), 2, 5, 2
     surface = WallSurface(wave_patterns(problem, channels.sampling.modes[0]), channels, parities)
-    size, shape = parities * channels.count, (walls, parities, channels.count)
-    evaluate = np.stack(
-        [(surface.along(surface.gridded(one.reshape(shape[1:]))) @ surface.evaluate).ravel() for one in np.eye(size)], axis=1
-    )
-    weight = np.repeat(surface.series.weights, surface.evaluate.shape[1])
-    project = np.linalg.pinv(evaluate.T @ (weight[:, None] * evaluate)) @ (evaluate.T * weight)  # no wave is sin 0
+    shape = (walls, parities, channels.count)
     weights = 0.2 * rng.normal(size=(walls, walls, channels.count, 1)) * np.exp(-0.3 * np.arange(steps))
     weights[0, 0, :, 0], weights[1, 1, :, 0] = -rng.uniform(-0.2, 0.9, size=(2, channels.count))
     weights[0, 1, :, 0] = weights[1, 0, :, 0] = 0.01
@@ -136,15 +131,7 @@ def test_waves_agree_with_a_dense_march(monkeypatch):
         return _march(SurfaceStep(surface, limits, weights[..., 0].copy()), weights, asked, None, moving=True)[0]
 
     found = march()
-    before = np.zeros((walls, evaluate.shape[0]))
-    for n in range(steps):
-        alpha = asked[..., n].copy()
-        for back in range(n + 1):
-            alpha += np.einsum("ijc,jpc->ipc", weights[..., back], found[..., n - back])
-        change = alpha.reshape(walls, -1) @ evaluate.T - before
-        lack = (np.clip(change, -1.5, 1.5) - change) @ project.T
-        assert_allclose(found[..., n].reshape(walls, -1), lack, atol=1e-8)
-        before = (alpha + found[..., n]).reshape(walls, -1) @ evaluate.T
+    DensePoints.of(surface, channels, parities).require_lack(found, weights, asked, 1.5, moving=True)
     monkeypatch.setattr(limited_surface, "_MAX_SETS", 1)  # as if the points held turned in circles
     assert_allclose(march(), found, atol=1e-8)
     for name in ("_MOST", "_MOST_TURNS"):  # iterations that do not end are refused

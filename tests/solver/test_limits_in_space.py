@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from dense_limits import DensePoints
 from electrode_pairs import pairs
 from numpy.testing import assert_allclose
 
@@ -60,19 +61,15 @@ def test_what_reaches_no_limit_is_the_linear_answer():
 
 
 def test_waves_agree_with_a_dense_march():
-    """Every point and every past step of its own, without transforms or conjugate gradients."""
     rng, problem = np.random.default_rng(3), dimensionless(PAIRS.replace(source=PAIRS.source.replace(z=0.2)), dimensions=3)
     sampling = AxialSampling(2.0, 3, 3 * np.pi)
     channels, walls, steps, parities = Channels.of(problem, sampling), 2, 8, 2
     patterns = wave_patterns(problem, sampling.modes[0])
     surface = WallSurface(patterns, channels, parities)
-    values = np.eye(parities * channels.count).reshape(-1, parities, channels.count)
-    evaluate = np.stack([(surface.along(surface.gridded(one)) @ surface.evaluate).ravel() for one in values], axis=1)
-    weight = np.repeat(surface.series.weights, patterns.evaluate.shape[0])
-    project = np.linalg.pinv(evaluate.T @ (weight[:, None] * evaluate)) @ (evaluate.T * weight)  # no wave is sin 0
-    points = rng.normal(size=evaluate.shape[0])
+    dense = DensePoints.of(surface, channels, parities)
+    points = rng.normal(size=len(dense.evaluate))
     back = surface.amplitudes(points.reshape(surface.series.points, -1), np.arange(surface.series.points))
-    assert_allclose(back.ravel(), project @ points, atol=1e-12)
+    assert_allclose(back.ravel(), dense.project @ points, atol=1e-12)
     size, lasting = np.repeat(np.array([3.0, 1.0])[:, None], channels.count, axis=1), np.exp(-0.3 * np.arange(steps))
     weights = 0.2 * rng.normal(size=(walls, walls, channels.count, 1)) * lasting
     weights[0, 0, :, 0], weights[1, 1, :, 0] = -rng.uniform(0.1, 0.95, size=(2, channels.count))
@@ -83,13 +80,7 @@ def test_waves_agree_with_a_dense_march():
     found, _ = _march(SurfaceStep(surface, limits, weights[..., 0].copy()), weights, asked, None)
     assert not found[..., :2].any()
     assert found[..., 5].any()
-    for n in range(steps):  # each step by the lack of all points of both walls, as fixed points of the equation itself
-        volts = asked[..., n].copy()
-        for back in range(n + 1):
-            volts += np.einsum("ijc,jpc->ipc", weights[..., back], found[..., n - back])
-        there = volts.reshape(walls, -1) @ evaluate.T
-        lack = (np.clip(there, -2.0, 2.0) - there) @ project.T
-        assert_allclose(found[..., n].reshape(walls, -1), lack, atol=1e-8)
+    dense.require_lack(found, weights, asked, 2.0)
 
 
 def test_the_voltage_stops_and_energy_closes(whole):
