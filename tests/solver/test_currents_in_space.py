@@ -14,10 +14,10 @@ from coaxshell.model import presets
 from coaxshell.response.electrical import of_segments
 from coaxshell.solver.axial import limited_surface
 from coaxshell.solver.axial.lack import Channels, wave_patterns
-from coaxshell.solver.axial.limited import _march
 from coaxshell.solver.axial.limited_surface import SurfaceStep, WallSurface
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.cost import run_cost
+from coaxshell.solver.limited_voltages import march_lack
 from coaxshell.solver.scaling import dimensionless
 
 PAIRS = presets.load("electrodes")
@@ -128,7 +128,7 @@ def test_waves_agree_with_a_dense_march(monkeypatch):
     asked, limits = np.cumsum(rng.normal(size=(*shape, steps)), axis=-1), np.full((walls, surface.evaluate.shape[1]), 1.5)
 
     def march() -> np.ndarray:
-        return _march(SurfaceStep(surface, limits, weights[..., 0].copy()), weights, asked, None, moving=True)[0]
+        return march_lack(SurfaceStep(surface, limits, weights[..., 0].copy()).solve, weights, asked, moving=True)[0]
 
     found = march()
     DensePoints.of(surface, channels, parities).require_lack(found, weights, asked, 1.5, moving=True)

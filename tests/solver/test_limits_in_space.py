@@ -12,14 +12,13 @@ import coaxshell as cx
 from coaxshell.errors import InputError
 from coaxshell.model import presets
 from coaxshell.solver.axial.lack import Channels, wave_patterns
-from coaxshell.solver.axial.limited import _march
 from coaxshell.solver.axial.limited_surface import SurfaceStep, WallSurface
 from coaxshell.solver.axial.limited_wave import axial_parities, even_about
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.axial.solve import forces_of, histories_within, station_spectra
 from coaxshell.solver.axial.through import stresses_through
 from coaxshell.solver.cost import run_cost
-from coaxshell.solver.limited_voltages import limits_of
+from coaxshell.solver.limited_voltages import limits_of, march_lack
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.structure.elastic_wall import Asked
 
@@ -77,7 +76,7 @@ def test_waves_agree_with_a_dense_march():
     asked = rng.normal(size=(walls, parities, channels.count, steps)) * size[:, None, :, None]
     asked[..., :2] *= 0.01
     limits = limits_of(problem, patterns) * 0 + 2.0
-    found, _ = _march(SurfaceStep(surface, limits, weights[..., 0].copy()), weights, asked, None)
+    found, _ = march_lack(SurfaceStep(surface, limits, weights[..., 0].copy()).solve, weights, asked)
     assert not found[..., :2].any()
     assert found[..., 5].any()
     dense.require_lack(found, weights, asked, 2.0)

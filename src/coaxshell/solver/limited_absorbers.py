@@ -13,7 +13,6 @@ turns converge as those of a Volterra equation; the answer they end at does not 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -25,8 +24,8 @@ from coaxshell.solver.electrode_loops import times
 from coaxshell.solver.interface.absorbers import AbsorberSet, InterfacePoints
 from coaxshell.solver.interface.linear import forces_at
 from coaxshell.solver.interface.march import MarchResult
-from coaxshell.solver.limited_currents import ChargedLoops, charge_per_volt, charge_without, walls_held
-from coaxshell.solver.limited_voltages import LimitedMarch, at_points, beyond, driven_alone, limits_of, require_fine, step_weights
+from coaxshell.solver.limited_currents import CurrentLimits, charge_per_volt
+from coaxshell.solver.limited_voltages import LimitedMarch, VoltageLimits, driven_alone, walls_held
 from coaxshell.solver.links.any_law import march_interface
 from coaxshell.solver.links.histories import middles_transform
 from coaxshell.solver.solved_spectra import SolvedSpectra
@@ -61,73 +60,6 @@ class _Cut:
     iterations: int
 
 
-class _Voltages:
-    """Amplifiers whose voltage stops at its limit."""
-
-    def __init__(self, loops: TiedLoops) -> None:
-        self._loops, self._grid = loops, loops.structure.grid
-        self._limits = limits_of(loops.structure.problem, loops.patterns)
-
-    def reached(self, asked: ComplexArray, free: Moved) -> bool:
-        """Return whether a limit is exceeded where nothing stops at it."""
-        return bool(beyond(at_points(self._loops.patterns, self._grid.invert(asked)), self._limits).any())
-
-    @cached_property
-    def march(self) -> LimitedMarch:
-        """The march of what is lacking."""
-        march = LimitedMarch(self._loops.patterns, self._limits, step_weights(self._loops.structure, self._loops.patterns))
-        require_fine(self._grid, march.weights)
-        return march
-
-    def demanded(self, asked: ComplexArray, free: Moved) -> FloatArray:
-        """Return what is marched against the limits, (walls, patterns, T), where nothing is lacking."""
-        return self._grid.invert(asked)
-
-    def off(self, given: ComplexArray, lacking: ComplexArray, lack: FloatArray, free: Moved) -> FloatArray:
-        """Return by how much what is cut off an answer differs from what was marched."""
-        patterns, limits = self._loops.patterns, self._limits[..., None]
-        volts = at_points(patterns, self._grid.invert(given - lacking))
-        return np.asarray(np.einsum("qn,int->iqt", patterns.project, np.clip(volts, -limits, limits) - volts) - lack)
-
-    def shown(self, cut: _Cut) -> tuple[ComplexArray, FloatArray]:
-        """Return the voltages in patterns, and at points, that an answer shows: what is asked for, which is cut where it is read."""
-        volts = at_points(self._loops.patterns, self._grid.invert(cut.asked))
-        volts[:, list(self._loops.patterns.dead)] = 0.0
-        return cut.asked, volts
-
-
-class _Currents(_Voltages):
-    """Amplifiers whose current stops at its limit."""
-
-    def __init__(self, loops: TiedLoops) -> None:
-        self._loops, self._grid = loops, loops.structure.grid
-        self._charges = ChargedLoops(loops.structure, loops.patterns, loops.patterns.responses(charge_per_volt(loops.structure)))
-
-    def reached(self, asked: ComplexArray, free: Moved) -> bool:
-        """Return whether a limit is exceeded where nothing stops at it."""
-        return self._charges.reached(self.demanded(asked, free))
-
-    @cached_property
-    def march(self) -> LimitedMarch:
-        """The march of what is lacking."""
-        return self._charges.march()
-
-    def _held(self, free: Moved) -> ComplexArray:
-        return self._loops.patterns.readings(charge_without(self._loops.structure, free))
-
-    def demanded(self, asked: ComplexArray, free: Moved) -> FloatArray:
-        """Return the charge asked for over C."""
-        return self._grid.invert(self._charges.charged(asked, self._held(free)))
-
-    def off(self, given: ComplexArray, lacking: ComplexArray, lack: FloatArray, free: Moved) -> FloatArray:
-        """Return by how much what is cut off an answer differs from what was marched."""
-        return self._charges.off(self._grid.invert(self._charges.charged(given, self._held(free))), lack)
-
-    def shown(self, cut: _Cut) -> tuple[ComplexArray, FloatArray]:
-        """Return the voltages given, in patterns and at points."""
-        return cut.given, at_points(self._loops.patterns, self._grid.invert(cut.given))
-
-
 def solve_limited_beside(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
     """Return the answer of a structure with absorbers whose electrodes' voltages, or currents, stop at a limit; None where none does.
 
@@ -143,19 +75,28 @@ def solve_limited_beside(structure: StructureSpectra, absorbers: AbsorberSet, pr
     seen = StructureOfTies(structure, absorbers, alone, loops.patterns)
     found = _linked(absorbers, seen, receptance, points.evaluate(surfaces_moved(structure.problem, alone)), progress)
     free = _free(structure, points, found)
-    limits = _Currents(loops) if limits_currents(structure.problem.system) else _Voltages(loops)
-    if not limits.reached(loops.loops.voltages(loops.patterns.readings(read_of(structure, free))), free):
+    limits = _limits(loops)
+    if not limits.reached(loops.loops.voltages(loops.patterns.readings(read_of(structure, free))), limits.held(free)):
         return None
+    march = limits.march()
     for _ in range(_TURNS):
-        cut = _cut(loops, limits, points, found, progress)
+        cut = _cut(loops, limits, march, points, found, progress)
         at = points.evaluate(surfaces_moved(structure.problem, cut.moved)) - np.einsum("pqk,qk->pk", receptance, found.spectrum)
         before, found = found, _linked(absorbers, seen, receptance, at, progress)
         change, most = (np.abs(grid.invert(x)).max() for x in (found.spectrum - before.spectrum, found.spectrum))
         if change <= _AGREED * most:
-            return _answer(loops, limits, absorbers, found, _cut(loops, limits, points, found, progress), seen)
+            return _answer(loops, limits, absorbers, found, _cut(loops, limits, march, points, found, progress), seen)
     raise InputError(
         "time_step", "is too long for limits beside such absorbers: amplifiers and forces do not come to agree", "use a quarter of it"
     )
+
+
+def _limits(loops: TiedLoops) -> VoltageLimits:
+    """Return the limits of the amplifiers of a structure."""
+    structure, patterns = loops.structure, loops.patterns
+    if limits_currents(structure.problem.system):
+        return CurrentLimits(structure, patterns, patterns.responses(charge_per_volt(structure)))
+    return VoltageLimits(structure, patterns)
 
 
 def _free(structure: StructureSpectra, points: InterfacePoints, forces: _Forces) -> Moved:
@@ -163,16 +104,19 @@ def _free(structure: StructureSpectra, points: InterfacePoints, forces: _Forces)
     return structure.open_loop.forced_spectra(points.project(forces.spectrum))
 
 
-def _cut(loops: TiedLoops, limits: _Voltages, points: InterfacePoints, forces: _Forces, progress: Progress | None) -> _Cut:
+def _cut(
+    loops: TiedLoops, limits: VoltageLimits, march: LimitedMarch, points: InterfacePoints, forces: _Forces, progress: Progress | None
+) -> _Cut:
     """Return what limited amplifiers do under sources and forces."""
     structure, grid = loops.structure, loops.structure.grid
     pressure, free = points.project(forces.spectrum), _free(structure, points, forces)
     asked = loops.loops.asked(loops.patterns.readings(read_of(structure, free)))
-    lack, iterations = limits.march.lack(limits.demanded(asked, free), progress)
+    held = limits.held(free)
+    lack, iterations = march.lack(limits.demanded(asked, held), progress)
     lacking = grid.transform_continued(lack)
     given = asked + times(loops.loops.inverse, lacking)
     voltage = of_all(structure.problem, loops.response, loops.patterns.in_orders(given))
-    off = limits.off(given, lacking, lack, free)
+    off = limits.off(given, given - lacking, lack, held)
     return _Cut(given, given - lacking, lack, off, loops.moved(free, voltage, pressure), iterations)
 
 
@@ -190,11 +134,11 @@ def _linked(
 
 
 def _answer(
-    loops: TiedLoops, limits: _Voltages, absorbers: AbsorberSet, forces: _Forces, cut: _Cut, seen: StructureOfTies
+    loops: TiedLoops, limits: VoltageLimits, absorbers: AbsorberSet, forces: _Forces, cut: _Cut, seen: StructureOfTies
 ) -> SolvedSpectra:
     """Return all of the answer."""
     structure, grid, patterns = loops.structure, loops.structure.grid, loops.patterns
-    shown, volts = limits.shown(cut)
+    shown, volts = limits.shown(cut.given, cut.asked)
     marched = forces.marched
     if marched is None:
         assert forces.masses is not None

@@ -32,19 +32,20 @@ from coaxshell.numerics.circle import peak_on_circle
 from coaxshell.numerics.modes import Modes
 from coaxshell.numerics.progress import Progress
 from coaxshell.solver.actuation import voltage_asked
-from coaxshell.solver.electrode_loops import ElectrodeLoops, times
+from coaxshell.solver.electrode_loops import ElectrodeLoops
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.electrodes import segment_length, segment_mean
 from coaxshell.solver.faced_charges import charge_in_motion, charge_of, per_volt, per_volt_of_grid
 from coaxshell.solver.interface.absorbers import AbsorberSet
-from coaxshell.solver.limited_voltages import LimitedMarch, at_points, driven_alone, inverted_weights, may_stop, require_fine
+from coaxshell.solver.limited_voltages import LimitedMarch, VoltageLimits, at_points, inverted_weights, may_stop, require_fine, solve_alone
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
 from coaxshell.solver.structure_spectra import Moved, StructureSpectra
-from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_of, read_without, response_of
+from coaxshell.solver.voltage_response import VoltageResponse, controlled, read_of, read_without, response_of
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import ShellModel
 from coaxshell.structure.solid_charges import free_capacity
+
 
 def capacities(problem: Problem) -> FloatArray:
     """Return C of each wall under control, charge per area and volt; 1 of one without actuators, whose voltage is 0."""
@@ -71,18 +72,13 @@ def _acts(wall: ShellModel) -> bool:
     return bool(wall.transducers and wall.transducers.actuators) if isinstance(wall, ElasticWall) else bool(wall.charges(Modes.up_to(0)))
 
 
-def walls_held(problem: Problem, lack: FloatArray) -> tuple[int, ...]:
-    """Return the walls whose amplifiers were held at their limit, by number, from what each lacks, (walls under control, ...)."""
-    return tuple(i for i, own in zip(controlled(problem), lack, strict=True) if own.any() and _acts(problem.shells[i]))
-
-
 def _held(limit: float) -> str:
     return f"the current was held at {engineering(limit, 'A/m^2')}; lower the gains to stay within it"
 
 
 def warnings_of_held(problem: Problem, held: Sequence[int]) -> list[str]:
     """Return the warnings of a run in which some walls were held at a limit: where it is that of the current."""
-    laws = [(i, law_of(problem.system, i)) for i in held]
+    laws = [(i, law_of(problem.system, i)) for i in held if _acts(problem.shells[i])]
     limits = [(i, law.current_limit) for i, law in laws if law is not None and law.current_saturation]
     return [f"{shell_phrase(i, len(problem.shells))}: {_held(limit)}" for i, limit in limits if limit is not None]
 
@@ -101,7 +97,7 @@ def warning_beyond(problem: Problem, shell: int, asked: float, length: float) ->
 
 
 def warnings_of(solved: SolvedSpectra) -> list[str]:
-    """Return the warnings about amplifiers asked for more than their current, means over a segment."""
+    """Return the warnings about amplifiers held at their current, or asked for more, means over a segment."""
     problem, found = solved.problem, []
     for i in controlled(problem):
         law, wall = law_of(problem.system, i), problem.shells[i]
@@ -116,7 +112,7 @@ def warnings_of(solved: SolvedSpectra) -> list[str]:
         per_area = problem.scales.pressure * problem.scales.length / problem.scales.time
         asked = 0.0 if peak is None else abs(peak.value) * per_area
         if law.current_saturation and i in solved.held:
-            found.append(f"{shell_phrase(i, len(problem.shells))}: {_held(law.current_limit)}")
+            found += warnings_of_held(problem, [i])
         else:
             found += warning_beyond(problem, i, asked, length)
     return found
@@ -173,19 +169,15 @@ def _kernel(structure: StructureSpectra, patterns: Patterns, s: ComplexArray) ->
 
 
 @dataclass(frozen=True, eq=False)
-class ChargedLoops:
-    """What amplifiers whose currents are limited are asked for, and what they give, in patterns.
+class CurrentLimits(VoltageLimits):
+    """Amplifiers whose currents are limited, in patterns: what is held against the limits is the change of the charge within a step.
 
     Attributes
     ----------
-    structure : StructureSpectra
-    patterns : Patterns
     strained : ndarray, shape (walls, walls, patterns, nodes)
         Q.
     """
 
-    structure: StructureSpectra
-    patterns: Patterns
     strained: ComplexArray
 
     @cached_property
@@ -193,14 +185,18 @@ class ChargedLoops:
         """I dt/C at each point, V, (walls, points)."""
         return largest_steps(self.structure.problem, self.structure.grid.time_step)[:, None] * np.ones(len(self.patterns.evaluate))
 
-    def charged(self, voltage: ComplexArray, moved: ComplexArray | float = 0.0) -> ComplexArray:
-        """Return u + m/C under voltages, and under sources where their charge is given, (walls, patterns, nodes)."""
-        held = capacities(self.structure.problem)[:, None, None]
-        return np.asarray(voltage + (moved + np.einsum("ijqk,jqk->iqk", self.strained, voltage)) / held)
+    def held(self, free: Moved) -> ComplexArray:
+        """Return m of a motion without voltages, in patterns."""
+        return self.patterns.readings(charge_without(self.structure, free))
 
-    def reached(self, alpha: FloatArray) -> bool:
-        """Return whether any step of what is asked for, (walls, patterns, T), is longer than its limit."""
-        steps = np.abs(np.diff(at_points(self.patterns, alpha), axis=-1, prepend=0.0))
+    def demanded(self, asked: ComplexArray, held: ComplexArray | float) -> FloatArray:
+        """Return the charge over C, u + m/C, under voltages and what moves without them."""
+        capacity = capacities(self.structure.problem)[:, None, None]
+        return self.structure.grid.invert(asked + (held + np.einsum("ijqk,jqk->iqk", self.strained, asked)) / capacity)
+
+    def reached(self, voltage: ComplexArray, held: ComplexArray | float) -> bool:
+        """Return whether any step of the charge is longer than its limit."""
+        steps = np.abs(np.diff(at_points(self.patterns, self.demanded(voltage, held)), axis=-1, prepend=0.0))
         return bool((steps > self.limits[..., None] * (1.0 + 1e-9)).any())
 
     def march(self) -> LimitedMarch:
@@ -210,11 +206,14 @@ class ChargedLoops:
         require_fine(self.structure.grid, march.weights)
         return march
 
-    def off(self, beta: FloatArray, lack: FloatArray) -> FloatArray:
+    def off(self, given: ComplexArray, asked: ComplexArray, lack: FloatArray, held: ComplexArray | float) -> FloatArray:
         """Return by how much what is cut off an answer differs from what was marched, in patterns."""
-        asked = at_points(self.patterns, beta - lack - np.concatenate([np.zeros_like(beta[..., :1]), beta[..., :-1]], axis=-1))
-        limits = self.limits[..., None]
-        return np.asarray(np.einsum("qn,int->iqt", self.patterns.project, np.clip(asked, -limits, limits) - asked) - lack)
+        beta = self.demanded(given, held)
+        return self._cut_off(beta - lack - np.concatenate([np.zeros_like(beta[..., :1]), beta[..., :-1]], axis=-1)) - lack
+
+    def shown(self, given: ComplexArray, asked: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Return the voltages given, in patterns and at points."""
+        return given, at_points(self.patterns, self.structure.grid.invert(given))
 
 
 def charge_per_volt(structure: StructureSpectra) -> ComplexArray:
@@ -241,30 +240,8 @@ def solve_limited_currents(structure: StructureSpectra, absorbers: AbsorberSet, 
     InputError
         If feedback is so strong within a step that its limit cannot be found.
     """
-    problem, grid = structure.problem, structure.grid
     answers = _Answers.of(structure)
-    response = answers.response
-    patterns = patterns_of(problem, response.shells, structure.modes.orders, answers.read.shape[1])
-    loops = ElectrodeLoops.of(problem, response, patterns, grid.nodes)
-    charges = ChargedLoops(structure, patterns, patterns.responses(answers.charge))
-    free, sources = loops.asked(patterns.readings(answers.read)), patterns.readings(answers.held)
-    linear = grid.invert(charges.charged(free, sources))
-    if not charges.reached(linear):
-        return None
-    lack, iterations = charges.march().lack(linear, progress)
-    given = free + times(loops.inverse, grid.transform_continued(lack))
-    off = charges.off(grid.invert(charges.charged(given, sources)), lack)
-    force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
-    voltage = of_all(problem, response, patterns.in_orders(given))
-    return SolvedSpectra(
-        structure,
-        absorbers,
-        *driven(structure, response, voltage),
-        force,
-        displacement,
-        iterations=iterations,
-        held=walls_held(problem, lack),
-        voltage=voltage,
-        segments=of_all(problem, response, at_points(patterns, grid.invert(given))),
-        defect=driven_alone(structure, response, patterns, times(loops.inverse, grid.transform_linear(off))),
-    )
+    patterns = patterns_of(structure.problem, answers.response.shells, structure.modes.orders, answers.read.shape[1])
+    limits = CurrentLimits(structure, patterns, patterns.responses(answers.charge))
+    read, held = patterns.readings(answers.read), patterns.readings(answers.held)
+    return solve_alone(structure, absorbers, answers.response, limits, read, held, progress)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import fft
@@ -32,7 +33,7 @@ from coaxshell.solver.interface.saturation import voltage_limit
 from coaxshell.solver.limited_step import LimitedStep
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.solved_spectra import SolvedSpectra
-from coaxshell.solver.structure_spectra import StructureSpectra
+from coaxshell.solver.structure_spectra import Moved, StructureSpectra
 from coaxshell.solver.voltage_response import VoltageResponse, controlled, driven, of_all, read_without, response_of
 
 BLOCK = 16
@@ -66,28 +67,57 @@ class LimitedMarch:
 
     def lack(self, asked: FloatArray, progress: Progress | None = None) -> tuple[FloatArray, int]:
         """Return delta, (walls, patterns, T), from what is asked for without limits, and the iterations of all steps."""
-        steps = asked.shape[-1]
-        found, sums, history = np.zeros_like(asked), HistorySum(KernelTable(self.weights), 1), History()
-        present, before, iterations = self.weights[..., 0], np.zeros(asked.shape[:2]), 0
-        step, words = LimitedStep(self.patterns, self.limits, present), "currents" if self.moving else "voltages"
-        for start in range(0, steps, BLOCK):
-            block = slice(start, min(start + BLOCK, steps))
-            size = block.stop - start
-            known = asked[..., block].copy()
-            if history.step:
-                known += sums.forcing(history, size)[:, 0]
-            for n in range(size):
-                delta, taken = step.solve(known[..., n] - before if self.moving else known[..., n])
-                iterations += taken
-                if self.moving:
-                    before = known[..., n] + delta + np.einsum("ijq,jq->iq", present, delta)
-                if taken:
-                    found[..., start + n] = delta
-                    known[..., n + 1 :] += np.einsum("ijqt,jq->iqt", self.weights[..., 1 : size - n], delta)
-            history, _ = sums.push(history, found[:, None, :, block])
-            if progress is not None:
-                progress(block.stop / steps, f"{words} at their limit")
-        return found, iterations
+        step = LimitedStep(self.patterns, self.limits, self.weights[..., 0])
+
+        def solve(known: FloatArray) -> tuple[FloatArray, int]:
+            delta, taken = step.solve(known[:, 0])
+            return delta[:, None], taken
+
+        found, iterations = march_lack(solve, self.weights, asked[:, None], progress, moving=self.moving)
+        return found[:, 0], iterations
+
+
+def march_lack(
+    solve: Callable[[FloatArray], tuple[FloatArray, int]],
+    weights: FloatArray,
+    asked: FloatArray,
+    progress: Progress | None = None,
+    *,
+    moving: bool = False,
+) -> tuple[FloatArray, int]:
+    """Return delta, (walls, parities, patterns, T), from what is asked for without limits, and the iterations of all steps.
+
+    Parameters
+    ----------
+    solve : callable
+        What :meth:`LimitedStep.solve` does, with parities along the axis.
+    weights : ndarray, shape (walls, walls, patterns, T)
+        Of K.
+    asked : ndarray, shape (walls, parities, patterns, T)
+    progress : callable, optional
+    moving : bool
+        Whether limits are those of a change since the step before.
+    """
+    steps, present, before = asked.shape[-1], weights[..., 0], np.zeros(asked.shape[:-1])
+    found, sums, history, iterations = np.zeros_like(asked), HistorySum(KernelTable(weights), asked.shape[1]), History(), 0
+    for start in range(0, steps, BLOCK):
+        block = slice(start, min(start + BLOCK, steps))
+        size = block.stop - start
+        known = asked[..., block].copy()
+        if history.step:
+            known += sums.forcing(history, size)
+        for n in range(size):
+            delta, taken = solve(known[..., n] - before)
+            iterations += taken
+            if moving:
+                before = known[..., n] + delta + np.einsum("ijq,jpq->ipq", present, delta)
+            if taken:
+                found[..., start + n] = delta
+                known[..., n + 1 :] += np.einsum("ijqt,jpq->ipqt", weights[..., 1 : size - n], delta)
+        history, _ = sums.push(history, found[..., block])
+        if progress is not None:
+            progress(block.stop / steps, f"{'currents' if moving else 'voltages'} at their limit")
+    return found, iterations
 
 
 def limits_of(problem: Problem, patterns: Patterns) -> FloatArray:
@@ -146,6 +176,63 @@ def require_fine(grid: LaplaceGrid, weights: FloatArray) -> None:
         raise InputError("time_step", found, f"use time_step = {grid.time_step / 4:.2g}, or four times the refinement, or lower gains")
 
 
+@dataclass(frozen=True, eq=False)
+class VoltageLimits:
+    """Amplifiers whose voltages are limited, in patterns.
+
+    Attributes
+    ----------
+    structure : StructureSpectra
+    patterns : Patterns
+    """
+
+    structure: StructureSpectra
+    patterns: Patterns
+
+    @cached_property
+    def limits(self) -> FloatArray:
+        """The limit at each point, V, (walls, points)."""
+        return limits_of(self.structure.problem, self.patterns)
+
+    def held(self, free: Moved) -> ComplexArray | float:
+        """Return what a motion without voltages adds to what is limited, in patterns: nothing."""
+        return 0.0
+
+    def reached(self, voltage: ComplexArray, held: ComplexArray | float) -> bool:
+        """Return whether a limit is exceeded by voltages, (walls, patterns, nodes), that none stops."""
+        return bool(beyond(at_points(self.patterns, self.structure.grid.invert(voltage)), self.limits).any())
+
+    def demanded(self, asked: ComplexArray, held: ComplexArray | float) -> FloatArray:
+        """Return what is marched against the limits, (walls, patterns, T), where nothing is lacking."""
+        return self.structure.grid.invert(asked)
+
+    def march(self) -> LimitedMarch:
+        """Return the march of what is lacking."""
+        march = LimitedMarch(self.patterns, self.limits, step_weights(self.structure, self.patterns))
+        require_fine(self.structure.grid, march.weights)
+        return march
+
+    def off(self, given: ComplexArray, asked: ComplexArray, lack: FloatArray, held: ComplexArray | float) -> FloatArray:
+        """Return by how much what is cut off an answer differs from what was marched, in patterns."""
+        return self._cut_off(self.structure.grid.invert(asked)) - lack
+
+    def _cut_off(self, asked: FloatArray) -> FloatArray:
+        """Return what the limits cut off values in patterns, (walls, patterns, T)."""
+        there, limits = at_points(self.patterns, asked), self.limits[..., None]
+        return np.asarray(np.einsum("qn,int->iqt", self.patterns.project, np.clip(there, -limits, limits) - there))
+
+    def shown(self, given: ComplexArray, asked: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Return the voltages in patterns, and at points, that an answer shows: what is asked for, which is cut where it is read."""
+        volts = at_points(self.patterns, self.structure.grid.invert(asked))
+        volts[:, list(self.patterns.dead)] = 0.0
+        return asked, volts
+
+
+def walls_held(problem: Problem, lack: FloatArray) -> tuple[int, ...]:
+    """Return the walls whose amplifiers were held at their limit, by number, from what each lacks, (walls under control, ...)."""
+    return tuple(i for i, own in zip(controlled(problem), lack, strict=True) if own.any())
+
+
 def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress: Progress | None = None) -> SolvedSpectra | None:
     """Return the answer of a structure whose electrodes' voltages stop at their limit; None where none reaches it.
 
@@ -154,39 +241,63 @@ def solve_limited(structure: StructureSpectra, absorbers: AbsorberSet, progress:
     InputError
         If feedback is so strong within a step that its limit cannot be found.
     """
-    problem, grid = structure.problem, structure.grid
-    response, without = response_of(structure), read_without(structure)
-    patterns = patterns_of(problem, response.shells, structure.modes.orders, without.shape[1])
-    loops, read, limits = (
-        ElectrodeLoops.of(problem, response, patterns, grid.nodes),
-        patterns.readings(without),
-        limits_of(problem, patterns),
-    )
-    if not beyond(at_points(patterns, grid.invert(loops.voltages(read))), limits).any():
+    response, read = response_of(structure), read_without(structure)
+    patterns = patterns_of(structure.problem, response.shells, structure.modes.orders, read.shape[1])
+    return solve_alone(structure, absorbers, response, VoltageLimits(structure, patterns), patterns.readings(read), 0.0, progress)
+
+
+def solve_alone(
+    structure: StructureSpectra,
+    absorbers: AbsorberSet,
+    response: VoltageResponse,
+    limits: VoltageLimits,
+    read: ComplexArray,
+    held: ComplexArray | float,
+    progress: Progress | None = None,
+) -> SolvedSpectra | None:
+    """Return the answer of a structure without absorbers whose amplifiers stop at limits; None where none is reached.
+
+    Parameters
+    ----------
+    structure : StructureSpectra
+    absorbers : AbsorberSet
+        Empty.
+    response : VoltageResponse
+    limits : VoltageLimits
+    read : ndarray, shape (walls, patterns, nodes)
+        What sensors read without voltages.
+    held : ndarray, same shape, or float
+        What that motion adds to what is limited.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        If feedback is so strong within a step that its limit cannot be found.
+    """
+    problem, grid, patterns = structure.problem, structure.grid, limits.patterns
+    loops = ElectrodeLoops.of(problem, response, patterns, grid.nodes)
+    if not limits.reached(loops.voltages(read), held):
         return None
-    march = LimitedMarch(patterns, limits, step_weights(structure, patterns))
-    require_fine(grid, march.weights)
     free = loops.asked(read)
-    lack, iterations = march.lack(grid.invert(free), progress)
+    lack, iterations = limits.march().lack(limits.demanded(free, held), progress)
     lacking = grid.transform_continued(lack)
     given = free + times(loops.inverse, lacking)
-    asked = given - lacking
-    volts = at_points(patterns, grid.invert(asked))
-    off = np.einsum("qn,int->iqt", patterns.project, np.clip(volts, -limits[..., None], limits[..., None]) - volts) - lack
-    volts[:, list(patterns.dead)] = 0.0
+    off = limits.off(given, given - lacking, lack, held)
+    shown, volts = limits.shown(given, given - lacking)
     voltage = of_all(problem, response, patterns.in_orders(given))
-    force, displacement = np.zeros((0, 2, grid.time.size)), np.zeros((0, grid.time.size))
     return SolvedSpectra(
         structure,
         absorbers,
         *driven(structure, response, voltage),
-        force,
-        displacement,
+        force=np.zeros((0, 2, grid.time.size)),
+        displacement=np.zeros((0, grid.time.size)),
         iterations=iterations,
         voltage=voltage,
-        asked=of_all(problem, response, patterns.in_orders(asked)),
+        asked=of_all(problem, response, patterns.in_orders(shown)),
         segments=of_all(problem, response, volts) if patterns.cut else None,
         defect=driven_alone(structure, response, patterns, times(loops.inverse, grid.transform_linear(off))),
+        held=walls_held(problem, lack),
     )
 
 

@@ -59,7 +59,7 @@ class SolvedSpectra:
     defect : tuple of ndarray, or None
         Transforms of W and V, of what the march of limited voltages leaves unsolved.
     held : tuple of int
-        Walls whose amplifiers were held at the limit of their current.
+        Walls whose amplifiers were held at the limit of electrodes' voltage or of their current.
     seen : StructureSpectra or None
         What marched, where anything did: the structure, or what its absorbers see of it (:mod:`coaxshell.solver.interface.seen`).
     """

@@ -19,7 +19,8 @@ from coaxshell.solver.axial.line_solve import LineSolution
 from coaxshell.solver.axial.linked import PointSolution
 from coaxshell.solver.axial.softened import Softened, softened
 from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
-from coaxshell.solver.limited_currents import walls_held, warnings_of_held
+from coaxshell.solver.limited_currents import warnings_of_held
+from coaxshell.solver.limited_voltages import walls_held
 from coaxshell.solver.solution import KEPT_BYTES, Judgement
 from coaxshell.solver.spectral import Stopwatch
 from coaxshell.solver.station_currents import warnings_at

@@ -14,7 +14,6 @@ change of the charge since the step before, delta = clip(alpha_n - beta_(n-1)) -
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -24,7 +23,6 @@ from scipy import fft
 
 from coaxshell.model.gains import limits_currents
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
-from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import Progress, of_stage
 from coaxshell.solver.axial.blocks import BLOCK_NODES, BlockMap, node_blocks, on_threads
@@ -33,7 +31,7 @@ from coaxshell.solver.axial.limited_surface import SurfaceStep, WallSurface
 from coaxshell.solver.axial.limited_wave import axial_parities, even_about, loop_kernel, voltages_asked
 from coaxshell.solver.axial.sampling import AxialSampling
 from coaxshell.solver.limited_currents import largest_steps
-from coaxshell.solver.limited_voltages import BLOCK, limits_of, require_fine, trapezoidal_nodes
+from coaxshell.solver.limited_voltages import limits_of, march_lack, require_fine, trapezoidal_nodes
 from coaxshell.solver.scaling import Problem
 
 _CHANNELS = 256
@@ -112,7 +110,7 @@ def solve_limited_waves(
     weights = _weights(problem, grid, channels, on, progress)
     require_fine(grid, weights)
     step = SurfaceStep(surface, limits, weights[..., 0].copy())
-    lack, iterations = _march(step, weights, asked, progress, moving=moving)
+    lack, iterations = march_lack(step.solve, weights, asked, progress, moving=moving)
     return LimitedSolution(problem, grid, lack_of(channels, grid.transform_continued(lack), origin), lack, iterations)
 
 
@@ -173,37 +171,3 @@ def _weights(problem: Problem, grid: LaplaceGrid, channels: Channels, on: BlockM
         some = slice(first, first + _CHANNELS)
         weights[:, :, some] = fft.irfft(kernel[:, :, some], count, axis=-1, workers=WORKERS)[..., : growth.size] * growth
     return weights
-
-
-def _march(
-    step: SurfaceStep, weights: FloatArray, asked: FloatArray, progress: Progress | None, *, moving: bool = False
-) -> tuple[FloatArray, int]:
-    """Return delta, (walls, parities, channels, T), from what is asked for without limits, and the iterations of all steps.
-
-    ``moving`` tells that limits are those of a change since the step before.
-    """
-    steps, present, before = asked.shape[-1], weights[..., 0], np.zeros(asked.shape[:-1])
-    found, sums, history, iterations = np.zeros_like(asked), HistorySum(KernelTable(weights), asked.shape[1]), History(), 0
-    for block in _blocks(steps):
-        size = block.stop - block.start
-        known = asked[..., block].copy()
-        if history.step:
-            known += sums.forcing(history, size)
-        for n in range(size):
-            delta, taken = step.solve(known[..., n] - before)
-            iterations += taken
-            if moving:
-                before = known[..., n] + delta + np.einsum("ijc,jpc->ipc", present, delta)
-            if taken:
-                found[..., block.start + n] = delta
-                known[..., n + 1 :] += np.einsum("ijct,jpc->ipct", weights[..., 1 : size - n], delta)
-        history, _ = sums.push(history, found[..., block])
-        if progress is not None:
-            progress(block.stop / steps, f"{'currents' if moving else 'voltages'} at their limit")
-    return found, iterations
-
-
-def _blocks(steps: int) -> Iterator[slice]:
-    """Yield the blocks of a march."""
-    for start in range(0, steps, BLOCK):
-        yield slice(start, min(start + BLOCK, steps))
