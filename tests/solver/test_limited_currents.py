@@ -115,6 +115,18 @@ def test_a_wall_that_reaches_no_limit_is_not_told_of_one():
     assert told[0].endswith("means over a time step stay within it: use a shorter time_step")
 
 
+def test_no_switch_is_offered_that_would_be_refused():
+    for given in ({"segments": None}, {"saturation": True}, {"dead": [1]}):
+        told = [
+            text for text in cx.simulate(limited("0.1 A/m^2", stops=False, **given), **{**BRIEF, "modes": 6}).warnings if "A/m^2" in text
+        ]
+        assert len(told) == 2
+        assert all(text.endswith("of its amplifier; lower the gains") for text in told)
+    both = [limited("0.1 A/m^2", stops=False, field_limit=100.0).control.replace(shells=[name]) for name in ("inner", "outer")]
+    told = cx.simulate(PLANE.replace(control=both), **{**BRIEF, "modes": 6}).warnings
+    assert sum(text.endswith(("of its amplifier; lower the gains", "its actuator stands; lower the gains")) for text in told) == 4
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [

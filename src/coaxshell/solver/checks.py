@@ -191,11 +191,8 @@ def actuators(*motions: ModalSolution) -> list[str]:
             remedy = "lower the gains to stay within what the actuator can do"
         else:
             outcome = f"the control law asks for {voltage}, {factor} the {stands} its actuator stands"
-            see = (
-                "set control.saturation = true to see what it can really do, or "
-                if may_stop(problem) and not limits_currents(problem.system)
-                else ""
-            )
+            known = may_stop(problem) and not limits_currents(problem.system)
+            see = "set control.saturation = true to see what it can really do, or " if known else ""
             remedy = f"{see}lower the gains"
         warnings.append(f"{label}: {outcome}; {remedy}")
     return warnings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from coaxshell.errors import InputError
 from coaxshell.model.absorbers import linked_shells
 from coaxshell.model.feedback import Feedback
-from coaxshell.model.gains import pitch_of, segments_of, ties_shells
+from coaxshell.model.gains import limits_currents, pitch_of, segments_of, ties_shells
 from coaxshell.model.layers import Shell
 from coaxshell.model.parts import laws_of
 from coaxshell.model.shells import RigidShell
@@ -35,6 +35,18 @@ def require_sources_alone(system: System, dimensions: int) -> None:
     """Raise InputError if a system has electrodes or elastic walls under what is not known of them."""
     _require_ties(system, dimensions)
     _require_belts(system, dimensions)
+
+
+def limits_left_out(system: System) -> tuple[str, str] | None:
+    """Return why amplifiers cannot stop at a limit in three dimensions, and what would let them; None if they can."""
+    if system.absorber_list or system.point_absorbers:
+        what = "currents" if limits_currents(system) else "voltages"
+        return f"beside absorbers {what} are cut at their limit in two dimensions alone", "no absorbers"
+    if pitch_of(system) is not None:
+        return "electrodes that are cut along the axis are not known to stop at a limit", "leave segment_pitch out"
+    if any(getattr(source, "inclination", 0.0) for source in system.sources):
+        return "is not solved under a wave that runs along the axis", "inclination = 0"
+    return None
 
 
 def require_loops_alone(system: System, what: str, remedy: str) -> None:

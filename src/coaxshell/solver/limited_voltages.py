@@ -26,6 +26,7 @@ from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.convolution import History, HistorySum, KernelTable
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.numerics.progress import Progress
+from coaxshell.solver.dimensions import limits_left_out
 from coaxshell.solver.electrode_loops import ElectrodeLoops, times
 from coaxshell.solver.electrode_patterns import Patterns, patterns_of
 from coaxshell.solver.interface.absorbers import AbsorberSet
@@ -129,11 +130,13 @@ def limits_of(problem: Problem, patterns: Patterns) -> FloatArray:
 
 
 def may_stop(problem: Problem) -> bool:
-    """Return whether voltages, or currents, can stop at a limit in runs of as many dimensions with the same sources and absorbers."""
-    if problem.dimensions == 2:
-        return True
-    inclined = any(getattr(geometry, "inclination", 0.0) for geometry in problem.sources)
-    return not (problem.belts or problem.system.absorber_list or problem.system.point_absorbers or inclined)
+    """Return whether voltages, or currents, can stop at a limit in runs of as many dimensions with the same sources and absorbers.
+
+    Those of one law: several are not known to.
+    """
+    if isinstance(problem.system.control, tuple):
+        return False
+    return problem.dimensions == 2 or limits_left_out(problem.system) is None
 
 
 def trapezoidal_nodes(grid: LaplaceGrid) -> tuple[ComplexArray, FloatArray]:

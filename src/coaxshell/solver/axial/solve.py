@@ -31,6 +31,7 @@ from coaxshell.solver.axial.solution import SpatialSolution, StationSpectra
 from coaxshell.solver.axial.stability import require_stable_waves, waves_asked
 from coaxshell.solver.axial.sums import SQUARES, station_sums
 from coaxshell.solver.cost import require_room
+from coaxshell.solver.dimensions import limits_left_out
 from coaxshell.solver.scaling import Problem, dimensionless
 from coaxshell.solver.settings import Settings
 from coaxshell.solver.shared_parts import SharedParts
@@ -262,13 +263,12 @@ def require_known(problem: Problem, settings: Settings) -> None:
 
 def _require_limits(problem: Problem) -> None:
     """Refuse what cannot be beside voltages or currents that stop at their limit in three dimensions."""
-    what, where, told = "voltages", "control.saturation", "use saturation = false, which warns where a voltage exceeds its limit"
+    found, where, told = (
+        limits_left_out(problem.system),
+        "saturation",
+        "use saturation = false, which warns where a voltage exceeds its limit",
+    )
     if limits_currents(problem.system):
-        what, where, told = "currents", "control.current_saturation", "use current_saturation = false and read control_effort"
-    if problem.system.absorber_list or problem.system.point_absorbers:
-        raise InputError(where, f"beside absorbers {what} are cut at their limit in two dimensions alone", f"{told}, or no absorbers")
-    if problem.belts is not None:
-        found = "electrodes that are cut along the axis are not known to stop at a limit"
-        raise InputError(where, found, f"{told}, or leave segment_pitch out")
-    if any(isinstance(geometry, PlaneGeometry) and geometry.inclination for geometry in problem.sources):
-        raise InputError(where, "is not solved under a wave that runs along the axis", f"{told}, or inclination = 0")
+        where, told = "current_saturation", "use current_saturation = false and read control_effort"
+    if found is not None:
+        raise InputError(f"control.{where}", found[0], f"{told}, or {found[1]}")
