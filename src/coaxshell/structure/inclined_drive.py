@@ -32,6 +32,7 @@ from coaxshell.structure.elastic_mesh import LayerMesh, wall_mesh
 from coaxshell.structure.inclined_shapes import LowestShapes, lowest_shapes
 from coaxshell.structure.solid import AXIAL, HOOP, RADIAL, RADIAL_AXIAL, RADIAL_HOOP, SolidLayer
 from coaxshell.structure.solid_inclined import (
+    SAMPLES,
     Assembled,
     InclinedMesh,
     InclinedPlace,
@@ -44,7 +45,6 @@ from coaxshell.structure.solid_inclined import (
 from coaxshell.structure.solid_transducers import Transducers
 
 _DISPLACEMENTS = 3
-_SAMPLES = ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.0, 2.0))
 
 
 class InclinedAnswer(NamedTuple):
@@ -94,7 +94,7 @@ class _Electrodes:
         assert layer.permittivity is not None
         e, mu, c33 = np.array(layer.coupling), layer.permittivity, layer.stiffness[RADIAL][RADIAL]
         charge, electric, along = {}, {}, {}
-        for m, k in _SAMPLES:
+        for m, k in SAMPLES:
             local = layer_strains(part, np.array([m]), k, _DISPLACEMENTS)[0]
             radial = np.einsum("j,jqcp->qcp", e[0, [RADIAL, HOOP, AXIAL]], local[[RADIAL, HOOP, AXIAL]])
             around = (m / part.radius)[:, None, None] * e[1, RADIAL_HOOP] * local[RADIAL_HOOP] + k * e[2, RADIAL_AXIAL] * local[
@@ -258,7 +258,7 @@ class InclinedDrive:
     def put(self, found: InclinedAnswer, member: int, at: int, k: ComplexArray, s: ComplexArray, places: Sequence[InclinedPlace]) -> None:
         """Put down what the wall answers in one order, by its number in the mesh and in the answer, at all nodes."""
         equations, order = self._equations, self._orders[member]
-        every = [*wall_faces(equations.mesh), *places]
+        every = [*wall_faces([part.layer for part in equations.mesh.layers]), *places]
         rows, layers = np.stack([equations.rows(place) for place in every]), [place.layer for place in every]
         for start in range(0, s.size, step := equations.nodes_together):
             some = slice(start, start + step)
@@ -332,18 +332,12 @@ def inclined_under_volts(
     transducers: Transducers,
     stacks: tuple[range, ...],
 ) -> InclinedAnswer:
-    """Return what a wall with transducers answers, as :func:`coaxshell.structure.solid_inclined.inclined_answers` of one without.
+    """Return what a wall with transducers answers.
 
     Parameters
     ----------
-    layers : sequence of SolidLayer
-        Dimensionless.
-    modes : Modes
-        Of one wavenumber for each node.
-    s : ndarray, shape (nodes,)
-    frequency : float
-        Up to which waves are resolved, radians per transit.
-    places : sequence of InclinedPlace
+    layers, modes, s, frequency, places
+        As of :func:`coaxshell.structure.solid_inclined.inclined_port`.
     transducers : Transducers
     stacks : tuple of range
         The layers that are driven together.

@@ -37,8 +37,8 @@ from coaxshell.structure.losses import Relaxation
 from coaxshell.structure.solid import SolidLayer
 
 _DISPLACEMENTS = 3
-_SAMPLES = ((0.0, (0.0, 1.0, 2.0)), (1.0, (0.0, 1.0)), (2.0, (0.0,)))
-"""Wavenumbers, and orders at each, that tell a polynomial of second degree in both."""
+SAMPLES = ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.0, 2.0))
+"""Orders and wavenumbers that tell a polynomial of second degree in both."""
 _MOST_DEGREE = 64
 """Of a layer with losses."""
 _BYTES = 2**25
@@ -63,12 +63,14 @@ class InclinedMesh:
         Of 1, m, m^2, k, k^2 and m k.
     inertia : ndarray, shape (N,)
         1 of displacements, 0 of potentials.
+    root : ndarray, shape (displacements,)
+        The roots of the mass, by which displacements are divided.
     """
 
     def __init__(self, mesh: WallMesh) -> None:
         self.mesh = mesh
-        self._root = np.tile(np.sqrt(mesh.mass), _DISPLACEMENTS)
-        count = self._root.size
+        self.root = np.tile(np.sqrt(mesh.mass), _DISPLACEMENTS)
+        count = self.root.size
         self._ceramics = {part: _Electric(part) for part in mesh.layers if part.layer.coupling is not None}
         total = count + sum(one.size for one in self._ceramics.values())
         self.powers = np.zeros((6, total, total))
@@ -82,8 +84,8 @@ class InclinedMesh:
         start = count
         for part, one in self._ceramics.items():
             own = self._place[part] = slice(start, start + one.size)
-            columns = self._columns(part)
-            coupling = one.coupling / self._root[columns]
+            columns = self.columns(part)
+            coupling = one.coupling / self.root[columns]
             self.powers[:, own, columns] += coupling
             self.powers[:, columns, own] += np.swapaxes(coupling, 1, 2)
             self.powers[:, own, own] -= one.permittivity
@@ -95,7 +97,7 @@ class InclinedMesh:
     def _add_layers(self) -> None:
         """Add up the stiffness of all layers that no factor weighs, and put down what one does."""
         for part in self.mesh.layers:
-            columns, (kept, relaxing) = self._columns(part), part.layer.kept_and_relaxing
+            columns, (kept, relaxing) = self.columns(part), part.layer.kept_and_relaxing
             self.powers[np.ix_(range(6), columns, columns)] += layer_powers(self.mesh, part, kept)
             if part.layer.factor is not None:
                 wide = self._relaxing[part] = np.zeros_like(self.powers)
@@ -108,7 +110,7 @@ class InclinedMesh:
         joints = [which * points + end for which in range(_DISPLACEMENTS) for end in ends]
         found = []
         for part in self.mesh.layers:
-            columns, edges = self._columns(part), (part.nodes.start, part.nodes.stop - 1)
+            columns, edges = self.columns(part), (part.nodes.start, part.nodes.stop - 1)
             held = [place for place in columns if place % points in edges]
             potentials = self._place.get(part, slice(0, 0))
             inner = [*(place for place in columns if place not in held), *range(potentials.start, potentials.stop)]
@@ -122,7 +124,7 @@ class InclinedMesh:
             found.append(_Within(inner, [joints.index(place) for place in held], own, across, self.inertia[inner], relaxing))
         return joints, found
 
-    def _columns(self, part: LayerMesh) -> list[int]:
+    def columns(self, part: LayerMesh) -> list[int]:
         """Return the places of the displacements at the points of a layer."""
         points = range(part.nodes.start, part.nodes.stop)
         return [which * self.mesh.radius.size + point for which in range(_DISPLACEMENTS) for point in points]
@@ -132,12 +134,12 @@ class InclinedMesh:
         part = self.mesh.layers[place.layer]
         inside = 2.0 * (place.radius - part.layer.inner) / part.layer.thickness - 1.0
         at = interpolation(part.degree, min(max(inside, -1.0), 1.0))
-        found, columns = np.zeros((2, 3, self.inertia.size)), self._columns(part)
+        found, columns = np.zeros((2, 3, self.inertia.size)), self.columns(part)
         if place.what in DISPLACEMENTS:
             which, sign = DISPLACEMENTS[place.what]
             values = np.zeros((_DISPLACEMENTS, at.size))
             values[which] = sign * at
-            found[0, 0, columns] = values.ravel() / self._root[columns]
+            found[0, 0, columns] = values.ravel() / self.root[columns]
             return found
         if place.what == "potential":
             found[0, 0, self._place[part]] = self._ceramics[part].values(at)
@@ -146,7 +148,7 @@ class InclinedMesh:
         local = [strains(np.array([m]), k, np.array([place.radius]), slope[None], at[None])[0, :, 0] for m, k in ((0, 0), (1, 0), (0, 1))]
         each = np.stack([local[0], local[1] - local[0], local[2] - local[0]])
         moduli = np.stack(part.layer.kept_and_relaxing)[:, component]
-        found[..., columns] = np.einsum("gj,ajcp->gacp", moduli, each).reshape(2, 3, -1) / self._root[columns]
+        found[..., columns] = np.einsum("gj,ajcp->gacp", moduli, each).reshape(2, 3, -1) / self.root[columns]
         if part in self._ceramics:
             e, one = np.array(part.layer.coupling)[:, component], self._ceramics[part]
             field = np.stack([e[0] * one.values(slope), -e[1] / place.radius * one.values(at), -e[2] * one.values(at)])
@@ -181,22 +183,13 @@ class InclinedMesh:
     def forces_on_faces(self) -> FloatArray:
         """A unit force along r on the inner and on the outer face, over the roots of the mass, shape (N, 2)."""
         forces, places = np.zeros((self.inertia.size, 2)), [0, self.mesh.radius.size - 1]
-        forces[places, [0, 1]] = 1.0 / self._root[places]
+        forces[places, [0, 1]] = 1.0 / self.root[places]
         return forces
-
-    @property
-    def root(self) -> FloatArray:
-        """The roots of the mass, by which displacements are divided, shape (displacements,)."""
-        return self._root
-
-    def columns(self, part: LayerMesh) -> list[int]:
-        """Return the places of the displacements at the points of a layer."""
-        return self._columns(part)
 
     def of_potential(self, part: LayerMesh, at: FloatArray, order: float, k: ComplexArray) -> ComplexArray:
         """Return a sum over the points of a ceramic of its potential under displacements alone, per unit of each, (nodes, 3 (p + 1))."""
         rows = self.powers[:, self._place[part]]
-        electric, charge = (at_powers(one, order, k) for one in (rows[..., self._place[part]], rows[..., self._columns(part)]))
+        electric, charge = (at_powers(one, order, k) for one in (rows[..., self._place[part]], rows[..., self.columns(part)]))
         values = np.broadcast_to(self._ceramics[part].values(at)[:, None], (*electric.shape[:2], 1))
         return np.asarray(-np.einsum("ni,nik->nk", np.linalg.solve(electric, values)[..., 0], charge))
 
@@ -347,12 +340,11 @@ class _Electric:
 
     def __init__(self, part: LayerMesh) -> None:
         coupling, permittivity = {}, {}
-        for k, orders in _SAMPLES:
-            potential = PotentialOfLayer(part, np.array(orders), k, _DISPLACEMENTS)
-            for place, m in enumerate(orders):
-                root = potential.root[place]
-                coupling[m, k] = root @ potential.rows[place].reshape(len(root), -1)
-                permittivity[m, k] = root @ root.T
+        for m, k in SAMPLES:
+            potential = PotentialOfLayer(part, np.array([m]), k, _DISPLACEMENTS)
+            root = potential.root[0]
+            coupling[m, k] = root @ potential.rows[0].reshape(len(root), -1)
+            permittivity[m, k] = root @ root.T
         self._root = np.linalg.cholesky(permittivity[0.0, 0.0])
         self.size = len(self._root)
         self.coupling = np.linalg.solve(self._root, powers_of(coupling))
@@ -364,7 +356,7 @@ class _Electric:
 
 
 def powers_of(sampled: dict[tuple[float, float], FloatArray]) -> FloatArray:
-    """Return the polynomial in m and k through its values at (m, k) of :data:`_SAMPLES`: of 1, m, m^2, k, k^2 and m k."""
+    """Return the polynomial in m and k through its values at (m, k) of :data:`SAMPLES`: of 1, m, m^2, k, k^2 and m k."""
     f = sampled
     fixed = f[0.0, 0.0]
     around2, along2 = 0.5 * (f[2.0, 0.0] - 2.0 * f[1.0, 0.0] + fixed), 0.5 * (f[0.0, 2.0] - 2.0 * f[0.0, 1.0] + fixed)
@@ -377,23 +369,24 @@ meshed_equations = lru_cache(maxsize=64)(InclinedMesh)
 
 
 def inclined_meshes(layers: Sequence[SolidLayer], modes: Modes, s: ComplexArray, frequency: float) -> Iterator[tuple[slice, InclinedMesh]]:
-    """Yield the places of the orders that share a mesh, and its equations: parameters as of :func:`inclined_answers`."""
+    """Yield the places of the orders that share a mesh, and its equations: parameters as of :func:`inclined_port`."""
     k = np.broadcast_to(np.asarray(modes.wavenumber, np.complex128), s.shape)
     shortest = frequency * float(np.max(np.abs(k) / np.abs(s)))
     for members, mesh in order_meshes(tuple(layers), modes.orders, shortest, frequency, most=_MOST_DEGREE):
         yield members, meshed_equations(mesh)
 
 
-def wall_faces(mesh: WallMesh) -> list[InclinedPlace]:
+def wall_faces(layers: Sequence[SolidLayer]) -> list[InclinedPlace]:
     """Return the inward displacements of both faces of a wall."""
-    first, last = mesh.layers[0].layer, mesh.layers[-1].layer
-    return [InclinedPlace("normal", first.inner, 0), InclinedPlace("normal", last.outer, len(mesh.layers) - 1)]
+    return [InclinedPlace("normal", layers[0].inner, 0), InclinedPlace("normal", layers[-1].outer, len(layers) - 1)]
 
 
-def inclined_answers(
+def inclined_port(
     layers: Sequence[SolidLayer], modes: Modes, s: ComplexArray, frequency: float, places: Sequence[InclinedPlace]
-) -> ComplexArray:
-    """Return quantities per unit outward force on the inner and on the outer face, shape (quantities, 2, orders, nodes).
+) -> tuple[tuple[ComplexArray, ComplexArray, ComplexArray], ComplexArray]:
+    """Return the receptances H_ii, H_io and H_oo of the faces of a wall, and what places show per -1 on either, (places, 2, orders, nodes).
+
+    An inward load q at r is a force -r q.
 
     Parameters
     ----------
@@ -406,24 +399,12 @@ def inclined_answers(
         Up to which waves are resolved, radians per transit.
     places : sequence of InclinedPlace
     """
-    k = np.broadcast_to(np.asarray(modes.wavenumber, np.complex128), s.shape)
-    found = np.empty((len(places), 2, modes.count, s.size), np.complex128)
+    k, every = np.broadcast_to(np.asarray(modes.wavenumber, np.complex128), s.shape), [*wall_faces(layers), *places]
+    found = np.empty((len(every), 2, modes.count, s.size), np.complex128)
     with one_blas_thread():  # many small matrices
         for members, equations in inclined_meshes(layers, modes, s, frequency):
-            rows = np.stack([equations.rows(place) for place in places])
+            rows = np.stack([equations.rows(place) for place in every])
             for order in range(members.start, members.stop):
-                found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows, [place.layer for place in places])
-    return found
-
-
-def inclined_port(
-    layers: Sequence[SolidLayer], modes: Modes, s: ComplexArray, frequency: float, places: Sequence[InclinedPlace]
-) -> tuple[tuple[ComplexArray, ComplexArray, ComplexArray], ComplexArray]:
-    """Return the receptances H_ii, H_io and H_oo of the faces of a wall, and what places show per -1 on either, (places, 2, orders, nodes).
-
-    An inward load q at r is a force -r q.
-    """
-    faces = [InclinedPlace("normal", layers[0].inner, 0), InclinedPlace("normal", layers[-1].outer, len(layers) - 1)]
-    found = inclined_answers(layers, modes, s, frequency, [*faces, *places])
+                found[:, :, order] = equations.solve(float(modes.orders[order]), k, s, rows, [place.layer for place in every])
     found *= -1.0
     return (found[0, 0], found[0, 1], found[1, 1]), found[2:]
