@@ -49,6 +49,8 @@ _PER_FORCE = 0.35e-6
 """Seconds that a force at one point takes at an order and node, where electrodes are cut."""
 _BELTS = 1.6
 """How much longer it takes than that where electrodes are cut along the axis."""
+_LIMITED, _LIMITED_SOLIDS = 4.2, 2.5
+"""How much longer waves take where voltages stop at a limit: asked for, looped within a step, shown, estimated; how much more solids."""
 _TURN = 5e-5
 """Seconds of a turn between waves and points of a wall, besides its products."""
 _STEP = 2e-3
@@ -81,7 +83,7 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
     waves += turns * pairs * _PER_FORCE * forces
     limits = _limits_cost(problem, sampling, size, pairs) if size.controlled else Cost(0.0)
     if limits.memory:
-        waves *= 4.2 if problem.tied else 4.2 * _TIED
+        waves *= _LIMITED if problem.tied else _LIMITED * _TIED  # whose loops the solver closes too
     again = _passes(problem, size) if lines.seconds or points else 0.0  # for what absorbers feel and do
     return Cost(
         lines.memory
@@ -91,7 +93,7 @@ def spatial_cost(system: System, settings: Settings, size: Size) -> Cost:
         + size.shells * (6.0 * size.plane + WORKERS * _WORKING * size.plane * min(0.5, BLOCK_NODES / size.nodes)),
         lines.seconds
         + limits.seconds
-        + solids.seconds * (1.0 + again + (2.5 if limits.memory else 0.0))
+        + solids.seconds * (1.0 + again + (_LIMITED_SOLIDS if limits.memory else 0.0))
         + 0.1
         + _WAVE * len(sampling.modes)
         + waves * (1.0 + (again + 1.0 if points else 0.0))

@@ -23,7 +23,7 @@ from coaxshell.response.fields.mirrored import Mirrored, flow_back, in_water, mi
 from coaxshell.response.fields.request import FieldRequest, Tell
 from coaxshell.response.fields.scattered import Points, raster_radii
 from coaxshell.response.fields.spatial_incident import SpatialIncident
-from coaxshell.response.fields.spatial_waves import SpatialQuantity, SpatialWaves, cut_waves, with_own_forces
+from coaxshell.response.fields.spatial_waves import SpatialQuantity, SpatialWaves, cut_waves, own_forces_cost, with_own_forces
 from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import laplace_grid, require_known
 from coaxshell.solver.scaling import Problem
@@ -204,7 +204,7 @@ def field_cost(spatial: SpatialSolution, cut: Cut, asked: FieldRequest, times: F
     if waves is None:
         return Cost(0.0)
     _, radii = _radii(spatial.problem, cut, asked, points_of(cut.grid))
-    return cut_cost(waves, cut, radii, times.size, quantities)
+    return own_forces_cost(waves, spatial).then(cut_cost(waves, cut, radii, times.size, quantities))
 
 
 def _radii(problem: Problem, cut: Cut, asked: FieldRequest, points: Points) -> tuple[bool, int]:

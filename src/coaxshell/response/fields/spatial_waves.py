@@ -20,6 +20,7 @@ import numpy.typing as npt
 from coaxshell.acoustics.basis import RadialBasis
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.blas_threads import one_blas_thread
+from coaxshell.numerics.cost import Cost
 from coaxshell.numerics.laplace_grid import WORKERS, LaplaceGrid
 from coaxshell.response.fields.inversion import direct_matrix, window
 from coaxshell.response.fields.modal_field import Transfer, region_slopes
@@ -35,6 +36,7 @@ from coaxshell.solver.axial.solution import SpatialSolution
 from coaxshell.solver.axial.solve import forces_of
 from coaxshell.solver.axial.sums import amplitudes_of
 from coaxshell.solver.axial.tied_wave import motion_parities
+from coaxshell.solver.cost import run_cost
 from coaxshell.solver.excitation import superposed
 from coaxshell.solver.scaling import Problem
 
@@ -220,6 +222,15 @@ def with_own_forces(waves: SpatialWaves, spatial: SpatialSolution) -> SpatialWav
     A force that is felt at z turns with k as cos kz does: in the nearest wave of the run it is another one.
     """
     return waves if waves.forces is None else replace(waves, forces=forces_of(spatial, waves.sampling))
+
+
+def own_forces_cost(waves: SpatialWaves, spatial: SpatialSolution) -> Cost:
+    """Return what :func:`with_own_forces` costs: where forces are solved again about what a run does with as many waves."""
+    known = None if waves.forces is None else waves.forces.sampling
+    if known is None or known.period == waves.sampling.period:
+        return Cost(0.0)
+    period = waves.sampling.period * spatial.problem.scales.length
+    return run_cost(spatial.problem, replace(spatial.settings, axial_period=period))
 
 
 def each_block(waves: SpatialWaves, radii: int, work: Callable[[slice], Found], tell: Tell) -> Iterator[Found]:

@@ -40,7 +40,7 @@ class TiedClass(Tied):
 
     @property
     def alone(self) -> bool:
-        """False."""
+        """Whether it is one wave: never."""
         return False
 
     def response(self, passive: Problem, controls: Problem, s: ComplexArray) -> VoltageResponse:
@@ -78,12 +78,12 @@ class BrokenTie(Tied):
 
     @property
     def alone(self) -> bool:
-        """False."""
+        """Whether it is one wave: never."""
         return False
 
     @property
     def whole(self) -> bool:
-        """True."""
+        """Whether all patterns are one determinant: as one dead electrode ties all."""
         return True
 
     def factors(self, passive: Problem, controls: Problem, patterns: Patterns, s: ComplexArray) -> ComplexArray:
