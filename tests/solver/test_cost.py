@@ -42,6 +42,11 @@ def _saturated() -> cx.System:
     return presets.load("active").with_overrides({"control.saturation": True})
 
 
+def _beside_segments(cubic: float) -> cx.System:
+    absorbers = cx.absorber_ring(80, mass=1.0, linear_stiffness=1e8, damping=1e4, cubic_stiffness=cubic)
+    return presets.load("electrodes").with_overrides({"control.segments": 6}).replace(absorbers=absorbers)
+
+
 CASES = {
     "bare": (lambda: presets.load("bare"), COARSE),
     "long": (lambda: presets.load("bare"), {**COARSE, "duration": 40.0}),
@@ -54,6 +59,8 @@ CASES = {
     "cubic": (lambda: _linked(30, 1e18), COARSE),
     "six shells": (lambda: _linked(36, 1e18, shells=6), {**COARSE, "modes": 30}),
     "saturated": (_saturated, COARSE),
+    "points beside segments": (lambda: _beside_segments(0.0), {"duration": 1.0, "time_step": 1e-2, "modes": 30}),
+    "springs beside segments": (lambda: _beside_segments(1e16), {"duration": 1.0, "time_step": 1e-2, "modes": 30}),
     "from one side": (lambda: presets.load("bare").with_overrides({"source.angle": 30.0}), COARSE),
     "in space": (lambda: presets.load("bare"), {**COARSE, "modes": 30, "dimensions": 3, "stations": (0.0, 0.5, 1.0)}),
     "direct": (lambda: presets.load("bare"), {**COARSE, "time_step": 4e-3, "engine": "direct"}),

@@ -25,6 +25,7 @@ from coaxshell.solver.spatial_cost import spatial_cost
 _BLOCK_PAIRS = 64 * 1024
 """Order-node pairs that a thread works on at a time."""
 _RECEPTANCE_BYTES, _PAIR_BYTES = 8 * 1024 * 1024, 64 * 1024 * 1024
+_TIED_BYTES = 32 * 1024 * 1024
 _BLOCK_UNKNOWNS, _LONGEST_BLOCK = 512, 32
 _REFLECTION = 1e-8
 """Seconds of a pair of orders at a node in Graf's sum."""
@@ -134,6 +135,7 @@ def _spectral_bytes(size: Size) -> float:
         forced = (2.0 + size.solids) * n * size.parities * plane
         forces = REAL * 6.0 * size.points * size.instants
         working, left = _marched_bytes(size) if size.marched else _exact_bytes(size)
+        working += _tied_bytes(size)
         stages += [held + working + forces, held + left + forces + forced + 2.0 * n * size.parities * plane]
         held += left + forces + forced
     amplitudes = n * max(size.parities, size.source_parities)
@@ -169,14 +171,22 @@ def _marched_bytes(size: Size) -> tuple[float, float]:
 def _exact_bytes(size: Size) -> tuple[float, float]:
     """Return what linear absorbers work with, and what of it stays."""
     spectra = 3.0 * COMPLEX * size.points * size.nodes
-    if size.ring:
-        return spectra + 14.0 * size.plane, 0.0
+    if size.ring or size.patterns:
+        return spectra + (0.0 if size.patterns else 14.0 * size.plane), 0.0
     width = min(size.nodes, max(4, int(_RECEPTANCE_BYTES / (COMPLEX * size.points**2))))
     blocks = math.ceil(size.nodes / width)
     shares = REAL * float(size.points) ** 2 * size.orders  # of all pairs, which are kept where they are few
     few = shares <= _PAIR_BYTES
     each = COMPLEX * width * (3.5 * size.points**2 + (0.0 if few else size.parities * size.points * size.orders))
     return spectra + (shares if few else 0.0) + min(WORKERS, blocks) * each, 0.0
+
+
+def _tied_bytes(size: Size) -> float:
+    """Return what receptances of all pairs of points take beside feedback that ties orders or walls: whole, and blocks of them."""
+    if not size.patterns:
+        return 0.0
+    whole = COMPLEX * float(size.points) ** 2 * size.nodes
+    return 4.0 * whole if size.marched else whole + 2.0 * min(whole, _TIED_BYTES)
 
 
 def _direct_bytes(size: Size) -> float:
@@ -207,8 +217,10 @@ def _spectral_seconds(size: Size) -> float:
     if not size.linked:
         return seconds
     seconds += 0.2e-6 * size.shells**2 * pairs
+    if size.patterns:
+        seconds += size.nodes * 2e-9 * size.points**2 * size.patterns
     if not size.marched:
-        per_node = 2e-6 * size.points if size.ring else _unequal_seconds(size)
+        per_node = 2e-6 * size.points if size.ring and not size.patterns else _unequal_seconds(size)
         return seconds + size.nodes * per_node
     outputs = size.shells + size.controlled
     kernels = outputs * size.shells * size.orders if size.controlled else size.kernels
@@ -220,6 +232,8 @@ def _spectral_seconds(size: Size) -> float:
 def _unequal_seconds(size: Size) -> float:
     """Return the time of linear absorbers that are no ring at one node: by matrices of all points, or of many by iteration."""
     dense = 2e-10 * size.points**2 * size.orders * size.parities + 1e-10 * size.points**3
+    if size.patterns:
+        return dense + 2.5e-9 * size.points**3
     iterated = 2e-8 * size.points * size.orders * size.parities
     return min(dense, iterated) if size.points >= POINTS and size.surfaces == 2 else dense
 

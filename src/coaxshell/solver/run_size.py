@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coaxshell.model.gains import saturates
+from coaxshell.model.gains import saturates, segments_of
 from coaxshell.model.pulses import Sampled
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver.excitation import source_parities
@@ -79,6 +79,8 @@ class Size:
     """Surfaces on which links act."""
     kernels: int = 0
     """Kernels that a march without limits of actuators sums over the past."""
+    patterns: int = 0
+    """Of the voltages of all walls, where feedback ties orders or walls: then every point moves every other by itself."""
 
     @property
     def plane(self) -> float:
@@ -110,7 +112,8 @@ def size_of(problem: Problem, settings: Settings) -> Size:
     orders = (_MODES_OF_AUTO if settings.modes == "auto" else settings.modes) + 1
     feedback = [i for i, shell in enumerate(problem.shells) if shell.gains is not None]
     solids = [wall for wall in problem.shells if isinstance(wall, ElasticWall)]
-    limited = saturates(system)
+    limited, parities = saturates(system), links.parities if links.count else excited
+    patterns = len(feedback) * (segments_of(system) or parities * orders) if problem.tied else 0
     return Size(
         shells=len(problem.shells),
         controlled=len(feedback) if limited else 0,
@@ -119,7 +122,7 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         nonlinear=not links.is_linear,
         ring=links.count > 0 and is_ring(links),
         source_parities=excited,
-        parities=links.parities if links.count else excited,
+        parities=parities,
         orders=orders,
         nodes=grid.samples // 2 + 1,
         instants=steps + 1,
@@ -129,7 +132,8 @@ def size_of(problem: Problem, settings: Settings) -> Size:
         shapes=_shapes(problem.resolving(band(grid)), orders, band(grid)) * (2.0 if feedback else 1.0),  # whose stability has its own
         reflections=rounds(problem, settings.duration).done if settings.dimensions == 2 else 0,
         surfaces=len(problem.surfaces),
-        kernels=channels(problem, links, orders - 1).kernels,
+        kernels=4 * links.count**2 if patterns else channels(problem, links, orders - 1).kernels,
+        patterns=patterns,
         samples=sum(len(source.pulse.time) for source in system.sources if isinstance(source.pulse, Sampled)),
     )
 
