@@ -10,6 +10,7 @@ from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.cache import held_bytes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
 from coaxshell.solver import checks
+from coaxshell.solver.axial import belt_edges
 from coaxshell.solver.axial.feedback_ahead import moved_ahead
 from coaxshell.solver.axial.lack import without_lack
 from coaxshell.solver.axial.left_out import estimated_errors
@@ -74,7 +75,8 @@ def judgement(solution: SpatialSolution, given: JudgedFrom) -> Judgement:
     if isinstance(linked, LimitedSolution):
         warnings += warnings_of_held(problem, walls_held(problem, linked.lack))
     stations = [solution.at(i) for i in range(len(settings.stations))]
-    return Judgement(estimates, (*warnings, *checks.actuators(*stations), *warnings_at(*stations)))
+    edges = belt_edges.remarks(problem, solution.sampling.highest, stations, settings.stations)
+    return Judgement(estimates, (*warnings, *checks.actuators(*stations), *warnings_at(*stations), *edges))
 
 
 def _softened(solution: SpatialSolution, given: JudgedFrom) -> Softened | None:
