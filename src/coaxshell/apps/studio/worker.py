@@ -51,6 +51,7 @@ class _Here:
 
 def begin(board: Any, stage: Any, niceness: int) -> None:
     """Set up a worker process: Ctrl-C and a closed terminal are the server's to handle, and a worker whose server is gone goes too."""
+    memory.keep_freed()  # before there are threads, each with a heap of its own
     begin_worker("SIGHUP")
     _Here.board, _Here.stage = board, stage
     os.nice(niceness)
