@@ -105,7 +105,7 @@ async def _loops(studio: Studio, job: Job, data: dict[str, Any]) -> None:
     from coaxshell.apps.studio import panels
 
     run = studio.run(bodies.name_of(data, "run"))
-    panels.require_controlled(run.system, run.settings)
+    panels.require_controlled(run.system)
     job.run = run.name
     studio.jobs.start(job, panels.loops, *run.pair, place=run.place)
 

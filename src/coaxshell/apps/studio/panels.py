@@ -25,12 +25,10 @@ NODES = 1_500
 _MARGINS = ("gain_margin", "lesser_gain_margin", "phase_margin", "delay_margin")
 
 
-def require_controlled(system: System, settings: Settings) -> None:
+def require_controlled(system: System) -> None:
     """Raise InputError for a run without a loop that could be drawn."""
     if system.control is None:
         raise InputError("control", "nothing is fed back", "choose a kind of control")
-    if settings.dimensions == 3:
-        raise InputError("dimensions", "margins are those of motion that is alike along the axis", "use dimensions=2")
 
 
 def require_stressed(system: System, shell: int) -> None:
@@ -40,35 +38,44 @@ def require_stressed(system: System, shell: int) -> None:
 
 
 def loops(system: System, settings: Settings) -> Packed:
-    """Return margins by order, and L over frequency of the order of each shell's loop that stands the least delay."""
+    """Return margins by order, and L over frequency of the order of each shell's loop that stands the least delay.
+
+    In three dimensions the least over the axial wavenumbers, and L of a wave.
+    """
     worker.report(0.0, "margins")
     margins, worst = worst_loops(system, settings, worker.report)
     shells, items = [], {"order": Item(margins["order"].to_numpy(), "1")}
     for place, loop in enumerate(worst):
         each = margins.isel(shell=place)
-        items[f"delay_margin/{place}"] = Item(_bounded(each["delay_margin"].to_numpy()), "s")
+        items[f"delay_margin/{place}"] = Item(_bounded(_least_of_waves(each["delay_margin"].to_numpy())), "s")
         there = loop.frequency > 0.0
         some = slice(None, None, max(1, int(np.count_nonzero(there)) // NODES))
         for name, values in (("frequency", loop.frequency), ("real", loop.values.real), ("imaginary", loop.values.imag)):
             items[f"{name}/{place}"] = Item(values[there][some], "Hz" if name == "frequency" else "1")
-        shells.append({"name": str(loop.shell), "order": int(loop.order), **{kind: _worst(each, kind) for kind in _MARGINS}})
+        wave = {"wavenumber": float(loop.wavenumber)} if "wavenumber" in margins.coords else {}
+        shells.append({"name": str(loop.shell), "order": int(loop.order), **wave, **{kind: _worst(each, kind) for kind in _MARGINS}})
     return packed({"shells": shells}, items)
 
 
 def _worst(margins: Any, kind: str) -> dict[str, Any] | None:
-    """Return the least of a margin over all orders with its unit, order and frequency (Hz); None where no order has one."""
+    """Return the least of a margin over all orders, and axial wavenumbers (1/m), with its unit and frequency (Hz); None where none has one.
+
+    NaN stands for waves that a run has not.
+    """
     values = margins[kind].to_numpy()
-    at = int(values.argmax() if kind == "lesser_gain_margin" else values.argmin())
+    at = np.unravel_index(int(np.nanargmax(values) if kind == "lesser_gain_margin" else np.nanargmin(values)), values.shape)
     if not np.isfinite(values[at]) or values[at] == 0.0:
         return None
     frequency = f"{kind}_frequency"
     hertz = float(margins[frequency].to_numpy()[at]) if frequency in margins else None
-    return {
-        "value": float(values[at]),
-        "unit": margins[kind].attrs["units"],
-        "order": int(margins["order"].to_numpy()[at]),
-        "frequency": hertz,
-    }
+    along = {"wavenumber": float(margins["wavenumber"].to_numpy()[at[0]])} if "wavenumber" in margins.coords else {}
+    order = int(margins["order"].to_numpy()[at[-1]])
+    return {"value": float(values[at]), "unit": margins[kind].attrs["units"], "order": order, "frequency": hertz, **along}
+
+
+def _least_of_waves(values: FloatArray) -> FloatArray:
+    """Return a margin of each order, the least of all axial wavenumbers where there are several; infinite where a run has none."""
+    return values if values.ndim == 1 else np.where(np.isnan(values), np.inf, values).min(axis=0)
 
 
 def _bounded(values: FloatArray) -> FloatArray:

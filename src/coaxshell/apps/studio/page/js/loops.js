@@ -18,7 +18,6 @@ export const forget = () => panel.forget();
 export function draw(now) {
   run = now;
   if (!run.system.control) return panel.instead("Nothing is fed back in this system: choose a kind of control in the form, with layers that sense and drive.");
-  if (run.stations) return panel.instead("Margins are told in two dimensions: choose two under Dimensions. Voltages stand among the peaks.");
   return panel.ask({ kind: "loops", run: run.run }, "Following the loops", chart);
 }
 
@@ -29,43 +28,46 @@ export function lightOf({ gain_margin: gain, lesser_gain_margin: less, phase_mar
 }
 
 function chart({ shells, arrays }) {
-  const rows = shells.map((one) => [...voltages(one.name), ...margins(one)]);
-  const table = el("table", { class: "peaks loops" }, el("caption", {}, "What the loop of each shell stands, the others closed: the least over all orders. Enough is a gain margin of 2 and a phase margin of 30°."),
-    el("thead", {}, el("tr", {}, ...["", "Value", "Order", "At", ""].map((text) => (text ? el("th", { scope: "col", class: "number" }, text) : el("td", {}))))),
-    ...shells.map((one, i) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: 4 }, `${capital(phrase(one.name))}: `, lamp(lightOf(one)))), ...rows[i])));
+  const along = shells.some(({ wavenumber }) => wavenumber !== undefined), columns = ["", "Value", "Order", "At", ...(along ? ["k (1/m)"] : []), ""];
+  const rows = shells.map((one) => [...voltages(one.name, along), ...margins(one, along)]), least = along ? "all orders and six wavenumbers k along the axis" : "all orders";
+  const table = el("table", { class: "peaks loops" }, el("caption", {}, `What the loop of each shell stands, the others closed: the least over ${least}. Enough is a gain margin of 2 and a phase margin of 30°.`),
+    el("thead", {}, el("tr", {}, ...columns.map((text) => (text ? el("th", { scope: "col", class: "number" }, text) : el("td", {}))))),
+    ...shells.map((one, i) => el("tbody", {}, el("tr", {}, el("th", { scope: "rowgroup", colspan: columns.length - 1 }, `${capital(phrase(one.name))}: `, lamp(lightOf(one)))), ...rows[i])));
   const plot = by("loops-plot") ?? el("div", { id: "loops-plot", class: "study-plot tall" });
   panel.body.replaceChildren(el("div", { class: "wide", role: "region", tabindex: 0, "aria-label": "Margins of the control" }, table), plot);
   if (!window.Plotly) return;
   const { traces, layout } = bode(shells, arrays);
   window.Plotly.react(plot, traces, layout, SETTINGS);
   plot.setAttribute("role", "img");
-  plot.setAttribute("aria-label", `Bode and Nyquist plots of the loops that stand the least delay: ${shells.map(({ name, order }) => `${phrase(name)}, order ${order}`).join("; ")}`);
+  plot.setAttribute("aria-label", `Bode and Nyquist plots of the loops that stand the least delay: ${shells.map((one) => `${phrase(one.name)}, ${which(one)}`).join("; ")}`);
 }
 
+const which = ({ order, wavenumber }) => `order ${order}${wavenumber === undefined ? "" : `, k = ${show(wavenumber, "", 3)}/m`}`;
 const phrase = (name) => shellPhrase(run.shells.findIndex(({ index }) => shellName(index, run.shells.length) === name), run.shells.length);
 const lamp = (light) => el("span", { class: `light ${light}` }, el("i", { "aria-hidden": "true" }, LIGHTS[light][0]), ` ${LIGHTS[light][1]}`);
 
-function margins({ gain_margin, lesser_gain_margin, phase_margin, delay_margin }) {
-  const line = (words, one, value, none) => el("tr", {}, el("th", { scope: "row" }, words), el("td", { class: "number" }, one ? value(one.value) : none), el("td", { class: "number" }, one ? String(one.order) : ""), el("td", { class: "number" }, one?.frequency ? show(one.frequency, "Hz", 3) : ""), el("td", {}));
+function margins({ gain_margin, lesser_gain_margin, phase_margin, delay_margin }, along) {
+  const line = (words, one, value, none) => el("tr", {}, el("th", { scope: "row" }, words), el("td", { class: "number" }, one ? value(one.value) : none), el("td", { class: "number" }, one ? String(one.order) : ""), el("td", { class: "number" }, one?.frequency ? show(one.frequency, "Hz", 3) : ""),
+    ...(along ? [el("td", { class: "number" }, one ? show(one.wavenumber, "", 3) : "")] : []), el("td", {}));
   const times = (value) => `${show(value, "", 3)} times`;
   return [line("gain margin", gain_margin, times, "10 times or more"), ...(lesser_gain_margin ? [line("down to", lesser_gain_margin, times, "")] : []),
     line("phase margin", phase_margin, (value) => show(value, "deg", 3), "any"), line("further delay", delay_margin, (value) => show(value, "s", 3), "any")];
 }
 
 // The largest voltage that the law asks for against what the actuator stands.
-function voltages(name) {
+function voltages(name, along) {
   const shell = run.shells.find(({ index }) => shellName(index, run.shells.length) === name), bar = run.bars.find((one) => one.name.startsWith("actuator_voltage") && one.shell === shell?.index);
   if (!bar || !shell.actuator_limit) return [];
   const share = bar.value / shell.actuator_limit, light = share <= 0.8 ? "good" : share <= 1 ? "fair" : "poor", words = { good: "within", fair: "close to it", poor: "beyond it" }[light];
-  return [el("tr", {}, el("th", { scope: "row" }, "voltage asked for"), el("td", { class: "number" }, show(bar.value, "V")), el("td", { class: "number", colspan: 2 }, `of ${show(shell.actuator_limit, "V")}`),
+  return [el("tr", {}, el("th", { scope: "row" }, "voltage asked for"), el("td", { class: "number" }, show(bar.value, "V")), el("td", { class: "number", colspan: along ? 3 : 2 }, `of ${show(shell.actuator_limit, "V")}`),
     el("td", {}, el("meter", { min: 0, max: 1, high: 0.8, optimum: 0, value: Math.min(share, 1), "aria-label": `Voltage of the ${phrase(name)} against its limit` }), el("span", { class: `light ${light}` }, ` ${Math.round(100 * share)}\u202f%, ${words}`)))];
 }
 
 function bode(shells, arrays) {
   const { style, axis, layout } = frame({ showlegend: true, height: narrow() ? 780 : 400, hovermode: "closest" }), traces = [];
-  shells.forEach(({ name, order }, i) => {
+  shells.forEach((one, i) => {
     const hertz = arrays[`frequency/${i}`].values, re = arrays[`real/${i}`].values, im = arrays[`imaginary/${i}`].values, line = { color: colour(`series-${i % HUES}`), width: 1.6, dash: i % 2 ? "dash" : "solid", simplify: false };
-    const shared = { type: "scatter", mode: "lines", name: `${name}, order ${order}`, legendgroup: i, line, showlegend: false };
+    const shared = { type: "scatter", mode: "lines", name: `${one.name}, ${which(one)}`, legendgroup: i, line, showlegend: false };
     traces.push({ ...shared, showlegend: true, x: hertz, y: Float32Array.from(re, (value, k) => Math.hypot(value, im[k])), hovertemplate: "%{x:.4~s}Hz: %{y:.3g}" },
       { ...shared, mode: "markers", marker: { size: 2.5, color: line.color }, x: hertz, y: Float32Array.from(re, (value, k) => (Math.atan2(im[k], value) * 180) / Math.PI), xaxis: "x2", yaxis: "y2", hovertemplate: "%{x:.4~s}Hz: %{y:.0f}°" },
       { ...shared, x: re, y: im, xaxis: "x3", yaxis: "y3", hovertemplate: "%{x:.3g} + %{y:.3g} i" });
