@@ -192,11 +192,12 @@ def test_one_law_for_all_becomes_one_for_each_shell(linked_page):
     cx.System.model_validate(held(page, SYSTEM))
 
 
-def test_limits_of_current_and_a_bridge_out_of_balance_are_typed_and_refused_at_their_fields(linked_page):
+def test_limits_of_current_a_bridge_out_of_balance_and_dead_belts_are_typed_and_refused_at_their_fields(linked_page):
     law = cx.Feedback(numerator=[0.0, 1e-3], denominator=[1.0], transducers="electrodes")
     page = linked_page(preset=cx.presets.load("electrodes").replace(control=law))
     page.locator('details[data-group="control"]').evaluate("box => { box.open = true; }")
-    field = {name: page.locator(f'input[type=text][data-path="control.{name}"]') for name in ("current_limit", "bridge_imbalance")}
+    names = ("current_limit", "bridge_imbalance", "dead_belts", "dead_electrodes")
+    field = {name: page.locator(f'input[type=text][data-path="control.{name}"]') for name in names}
 
     def typed(name, text):
         field[name].fill(text)
@@ -214,6 +215,17 @@ def test_limits_of_current_and_a_bridge_out_of_balance_are_typed_and_refused_at_
     typed("bridge_imbalance", "-2")
     page.locator("#field-problem").wait_for()
     assert field["bridge_imbalance"].get_attribute("aria-invalid") == "true"
+    typed("bridge_imbalance", "0")
+    typed("dead_belts", "2, -1")
+    typed("dead_electrodes", "0, 3; -1, 5")
+    until(page, f"{SYSTEM}.control.dead_electrodes?.length === 2 && window.coaxshell.state.problems.length >= 1")
+    assert held(page, f"[{SYSTEM}.control.dead_belts, {SYSTEM}.control.dead_electrodes]") == [[2, -1], [[0, 3], [-1, 5]]]
+    until(page, "document.getElementById('form').textContent.includes('electrodes that are not cut along the axis')")  # no pitch
+    assert field["dead_belts"].get_attribute("aria-invalid") == "true"
+    assert violations(page, 'details[data-group="control"]') == []
+    typed("dead_belts", "")
+    typed("dead_electrodes", "")
+    until(page, f"{SYSTEM}.control.dead_electrodes === null && !window.coaxshell.state.problems.length")
 
 
 @pytest.mark.slow
