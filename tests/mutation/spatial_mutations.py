@@ -273,6 +273,14 @@ SPATIAL = (
         "response/test_spatial_velocity.py",
     ),
     Mutation(
+        "forces-of-other-waves",
+        "response/fields/spatial_waves.py",
+        "forces=forces_of(spatial, waves.sampling)",
+        "forces=waves.forces",
+        "fields take forces at their own axial wavenumbers, not at the nearest of the run",
+        "solver/test_line_absorbers.py",
+    ),
+    Mutation(
         "cut-period",
         "response/fields/spatial_waves.py",
         "duration=until",
