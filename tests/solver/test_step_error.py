@@ -8,9 +8,11 @@ import pytest
 import coaxshell as cx
 from coaxshell.acoustics.basis import Modes
 from coaxshell.numerics.laplace_grid import LaplaceGrid
-from coaxshell.solver import step_error
+from coaxshell.solver import estimates, step_error
+from coaxshell.solver.interface import saturation
 from coaxshell.solver.interface.absorbers import InterfacePoints, absorber_set
 from coaxshell.solver.interface.march import march
+from coaxshell.solver.orders_left_out import relative, surface_norms
 from coaxshell.solver.scaling import dimensionless
 from coaxshell.solver.structure_spectra import StructureSpectra
 
@@ -60,3 +62,20 @@ def test_kernels_between_points_are_their_receptance(structure: StructureSpectra
     orders = np.array([0, 3, 7])
     force = np.random.default_rng(0).normal(size=(points.count, 5))
     np.testing.assert_allclose(points.project(force, orders), points.project(force)[:, :, orders], rtol=1e-13)
+
+
+def test_what_points_fold_back_is_estimated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Against a run that cuts voltages at four times as many points; and the repeated march tells how far it is."""
+    system = cx.presets.load("hybrid").with_overrides({"control.saturation": True, "absorbers.count": 5})
+    folded, told = [], []
+    estimate = estimates.folded_error
+    monkeypatch.setattr(estimates, "folded_error", lambda *given: folded.append(estimate(*given)) or folded[-1])
+    run = cx.simulate(system, duration=0.8, modes=46, time_step=1e-2, progress=lambda share, stage: told.append((stage, share))).solution
+    assert run.estimates.orders.min() > 0.0
+    assert ("error estimates", 1.0) in told
+    monkeypatch.setattr(saturation, "_OVERSAMPLING", 4 * saturation._OVERSAMPLING)
+    fine = cx.simulate(system, duration=0.8, modes=46, time_step=1e-2).solution
+    changed = surface_norms(run.normal - fine.normal, run.tangential - fine.tangential).sum(axis=-1)
+    true = relative(changed, surface_norms(fine.normal, fine.tangential).sum(axis=-1))
+    assert np.all(2.0 * folded[0] > 0.5 * true)
+    assert np.all(folded[0][:, 1] < 3.0 * true[:, 1])

@@ -2,7 +2,8 @@
 
 For displacement and stress of each shell, relative to the answer in the norm over its surface and the whole time:
 
-- orders: what the orders above M would add and change (:mod:`coaxshell.solver.orders_left_out`),
+- orders: what the orders above M would add and change (:mod:`coaxshell.solver.orders_left_out`), and what the points at which actuators
+  are cut fold back into those kept,
 - time step: the band limit of the inverse transform, and
 - march: the steps of nonlinear interfaces (both :mod:`coaxshell.solver.step_error`).
 
@@ -16,9 +17,10 @@ import numpy as np
 
 from coaxshell.numerics.arrays import ComplexArray, FloatArray
 from coaxshell.numerics.laplace_grid import LaplaceGrid
+from coaxshell.numerics.progress import Progress
 from coaxshell.solver.orders_left_out import Interface, left_out, relative, surface_norms
 from coaxshell.solver.solution import Estimates
-from coaxshell.solver.step_error import band_limit, march_error, membrane_error
+from coaxshell.solver.step_error import band_limit, folded_error, march_error, membrane_error
 from coaxshell.solver.structure_spectra import StructureSpectra
 
 ORDERS_FACTOR = 2.0
@@ -42,6 +44,7 @@ def estimated_errors(
     histories: tuple[FloatArray, FloatArray],
     step: float,
     interface: Interface | None = None,
+    progress: Progress | None = None,
 ) -> Estimates:
     """Return the printed errors of a run.
 
@@ -52,12 +55,16 @@ def estimated_errors(
     spectra, histories : pair of ndarray
         W and V at all nodes of the grid, and at instants ``step`` apart.
     interface : Interface, optional
+    progress : callable, optional
+        Told where a march is repeated.
     """
     grid = structure.grid
     whole = surface_norms(*histories) * (step / grid.time_step)
     orders = ORDERS_FACTOR * left_out(structure, spectra, whole * grid.time_step, interface)
+    if interface is not None and interface.asked is not None and interface.saturating is not None:
+        orders = np.hypot(orders, STEP_FACTOR * folded_error(structure, interface, whole.sum(axis=-1)))
     march = np.zeros_like(orders)
     if interface is not None and interface.marched:
         total = whole.sum(axis=-1)
-        march = march_error(structure, interface, total) + STEP_FACTOR * membrane_error(structure, interface, total)
+        march = march_error(structure, interface, total, progress) + STEP_FACTOR * membrane_error(structure, interface, total)
     return Estimates(orders, STEP_FACTOR * band_limit(grid, *spectra, whole), march)

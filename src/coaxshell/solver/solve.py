@@ -187,7 +187,7 @@ def _solved(
     if solved.solid is not None:
         for name in ("hoop", "potentials") if solved.solid.layers else ("hoop",):
             solution.make_when_read(name, partial(_of_solids, solved.solid, name, grid, keep))
-    solution.judge_when_read(partial(judgement, solved=solved, asked_for=asked_for, asked=asked))
+    solution.judge_when_read(partial(judgement, solved=solved, asked_for=asked_for, asked=asked, progress=progress))
     return solution
 
 

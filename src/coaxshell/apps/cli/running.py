@@ -117,7 +117,9 @@ class Request:
         with options.named_as_options(), WorkRequest.named(), progress(quiet) as report:
             if settings.modes != "auto":
                 tell_time(run_cost(system, settings), "the run", quiet)
-            return simulate(system, settings=settings, progress=report, execution=execution)
+            response = simulate(system, settings=settings, progress=report, execution=execution)
+            _ = response.warnings  # which are told later; estimating errors may take as long as the run and shows how far it is
+            return response
 
     def check(self, system: System) -> None:
         """Refuse what a run in three dimensions does not know, before any other run is begun; InputError."""

@@ -28,13 +28,13 @@ _OVERSAMPLING = 4
 _FEWEST_POINTS = 180
 
 
-def circle(modes: int, parities: int) -> tuple[FloatArray, FloatArray]:
+def circle(modes: int, parities: int, finer: int = 1) -> tuple[FloatArray, FloatArray]:
     """Return the matrices from modal amplitudes (parities * modes) to the points of a circle, and back.
 
-    Cosines alone have their points on half the circle: they are even.
+    Points are *finer* times as many as a march has. Cosines alone have their points on half the circle: they are even.
     """
     orders = all_orders(modes - 1)
-    points = max(_OVERSAMPLING * modes, _FEWEST_POINTS) * parities
+    points = finer * max(_OVERSAMPLING * modes, _FEWEST_POINTS) * parities
     span = np.pi if parities == 1 else 2.0 * np.pi
     theta = span * (np.arange(points) + 0.5) / points
     angles = theta[:, None] * orders
@@ -51,12 +51,12 @@ class CircleSums:
 
     Parameters
     ----------
-    modes, parities : int
+    modes, parities, finer : int
     """
 
-    def __init__(self, modes: int, parities: int) -> None:
+    def __init__(self, modes: int, parities: int, finer: int = 1) -> None:
         self._modes, self._parities = modes, parities
-        evaluate, project = circle(modes, parities)
+        evaluate, project = circle(modes, parities, finer)
         self.points = len(evaluate)
         quarter = self.points // (2 * parities)  # of the circle: half the points that cosines alone have
         parts = [slice(p * modes + odd, (p + 1) * modes, 2) for p in range(parities) for odd in (0, 1)]
