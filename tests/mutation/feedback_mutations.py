@@ -137,6 +137,14 @@ FEEDBACK = (
         "solver/test_taking_bands.py",
     ),
     Mutation(
+        "orders-held",
+        "solver/taking_bands.py",
+        "(taken | (frequency > contour.even[-1]))",
+        "(taken | (frequency > 0.0))",
+        "shapes of solid walls are asked as far as any order resonates",
+        "solver/test_taking_bands.py",
+    ),
+    Mutation(
         "slack-of-a-matrix",
         "solver/taking_bands.py",
         "0.5 * np.pi - slack",

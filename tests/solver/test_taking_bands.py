@@ -7,15 +7,16 @@ from functools import partial
 
 import numpy as np
 import pytest
+from electrode_pairs import pairs
 from numpy.testing import assert_allclose
 
 import coaxshell as cx
 from coaxshell.numerics.modes import Modes
 from coaxshell.solver import stability, tied_stability
-from coaxshell.solver.contour import NOWHERE, Bands, Contour, turned
+from coaxshell.solver.contour import NOWHERE, Bands, Contour, along_alone, turned
 from coaxshell.solver.scaling import FluidRegion, Problem, dimensionless
 from coaxshell.solver.stability import unstable_poles
-from coaxshell.solver.taking_bands import all_taken, all_taken_in_waves, asymmetry, taking_bands
+from coaxshell.solver.taking_bands import all_taken, all_taken_in_waves, asymmetry, held_in, taking_bands
 from coaxshell.solver.tied_stability import Tied, growing
 
 PAIRS = cx.presets.load("electrodes")
@@ -132,6 +133,26 @@ def test_walls_that_push_otherwise_and_fluids_that_may_give_have_no_bands():
     inside = Giving(problem.fluids[0].density, problem.fluids[0].slowness)
     assert asymmetry(problem, MODES) == 0.0
     assert asymmetry(replace(problem, fluids=(inside, *problem.fluids[1:])), MODES) is None
+
+
+def test_solid_walls_have_bands_where_their_shapes_take_energy():
+    system = pairs(numerator=[0.3 * TIME, 0.0], delay="2 us")
+    problem = dimensionless(system)
+    modes = Modes.up_to(3)
+    slow, contour = along_alone(problem, modes), Contour.of(problem, modes, 4 * LEAST)
+    assert held_in(slow, modes, contour).all()
+    far = contour._replace(fades=16 * contour.fades)
+    bands = taking_bands(slow, modes, far)
+    assert 0.0 < bands.highs[0] < far.nodes[-1].imag
+    known = slow, None, slow.open_loop
+    ratio = partial(stability._ratio, *known)
+    whole, _ = turned(slow, modes, far, ratio)
+    found, _ = turned(slow, modes, far, ratio, bands, partial(stability._angle, *known))
+    assert_allclose(found, whole, atol=1e-6)
+    wrong = along_alone(dimensionless(pairs(numerator=[-3 * TIME, 0.0], weights=[1.0, 0.0, 1.0])), modes)
+    np.testing.assert_array_equal(held_in(wrong, modes, contour), [False, True, False, True])
+    later = along_alone(dimensionless(pairs(numerator=[3 * TIME, 0.0], delay="100 us")), modes)
+    assert not held_in(later, modes, contour).any()
 
 
 def test_thin_walls_with_their_fluids_at_the_faces_have_them_too():

@@ -40,7 +40,7 @@ from coaxshell.solver.coupling import ModalSystem, determinant
 from coaxshell.solver.passivity import passive_orders
 from coaxshell.solver.scaling import Problem
 from coaxshell.solver.shared_parts import SharedParts
-from coaxshell.solver.taking_bands import taking_bands
+from coaxshell.solver.taking_bands import asymmetry, held_in, taking_bands
 from coaxshell.structure.control_law import ControlGains
 from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.shell_model import FaceReceptance, ShellModel
@@ -183,18 +183,22 @@ def poles_beyond(problem: Problem, modes: Modes, least: float, shared: SharedPar
     if not fed.count:
         return none
     contour, slow = Contour.of(problem, fed, least), along_alone(problem, fed)
-    bands = taking_bands(slow, fed, contour)
-    if bands.hold_all(contour):
+    if asymmetry(problem, fed) is not None and taking_bands(slow, fed, contour).hold_all(contour):
         return none
     some = few_of(fed, fed.orders[~passive_orders(slow, fed, least)])
     if not some.count:
         return none
     if some.count < fed.count:
         contour = Contour.of(problem, some, least)
-        bands = taking_bands(slow, some, contour)
-    known = slow, shared, slow.open_loop
-    turn, nearest = turned(slow, some, contour, partial(_ratio, *known), bands, partial(_angle, *known))
-    counts = np.rint(-turn / np.pi)
+    known, held = (slow, shared, slow.open_loop), held_in(slow, some, contour)
+    counts, nearest = np.zeros(some.count), np.inf
+    for part in (held, ~held):  # of which the first have bands in common
+        if part.any():
+            own = few_of(some, some.orders[part])
+            bands = taking_bands(slow, own, contour)
+            if not bands.hold_all(contour):
+                turn, near = turned(slow, own, contour, partial(_ratio, *known), bands, partial(_angle, *known))
+                counts[part], nearest = np.rint(-turn / np.pi), min(nearest, near)
     return UnstablePoles(some.orders[counts > 0], counts[counts > 0], nearest)
 
 

@@ -11,6 +11,10 @@ right side would have a negative real part and the left has a positive one. So i
 function of s there; all that it turns by between two nodes is the difference of its values at them, however often it turns in between. Of
 one wall that is the principal argument; of several the sum of those of the walls closed one after the other, each a loop of that kind, or
 of 1 + lambda, lambda the eigenvalues. Without a matrix each wall may have a law of its own, all within a right angle.
+
+Of walls of elastic solids, which push with what they read but for parts of h/R, the shapes along them are asked instead, as in
+:mod:`coaxshell.solver.passivity` but frequency by frequency: where the Hermitian part of (omega^2 + s^2 - t H d p')/s is positive definite
+without feedback (t = 0, always) and with all of it, it is in between, each wall takes energy, and the same holds.
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from coaxshell.numerics.arrays import FloatArray
 from coaxshell.numerics.modes import Modes
@@ -26,24 +31,33 @@ from coaxshell.solver.electrode_loops import shares_of
 from coaxshell.solver.scaling import FluidRegion, Problem
 from coaxshell.solver.voltage_response import controlled
 from coaxshell.structure.control_law import ControlLaw
+from coaxshell.structure.elastic_wall import ElasticWall
 from coaxshell.structure.electroded_wall import ElectrodedWall
 from coaxshell.structure.shell_model import Gain
 
 _TURN = 0.25
 """Radians by which a delay turns between frequencies at which a law is looked at."""
 _ROUNDING = 1e-9
+_DECADE = 24
+"""Frequencies to a decade at which solid walls are asked."""
+_SURE = 0.25
+"""Share of a shape's own damping, sigma_0, that has to be left."""
 _STEPS = 3
 """Even steps of a contour that a band is long at least."""
 
 
 def taking_bands(problem: Problem, modes: Modes, contour: Contour) -> Bands:
     """Return where on a contour the feedback of all walls takes energy alone, in all orders of modes."""
+    walls = [problem.shells[i] for i in controlled(problem)]
     slack = asymmetry(problem, modes)
-    if slack is None:
+    if slack is not None:
+        laws = {id(wall.gains): wall.gains for wall in walls if wall.gains is not None}
+        found = [_bands(law, modes.orders, contour, 0.5 * np.pi - slack) for law in laws.values()]
+    elif _alone_and_solid(problem):
+        found = [_solid_bands(wall, modes, contour) for wall in walls if isinstance(wall, ElasticWall)]
+    else:
         return NOWHERE
-    laws = [law for i in controlled(problem) if (law := problem.shells[i].gains) is not None]
-    found = {id(law): _bands(law, modes.orders, contour, 0.5 * np.pi - slack) for law in laws}
-    least, *others = found.values()
+    least, *others = found
     for other in others:
         least = _both(least, other)
     long = least.highs - least.lows > _STEPS * SPACING * contour.shift
@@ -122,18 +136,61 @@ def _bands(law: ControlLaw, orders: FloatArray, contour: Contour, most: float) -
     last = float(contour.nodes[-1].imag)
     if not weighed.size:
         return Bands(np.zeros(1), np.array([last]))
-    beside = np.sinh(np.linspace(-12.0, 12.0, 97))
-    own = [np.abs(frequency + max(width, contour.shift) * beside) for frequency, width in law.resonances]
-    late = [np.arange(0.0, last, _TURN / law.delay)] if law.delay else []
-    frequency = np.unique(np.concatenate([contour.nodes.imag, *own, *late]))
+    frequency = np.unique(np.concatenate([contour.nodes.imag, *_turning(law, contour, last)]))
     frequency = frequency[frequency <= last]
     s = contour.shift + 1j * frequency
     angle = np.angle(np.atleast_2d(law.at(s, Modes(weighed)) / s))
     left = np.minimum(most - np.abs(angle[:, 1:]), most - np.abs(angle[:, :-1]))
     taking = ((left >= 0.0) & (0.5 * np.abs(np.diff(angle, axis=1)) <= left)).all(axis=0)
-    turns = np.flatnonzero(np.diff(np.concatenate([[False], taking, [False]]).astype(int)))
-    lows, highs = frequency[turns[::2]], frequency[turns[1::2]]
-    return Bands(lows, highs)
+    return _runs(frequency, np.asarray(taking))
+
+
+def _turning(law: ControlLaw, contour: Contour, last: float) -> list[FloatArray]:
+    """Return frequencies beside the law's own resonances, and as close as a delay turns it."""
+    beside = np.sinh(np.linspace(-12.0, 12.0, 97))
+    own = [np.abs(frequency + max(width, contour.shift) * beside) for frequency, width in law.resonances]
+    return [*own, np.arange(0.0, last, _TURN / law.delay)] if law.delay else own
+
+
+def _runs(frequency: FloatArray, steps: npt.NDArray[np.bool_]) -> Bands:
+    """Return the runs of steps between ascending frequencies that are so."""
+    turns = np.flatnonzero(np.diff(np.concatenate([[False], steps, [False]]).astype(int)))
+    return Bands(frequency[turns[::2]], frequency[turns[1::2]])
+
+
+def _alone_and_solid(problem: Problem) -> bool:
+    """Return whether all walls under control are solid and answer themselves alone, in fluids that give no energy."""
+    known = all(fluid is None or type(fluid) is FluidRegion for fluid in problem.fluids)
+    return known and not problem.tied and all(isinstance(problem.shells[i], ElasticWall) for i in controlled(problem))
+
+
+def held_in(problem: Problem, modes: Modes, contour: Contour) -> npt.NDArray[np.bool_]:
+    """Return which orders solid walls take energy in with their feedback as far as any resonates; True of all where walls are others."""
+    if not _alone_and_solid(problem):
+        return np.ones(modes.count, dtype=np.bool_)
+    walls = [wall for i in controlled(problem) if isinstance(wall := problem.shells[i], ElasticWall)]
+    each = [_resistance(wall, modes, contour) for wall in walls]
+    return np.asarray(np.all([(taken | (frequency > contour.even[-1])).all(axis=1) for frequency, taken in each], axis=0))
+
+
+def _resistance(wall: ElasticWall, modes: Modes, contour: Contour) -> tuple[FloatArray, npt.NDArray[np.bool_]]:
+    """Return frequencies, and at which of them the shapes along a wall take energy in each order, (orders, frequencies).
+
+    omega^2 + s^2 - H d p' over s turns as H/s does and is smooth in s otherwise: no resonance of the wall is in its Hermitian part.
+    """
+    law, last = wall.gains, float(contour.nodes[-1].imag)
+    if law is None or wall.closed_by_solver:
+        return np.array([0.0, last]), np.full((modes.count, 2), wall.gains is None)
+    smooth = np.geomspace(1e-2, last, int(_DECADE * np.log10(last / 1e-2)))
+    frequency = np.unique(np.concatenate([[0.0, last], smooth, *_turning(law, contour, last)]))
+    frequency = frequency[frequency <= last]
+    return frequency, wall.along_resistance(modes, contour.shift + 1j * frequency) > _SURE * contour.shift
+
+
+def _solid_bands(wall: ElasticWall, modes: Modes, contour: Contour) -> Bands:
+    """Return where on a contour a solid wall takes energy with its feedback, in all orders of modes."""
+    frequency, taken = _resistance(wall, modes, contour)
+    return _runs(frequency, np.asarray((taken[:, 1:] & taken[:, :-1]).all(axis=0)))
 
 
 def _both(one: Bands, other: Bands) -> Bands:
