@@ -143,6 +143,17 @@ LIMITED = {
     "current_saturation": True,
     "bridge_imbalance": 0.01,
 }
+BROKEN = {name: value for name, value in BELTS.items() if name != "weights"}
+BROKEN |= {"segments": 8, "dead_belts": [2, -1], "dead_electrodes": [[0, 3], [-1, 5]]}
+AT_SEA = {"sea": {"depth": "30 m", "up": "90 deg", "bottom": "10 m", "hydrostatic": True, "surface": True}}
+PIECES = [
+    {"type": "gap", "clearance": "1 mm", "stiffness": 1e9, "restitution": 0.5},
+    {"type": "friction", "force": 1e4, "stiffness": 1e9},
+    {"type": "table", "stretch": [-1e-3, 0.0, 1e-3], "force": [-1e5, 0.0, 1e5]},
+    {"type": "maxwell", "stiffness": 1e8, "relaxation_time": "1 ms"},
+]
+SPRUNG = {"mass": 5.0, "angle": 10.0, "law": {"type": "parallel", "laws": PIECES}, "inertance": 2.0}
+"""Dead belts, planes of the sea and an absorber of many laws, to be spoilt."""
 FITTED = {"mass": 5.0, "linear_stiffness": 1e8, "angle": 10.0, "inner_shell": 0, "outer_shell": 2, "footprint": "1 cm"}
 BELTED = (
     *(("control", name) for name in (*BELTS, "segments", "segment_gap", "delay", "saturation", "dead_belts", "dead_electrodes")),
@@ -155,7 +166,8 @@ CROWDED = (
     *(("absorbers", 0, name) for name in (*FITTED, "inertance", "law", "z")),
     *(("shells", 0, "layers", 0, name) for name in ("material", "role", "loss_factor")),
 )
-"""Entries of belts in three dimensions, and of limits of current and absorbers past a shell; not all are there."""
+SUNK = (*(("sea", name) for name in AT_SEA["sea"]), *(("absorbers", 0, "law", "laws", place) for place in range(len(PIECES))))
+"""Entries of belts in three dimensions, of limits of current and absorbers past a shell, of the sea and laws; not all are there."""
 
 
 def past_a_shell():
@@ -169,7 +181,8 @@ def past_a_shell():
 def spoilt_entries(random_, values):
     """Yield bodies in which one of the entries is something else than it may be."""
     belted = {"system": {**described("electrodes"), "control": BELTS}, "resolution": SPACE, "preview": SPACE, "choices": True}
-    for whole, entries in ((belted, BELTED), ({"system": past_a_shell(), "resolution": SMALL}, CROWDED)):
+    sprung = {"system": {**described("bare"), **AT_SEA, "absorbers": [SPRUNG]}, "resolution": SMALL}
+    for whole, entries in ((belted, BELTED), ({"system": past_a_shell(), "resolution": SMALL}, CROWDED), (sprung, SUNK)):
         yield whole
         for path in entries:
             for value in random_.sample(VALUES, values):
@@ -259,7 +272,8 @@ def requests(seed=1, count=1100):
     schema = System.model_json_schema()
     systems = [described(name) for name in presets.names()]
     systems += [{**described("bare"), "absorbers": [POINT]}, {**described("bare"), "source": {**described("bare")["source"], "z": 0.3}}]
-    systems += [{**described("electrodes"), "control": law} for law in (LAWS, LAWS, CROSSED, BELTS)]
+    systems += [{**described("electrodes"), "control": law} for law in (LAWS, LAWS, CROSSED, BELTS, BROKEN)]
+    systems += [{**described("absorbers"), **AT_SEA}, {**described("bare"), "absorbers": [SPRUNG]}]
     for raw in RAW:
         for path in ("/api/validate", "/api/solve", "/api/jobs", "/api/studies", "/api/link", "/api/link/open", "/api/project"):
             yield "POST", path, raw
