@@ -21,6 +21,11 @@ from coaxshell.apps.studio.links import fragment
 WITHOUT_NETWORK = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
 PATIENCE = 60_000
 """Milliseconds."""
+WITHOUT_TIME = """() => {
+  const told = document.createTreeWalker(document.getElementById('state'), NodeFilter.SHOW_TEXT);
+  while (told.nextNode()) told.currentNode.nodeValue = told.currentNode.nodeValue.replace(/(step [^,)]*), [^)]*\\)/, '$1)');
+}"""
+"""Leaves out how long the run took here, which would make a picture of every machine another one."""
 AT_REST = "!window.coaxshell?.state?.job && Boolean(window.coaxshell?.state?.runs?.current)"
 
 
@@ -67,6 +72,7 @@ def home(target: Path) -> None:
     with page_of(cx.presets.load("hybrid"), {"duration": 5.0, "time_step": 2e-3, "modes": 100}, 1280, 960) as page:
         page.locator("#tab-peaks").click()
         rest(page)
+        page.evaluate(WITHOUT_TIME)
         photograph(page, target)
 
 
@@ -81,6 +87,7 @@ def space(target: Path) -> None:
         rest(page, "document.getElementById('wall-plot').data")
         page.locator("#wall-scrub").evaluate("e => { e.value = String(Math.round(0.31 * e.max)); e.dispatchEvent(new Event('input')); }")
         rest(page)
+        page.evaluate(WITHOUT_TIME)
         photograph(page, target)
 
 
